@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from spinbook.chapter.labels import Label
-from spinbook.chapter.read import Reading, Surroundings, labels_of, modules_of, read_chapter, title_of
+from spinbook.chapter.read import ReadResult, Surroundings, labels_of, modules_of, read_chapter, title_of
 from spinbook.course.course import Course
 from spinbook.interfaces.compiling import collect
 
@@ -25,7 +25,7 @@ def surroundings(course: Course) -> Surroundings:
     )
 
 
-def read_all(course: Course) -> Iterator[Reading]:
+def read_all(course: Course) -> Iterator[ReadResult]:
     """Read every chapter, in the course's order."""
     known = surroundings(course)
     for file in course.chapters:

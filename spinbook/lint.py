@@ -13,7 +13,7 @@ import click
 from grader.checking.proofreader import problems_of
 from groundwork.problem import Problem, Severity
 from spinbook.chapter.classify import CellKind
-from spinbook.chapter.read import Reading
+from spinbook.chapter.read import ReadResult
 from spinbook.chapters import read_all
 from spinbook.course.course import Course, find_course
 from spinbook.course.obstacles import ranked
@@ -92,7 +92,7 @@ def _near(file: Path) -> Path:
     return file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file
 
 
-def _summary(reading: Reading, show_static: bool) -> None:
+def _summary(reading: ReadResult, show_static: bool) -> None:
     chapter = reading.chapter
     if chapter is None:
         return
@@ -104,7 +104,7 @@ def _summary(reading: Reading, show_static: bool) -> None:
             click.echo(f"  {chapter.file}:{fence.line}: {fence.language or 'fence'}: {fence.why}")
 
 
-def _as_json(reading: Reading) -> dict[str, object]:
+def _as_json(reading: ReadResult) -> dict[str, object]:
     chapter = reading.chapter
     return {
         "chapter": chapter.file.as_posix() if chapter else None,

@@ -20,12 +20,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from spinbook.build.execution import Job, execute
+from spinbook.build.execution import NotebookJob, execute
 from spinbook.build.notebooks import build_notebooks
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.imports import missing_imports
 from spinbook.chapter.python_code import CodeError, PythonCode, inspect
-from spinbook.chapter.read import Reading
+from spinbook.chapter.read import ReadResult
 from spinbook.chapters import read_all
 from spinbook.course.course import Course, read_course
 from spinbook.course.obstacles import ranked
@@ -94,7 +94,7 @@ def count(course: Course) -> Counts:
     return counts
 
 
-def _count_chapter(root: Path, reading: Reading, counts: Counts) -> None:
+def _count_chapter(root: Path, reading: ReadResult, counts: Counts) -> None:
     chapter = reading.chapter
     if chapter is None:
         return
@@ -155,7 +155,7 @@ def show(counts: Counts) -> None:
 def run(course: Course, counts: Counts, at_once: int, deadline_s: float) -> None:
     """Run every notebook; print the node cells that failed, and how many of the complete scripts ran."""
     built = [item for item in build_notebooks(course) if not item.failed]
-    jobs = [Job(item.chapter, item.notebook, course.build_folder, deadline_s) for item in built]
+    jobs = [NotebookJob(item.chapter, item.notebook, course.build_folder, deadline_s) for item in built]
     outcomes: Counter[str] = Counter()
     for executed in execute(jobs, at_once, lambda progress: None):
         name = executed.file.name.removesuffix(".ipynb")

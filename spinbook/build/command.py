@@ -13,8 +13,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsed
 from rich.progress import Progress as Bars
 
 from groundwork.problem import Problem
-from spinbook.build.execution import DEADLINE_S, Executed, Job, Progress, execute
-from spinbook.build.notebooks import Built, build_notebooks
+from spinbook.build.execution import DEADLINE_S, ExecutionResult, NotebookJob, NotebookProgress, execute
+from spinbook.build.notebooks import BuildResult, build_notebooks
 from spinbook.course.course import FILE, Course, find_course
 from spinbook.course.obstacles import ranked
 from spinbook.interfaces.compiling import compile_course
@@ -94,7 +94,7 @@ def _shown(course: Course, folder: str) -> str:
     return f"{path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path}/"
 
 
-def _is_chosen(item: Built, chapters: tuple[str, ...]) -> bool:
+def _is_chosen(item: BuildResult, chapters: tuple[str, ...]) -> bool:
     return not chapters or any(name in {item.name, item.chapter.stem, *_paths(item.chapter)} for name in chapters)
 
 
@@ -103,7 +103,7 @@ def _paths(chapter: Path) -> set[str]:
     return {chapter.as_posix(), chapter.name, f"./{chapter.as_posix()}", chapter.with_suffix("").as_posix()}
 
 
-def _without_match(built: list[Built], chapters: tuple[str, ...]) -> list[Problem]:
+def _without_match(built: list[BuildResult], chapters: tuple[str, ...]) -> list[Problem]:
     """The names that do not belong to any chapter."""
     known = [item.name for item in built]
     problems = []
@@ -115,7 +115,7 @@ def _without_match(built: list[Built], chapters: tuple[str, ...]) -> list[Proble
     return problems
 
 
-def _report_built(console: Console, built: list[Built]) -> None:
+def _report_built(console: Console, built: list[BuildResult]) -> None:
     problems = [problem for item in built for problem in item.problems]
     for problem in problems:
         if problem.is_error or not problem.group:
@@ -131,10 +131,10 @@ def _report_built(console: Console, built: list[Built]) -> None:
 
 
 def _execute(
-    console: Console, course: Course, built: list[Built], at_once: int, deadline_s: float, again: bool
+    console: Console, course: Course, built: list[BuildResult], at_once: int, deadline_s: float, again: bool
 ) -> bool:
     """Run notebooks with a progress bar. True if one failed."""
-    jobs = [Job(item.chapter, item.notebook, course.build_folder, deadline_s) for item in built]
+    jobs = [NotebookJob(item.chapter, item.notebook, course.build_folder, deadline_s) for item in built]
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -146,7 +146,7 @@ def _execute(
     with Bars(*columns, console=console, transient=True) as bars:
         tasks = {job.chapter: bars.add_task(job.name, total=None, start=False, visible=False) for job in jobs}
 
-        def on_progress(progress: Progress) -> None:
+        def on_progress(progress: NotebookProgress) -> None:
             task = tasks[progress.chapter]
             bars.start_task(task)
             bars.update(task, total=progress.cells or None, completed=progress.done, visible=True)
@@ -158,7 +158,7 @@ def _execute(
     return failed
 
 
-def _report_executed(console: Console, executed: Executed) -> None:
+def _report_executed(console: Console, executed: ExecutionResult) -> None:
     name = executed.file.name.removesuffix(".ipynb")
     if executed.cached:
         console.print(f"  ✓ {name}: unchanged since its last run", markup=False)

@@ -124,7 +124,7 @@ _USED_BY_CELLS = ("check", "chapter", "course", "graph", "kernel", "ros2", "turt
 
 
 @dataclass(frozen=True)
-class Executed:
+class ExecutionResult:
     """The result of one notebook. `file` has its outputs, even if cells failed."""
 
     chapter: Path
@@ -137,7 +137,7 @@ class Executed:
 
 
 @dataclass(frozen=True)
-class Progress:
+class NotebookProgress:
     """The progress of a notebook: `done` of `cells`."""
 
     chapter: Path
@@ -146,7 +146,7 @@ class Progress:
 
 
 @dataclass(frozen=True)
-class Job:
+class NotebookJob:
     """One notebook to run. `chapter` is its source, for messages."""
 
     chapter: Path
@@ -181,8 +181,8 @@ class Job:
 
 
 def execute(
-    jobs: Iterable[Job], at_once: int, on_progress: Callable[[Progress], None], *, again: bool = False
-) -> Iterator[Executed]:
+    jobs: Iterable[NotebookJob], at_once: int, on_progress: Callable[[NotebookProgress], None], *, again: bool = False
+) -> Iterator[ExecutionResult]:
     """Run notebooks, this many at once, and yield each when it is done. A notebook whose code has not changed since a
     good run is not run, and gets that run's outputs. `again` runs it anyway.
     """
@@ -198,14 +198,16 @@ def execute(
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool, given_up: threading.Event) -> Executed:
+def _execute_one(
+    job: NotebookJob, on_progress: Callable[[NotebookProgress], None], again: bool, given_up: threading.Event
+) -> ExecutionResult:
     notebook = json.loads(job.notebook.read_text(encoding="utf-8"))
     key = _key(notebook, job)
     if not again and (remembered := _remembered(job, key)) is not None:
         write_if_changed(job.executed, _with_outputs(notebook, remembered["outputs"]))
         _write_graph(job, remembered["graph"])
         warnings = find_warnings(job.chapter, json.loads(job.executed.read_text(encoding="utf-8")))
-        return Executed(job.chapter, job.executed, (), 0.0, cached=True, warnings=tuple(warnings))
+        return ExecutionResult(job.chapter, job.executed, (), 0.0, cached=True, warnings=tuple(warnings))
     started = time.monotonic()
     raw = job.folder.with_name(f"{job.name}.ipynb")
     ended = _run(job, raw, on_progress, given_up)
@@ -221,7 +223,7 @@ def _execute_one(job: Job, on_progress: Callable[[Progress], None], again: bool,
     if not failures:
         write_if_changed(job.record, json.dumps({"key": key, "outputs": outputs, "graph": graph}))
     never = tuple(find_warnings(job.chapter, ran))
-    return Executed(
+    return ExecutionResult(
         job.chapter, job.executed, tuple(failures), time.monotonic() - started, cached=False, warnings=never
     )
 
@@ -230,7 +232,9 @@ def _graph_of(raw: Path) -> Path:
     return raw.with_name(raw.name.removesuffix(".ipynb") + ".graph.json")
 
 
-def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None], given_up: threading.Event) -> dict[str, Any]:
+def _run(
+    job: NotebookJob, raw: Path, on_progress: Callable[[NotebookProgress], None], given_up: threading.Event
+) -> dict[str, Any]:
     """Run the notebook's process. Returns its last report of how it ended, {} if it ended well."""
     shutil.rmtree(job.folder, ignore_errors=True)
     job.folder.mkdir(parents=True)
@@ -241,7 +245,7 @@ def _run(job: Job, raw: Path, on_progress: Callable[[Progress], None], given_up:
         return _follow(job, _start(job, raw, sockets), on_progress, given_up)
 
 
-def _start(job: Job, raw: Path, sockets: str) -> KeptProcess:
+def _start(job: NotebookJob, raw: Path, sockets: str) -> KeptProcess:
     private = {"IPYTHONDIR": str(job.folder / ".ipython"), "ROS_LOG_DIR": str(job.folder / ".ros-log")}
     words = (str(job.notebook), str(raw), str(job.deadline_s), sockets)
     argv = [sys.executable, "-m", "spinbook.build.run_notebook", *words]
@@ -249,7 +253,7 @@ def _start(job: Job, raw: Path, sockets: str) -> KeptProcess:
 
 
 def _follow(
-    job: Job, process: KeptProcess, on_progress: Callable[[Progress], None], given_up: threading.Event
+    job: NotebookJob, process: KeptProcess, on_progress: Callable[[NotebookProgress], None], given_up: threading.Event
 ) -> dict[str, Any]:
     """Report the progress of the notebook's process until it ends, or has to be ended."""
     deadline = time.monotonic() + job.deadline_s + _TO_SAY_SO_S
@@ -264,7 +268,7 @@ def _follow(
                     continue
                 message = json.loads(line)
                 cells = message.get("cells", cells)
-                on_progress(Progress(job.chapter, message.get("done", 0), cells))
+                on_progress(NotebookProgress(job.chapter, message.get("done", 0), cells))
                 if not {"cells", "done"} & set(message):
                     ended = message
             if process.status.exit is not None:
@@ -279,7 +283,7 @@ def _follow(
         process.close()
 
 
-def _key(notebook: dict[str, Any], job: Job) -> str:
+def _key(notebook: dict[str, Any], job: NotebookJob) -> str:
     """What the outputs depend on: the code, not the prose around it, and the files that `%check` uses."""
     code = [(c["id"], c["source"], c["metadata"].get("tags")) for c in notebook["cells"] if c["cell_type"] == "code"]
     judged_by = ""
@@ -291,7 +295,7 @@ def _key(notebook: dict[str, Any], job: Job) -> str:
     return digest(repr(code), judged_by, interfaces, code_digest(*_USED_BY_CELLS), versions())
 
 
-def _remembered(job: Job, key: str) -> dict[str, Any] | None:
+def _remembered(job: NotebookJob, key: str) -> dict[str, Any] | None:
     try:
         record = json.loads(job.record.read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -303,7 +307,7 @@ def _text(file: Path) -> str | None:
     return file.read_text(encoding="utf-8") if file.exists() else None
 
 
-def _write_graph(job: Job, graph: str | None) -> None:
+def _write_graph(job: NotebookJob, graph: str | None) -> None:
     if graph is None:
         job.graph.unlink(missing_ok=True)
     else:
@@ -317,7 +321,7 @@ def _with_outputs(notebook: dict[str, Any], outputs: dict[str, Any]) -> str:
     return json.dumps(notebook, ensure_ascii=False, indent=1, sort_keys=True) + "\n"
 
 
-def _tidy(cell: dict[str, Any], job: Job) -> dict[str, Any]:
+def _tidy(cell: dict[str, Any], job: NotebookJob) -> dict[str, Any]:
     """A cell's outputs, without the folders of the machine that made them."""
     text = json.dumps(cell["outputs"])
     for folder, name in ((job.folder, "."), (Path(sys.prefix), ".venv")):

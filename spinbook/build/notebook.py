@@ -20,7 +20,7 @@ from markdown_it.token import Token
 from grader.exercise.loading import load
 from grader.exercise.starter import starter
 from spinbook.chapter.attributes import container, container_name, options
-from spinbook.chapter.chapter import Cell, Chapter
+from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.fence import directive, parse_info
 from spinbook.chapter.files import is_elsewhere, locate, split
@@ -220,7 +220,7 @@ def _cells(chapter: Chapter, course: Course) -> Iterator[dict[str, Any]]:
             yield setup_cell
 
 
-def _runnable(cell: Cell) -> dict[str, Any]:
+def _runnable(cell: ChapterCell) -> dict[str, Any]:
     metadata: dict[str, Any] = {"kind": cell.kind.value, "line": cell.line}
     if cell.kind is CellKind.NODE:
         metadata["node"] = cell.name
@@ -242,7 +242,7 @@ def _runnable(cell: Cell) -> dict[str, Any]:
     return _code(cell.id, source, metadata, ["raises-exception"] if cell.raises else [])
 
 
-def _how(cell: Cell) -> str:
+def _how(cell: ChapterCell) -> str:
     """The options that say how a node's code is started and made whole."""
     words = [f"--class {name}" for name in cell.spin_classes]
     words += ["--main"] if cell.runs_main else []
@@ -253,13 +253,13 @@ def _how(cell: Cell) -> str:
     return "".join(f" {word}" for word in words)
 
 
-def _bounds(cell: Cell) -> str:
+def _bounds(cell: ChapterCell) -> str:
     """The options that say how long a cell shows or runs."""
     seconds = f" --seconds {cell.seconds:g}" if cell.seconds else ""
     return seconds + (f" --until {shlex.quote(cell.until)}" if cell.until else "")
 
 
-def _shell_line(command: Command, cell: Cell) -> str:
+def _shell_line(command: Command, cell: ChapterCell) -> str:
     if command.kind is CommandKind.NOTE:
         return command.text
     text = _in_one_line(command)
@@ -284,7 +284,7 @@ def _flowing(value: str) -> str:
     return flowing.strip()
 
 
-def _exercise(cell: Cell, course: Course) -> Iterator[dict[str, Any]]:
+def _exercise(cell: ChapterCell, course: Course) -> Iterator[dict[str, Any]]:
     exercise = load(course.root / "exercises" / (cell.name or ""))
     location = Location(course.root, f"exercises/{exercise.name}", course.names, course.repository)
     yield _prose(f"{cell.id}-task", _one_level_down(exercise.task), cell.line, location)

@@ -21,7 +21,7 @@ from spinbook.course.obstacles import strict
 
 
 @dataclass(frozen=True)
-class Built:
+class BuildResult:
     """The result of one chapter. `notebook` exists unless an error stopped the chapter and it was never built
     before."""
 
@@ -44,7 +44,7 @@ class Built:
         return any(problem.is_error for problem in self.problems)
 
 
-def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[Built]:
+def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[BuildResult]:
     """Build `build/notebooks/CHAPTER.ipynb` for each chapter, in the course's order.
 
     With `is_strict`, code that is shown but not run is an error.
@@ -70,7 +70,9 @@ def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[Buil
         own = digest(common, exercise_files)
         key = _key(own, chapter, entry["uses"] if entry else [], course, known)
         if entry and entry["key"] == key and notebook.exists():
-            built = Built(chapter, notebook, tuple(_problem(p) for p in entry["problems"]), False, tuple(entry["uses"]))
+            built = BuildResult(
+                chapter, notebook, tuple(_problem(p) for p in entry["problems"]), False, tuple(entry["uses"])
+            )
         else:
             built = _build(course, chapter, notebook, known, is_strict)
         if not built.failed:
@@ -89,7 +91,7 @@ def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[Buil
     write_if_changed(record, json.dumps(after, indent=1, sort_keys=True) + "\n")
 
 
-def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings, is_strict: bool) -> Built:
+def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings, is_strict: bool) -> BuildResult:
     reading = read_chapter(course.root, chapter, known)
     problems = [strict(problem) for problem in reading.problems] if is_strict else list(reading.problems)
     if reading.chapter is not None and not any(problem.is_error for problem in problems):
@@ -98,7 +100,7 @@ def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings, i
         except ExerciseError as error:
             problems.append(Problem(chapter, None, str(error), "Fix the exercise, or remove it from the chapter."))
     uses = tuple(file.as_posix() for file in reading.chapter.uses) if reading.chapter else ()
-    return Built(chapter, notebook, tuple(problems), fresh=True, uses=uses)
+    return BuildResult(chapter, notebook, tuple(problems), fresh=True, uses=uses)
 
 
 def _key(own: str, chapter: Path, uses: Sequence[str], course: Course, known: Surroundings) -> str:

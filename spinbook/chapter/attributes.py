@@ -28,14 +28,14 @@ _TABS = frozenset({"Tabs", "TabItem", "Tab", "tabs", "tab", "CodeGroup", "TabPan
 _HOLDING = frozenset({"Admonition", "details", "Details", "hint", "highlight", "raw", "capture", "comment"})
 
 
-class _Paired:
+class _PairedTags:
     """Every capitalised tag of MDX, and the few others that are known, come in pairs."""
 
     def __contains__(self, name: str) -> bool:
         return name[:1].isupper() or name in _TABS or name in _HOLDING or name in _STYLE
 
 
-PAIRED = _Paired()
+PAIRED = _PairedTags()
 _PAIR = re.compile(r"""([A-Za-z_][\w-]*)\s*[=:]\s*(?:\{?\s*"([^"]*)"\s*\}?|\{?\s*'([^']*)'\s*\}?|([^\s,}>]+))""")
 _EXERCISE = re.compile(r"^<!--\s*exercise:\s*([\w-]+)\s*-->")
 _OPTION = re.compile(r"^:([\w-]+):\s*(.*)$")

@@ -10,7 +10,7 @@ from spinbook.chapter import attributes
 from spinbook.chapter.fence import Fence, make_fence
 
 
-class Kind(Enum):
+class BlockKind(Enum):
     """What a block is. Those from ADMONITION on hold blocks."""
 
     TEXT = "text"
@@ -28,7 +28,7 @@ class Kind(Enum):
 
 
 @dataclass(frozen=True)
-class Line:
+class SourceLine:
     """A line of the chapter, without the indentation of what holds it. `number` counts from 1 in the chapter."""
 
     text: str
@@ -42,14 +42,14 @@ class Block:
     `new` are the lines that replace the author's if Markdown tools would not understand those; None keeps the author's.
     """
 
-    kind: Kind
-    lines: tuple[Line, ...]
+    kind: BlockKind
+    lines: tuple[SourceLine, ...]
     children: tuple[Block, ...] = ()
     title: str = ""
     style: str = ""
     fence: Fence | None = None
     closed: bool = True
-    new: tuple[Line, ...] | None = None
+    new: tuple[SourceLine, ...] | None = None
     offset: int = 0
     """How far the text of a list's item is indented."""
     label: str = ""
@@ -67,21 +67,21 @@ class Block:
             yield from child.walk()
 
 
-def unquoted(line: Line) -> Line:
+def unquoted(line: SourceLine) -> SourceLine:
     """A line of a quotation without its mark."""
     text = line.text.lstrip()
     if not text.startswith(">"):
-        return Line(text, line.number)
-    return Line(text[1:].removeprefix(" "), line.number)
+        return SourceLine(text, line.number)
+    return SourceLine(text[1:].removeprefix(" "), line.number)
 
 
-def as_fence(fence: Fence, lines: tuple[Line, ...]) -> tuple[Line, ...]:
+def as_fence(fence: Fence, lines: tuple[SourceLine, ...]) -> tuple[SourceLine, ...]:
     """The lines of a plain fence instead of these."""
     number = lines[0].number
     title = f' title="{fence.title}"' if fence.title else ""
-    code = [Line(text, number) for text in fence.code.rstrip("\n").split("\n")]
+    code = [SourceLine(text, number) for text in fence.code.rstrip("\n").split("\n")]
     mark = "````" if "```" in fence.code else "```"
-    return (Line(f"{mark}{fence.language}{title}", number), *code, Line(mark, lines[-1].number))
+    return (SourceLine(f"{mark}{fence.language}{title}", number), *code, SourceLine(mark, lines[-1].number))
 
 
 def merged_callouts(found: list[Block]) -> list[Block]:
@@ -89,13 +89,13 @@ def merged_callouts(found: list[Block]) -> list[Block]:
     out: list[Block] = []
     style = ""
     for block in found:
-        if block.kind is Kind.DROPPED and block.style in attributes.STYLES:
-            if out and out[-1].kind in {Kind.TEXT, Kind.QUOTE} and out[-1].lines[-1].text.strip():
+        if block.kind is BlockKind.DROPPED and block.style in attributes.STYLES:
+            if out and out[-1].kind in {BlockKind.TEXT, BlockKind.QUOTE} and out[-1].lines[-1].text.strip():
                 out[-1] = _called_out(out[-1], block.style)
             else:
                 style = block.style
             continue
-        if style and block.kind in {Kind.TEXT, Kind.QUOTE} and any(line.text.strip() for line in block.lines):
+        if style and block.kind in {BlockKind.TEXT, BlockKind.QUOTE} and any(line.text.strip() for line in block.lines):
             block, style = _called_out(block, style), ""
         out.append(block)
     return out
@@ -104,16 +104,16 @@ def merged_callouts(found: list[Block]) -> list[Block]:
 def _called_out(block: Block, style: str) -> Block:
     quoted = block.lines[0].text.lstrip().startswith(">")
     lines = tuple(unquoted(line) for line in block.lines) if quoted else block.lines
-    return Block(Kind.ADMONITION, block.lines, (Block(Kind.TEXT, lines),), style=style)
+    return Block(BlockKind.ADMONITION, block.lines, (Block(BlockKind.TEXT, lines),), style=style)
 
 
 def paired(found: list[Block]) -> tuple[Block, ...]:
     """Opening and closing tags become one block that holds what is between them."""
     stack: list[tuple[Block | None, list[Block]]] = [(None, [])]
     for block in found:
-        if block.kind is Kind.DROPPED and block.style == "open" and block.title in attributes.PAIRED:
+        if block.kind is BlockKind.DROPPED and block.style == "open" and block.title in attributes.PAIRED:
             stack.append((block, []))
-        elif block.kind is Kind.DROPPED and block.style == "close" and block.title in attributes.PAIRED:
+        elif block.kind is BlockKind.DROPPED and block.style == "close" and block.title in attributes.PAIRED:
             if any(opened and opened.title == block.title for opened, _ in stack):
                 while True:
                     opened, inner = stack.pop()
@@ -144,7 +144,7 @@ def _pair(opened: Block, inner: list[Block], closing: Block | None) -> Block:
     if opened.title == "highlight":
         code = "".join(f"{line.text}\n" for block in inner for line in block.lines)
         fence = make_fence(words.split(" ")[0] or "text", code, opened.line)
-        return Block(Kind.FENCE, lines, fence=fence, new=as_fence(fence, lines))
+        return Block(BlockKind.FENCE, lines, fence=fence, new=as_fence(fence, lines))
     if opened.title == "details" and summary is None and "title" not in given:
         title = "Details"
-    return Block(Kind(kind), lines, tuple(inner), title, style)
+    return Block(BlockKind(kind), lines, tuple(inner), title, style)

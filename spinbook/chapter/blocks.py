@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from markdown_it.token import Token
 
 from spinbook.chapter import attributes
-from spinbook.chapter.block import Block, Kind, Line, as_fence, merged_callouts, paired, unquoted
+from spinbook.chapter.block import Block, BlockKind, SourceLine, as_fence, merged_callouts, paired, unquoted
 from spinbook.chapter.fence import Fence, directive, make_fence
 from spinbook.chapter.flavours import parser
 
@@ -32,8 +32,8 @@ class _Directive:
     name: str
     argument: str
     options: dict[str, str]
-    lines: tuple[Line, ...]
-    body: list[Line]
+    lines: tuple[SourceLine, ...]
+    body: list[SourceLine]
     skipped: int
     closed: bool
 
@@ -42,9 +42,9 @@ class _Directive:
         """The body as a fence's code."""
         return "".join(f"{line.text}\n" for line in self.body)
 
-    def between(self, opening: str, closing: str) -> tuple[Line, ...]:
+    def between(self, opening: str, closing: str) -> tuple[SourceLine, ...]:
         """The body between two other lines."""
-        return (Line(opening, self.lines[0].number), *self.body, Line(closing, self.lines[-1].number))
+        return (SourceLine(opening, self.lines[0].number), *self.body, SourceLine(closing, self.lines[-1].number))
 
 
 @dataclass
@@ -53,9 +53,9 @@ class _Reader:
     depth: int = 0
     tokens: list[Token] = field(default_factory=list)
 
-    def blocks(self, lines: Sequence[Line]) -> tuple[Block, ...]:
+    def blocks(self, lines: Sequence[SourceLine]) -> tuple[Block, ...]:
         if self.depth > _DEEPEST:
-            return (Block(Kind.TEXT, tuple(lines)),)
+            return (Block(BlockKind.TEXT, tuple(lines)),)
         tokens = parser().parse("\n".join(line.text for line in lines))
         found: list[Block] = []
         at = 0
@@ -64,24 +64,24 @@ class _Reader:
                 continue
             start, end = token.map
             if start > at:
-                found.append(Block(Kind.TEXT, tuple(lines[at:start])))
+                found.append(Block(BlockKind.TEXT, tuple(lines[at:start])))
             if token.type == "container_any_open" and end < len(lines) and set(lines[end].text.strip()) == {":"}:
                 end += 1
             at = min(max(end, start + 1), len(lines))
             if token.type in _HOLDERS and not any(map(self._is_block, _inside(tokens, index))):
-                found.append(Block(Kind.TEXT, tuple(lines[start:at])))
+                found.append(Block(BlockKind.TEXT, tuple(lines[start:at])))
             else:
                 found.extend(self._block(token, tuple(lines[start:at])))
         if at < len(lines):
-            found.append(Block(Kind.TEXT, tuple(lines[at:])))
+            found.append(Block(BlockKind.TEXT, tuple(lines[at:])))
         return paired(merged_callouts(found))
 
-    def inside(self, lines: Sequence[Line]) -> tuple[Block, ...]:
+    def inside(self, lines: Sequence[SourceLine]) -> tuple[Block, ...]:
         return _Reader(self.include, self.depth + 1).blocks(lines)
 
-    def _block(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+    def _block(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         read = getattr(self, f"_{token.type}", None)
-        return read(token, lines) if read else [Block(Kind.TEXT, lines)]
+        return read(token, lines) if read else [Block(BlockKind.TEXT, lines)]
 
     def _is_block(self, token: Token) -> bool:
         """Whether it is a fence, an exercise or something of a book tool: then what it is in has to be read, too."""
@@ -89,27 +89,27 @@ class _Reader:
             return bool(attributes.exercise(token.content))
         return token.type not in _MARKDOWN and hasattr(self, f"_{token.type}")
 
-    def _heading_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
-        return [Block(Kind.HEADING, lines)]
+    def _heading_open(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
+        return [Block(BlockKind.HEADING, lines)]
 
-    def _html_block(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+    def _html_block(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         name = attributes.exercise(token.content)
         if not name:
-            return [Block(Kind.TEXT, lines)]
-        rest = [Block(Kind.TEXT, lines[1:])] if len(lines) > 1 else []
-        return [Block(Kind.EXERCISE, lines[:1], title=name), *rest]
+            return [Block(BlockKind.TEXT, lines)]
+        rest = [Block(BlockKind.TEXT, lines[1:])] if len(lines) > 1 else []
+        return [Block(BlockKind.EXERCISE, lines[:1], title=name), *rest]
 
-    def _fence(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+    def _fence(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         closed = _is_closed(token, lines)
         name, argument = directive(token.info)
-        body = [Line(text, lines[0].number + 1 + i) for i, text in enumerate(token.content.split("\n")[:-1])]
+        body = [SourceLine(text, lines[0].number + 1 + i) for i, text in enumerate(token.content.split("\n")[:-1])]
         if name:
             closed = closed or len(lines) == 1
             return self._directive(name, argument, lines, body, closed)
         fence = self._included(make_fence(token.info, token.content, lines[0].number))
         expanded = fence.code != token.content and "".join(f"{line.text}\n" for line in body) != fence.code
         new = as_fence(fence, lines) if expanded and not fence.skipped else None
-        return [Block(Kind.FENCE, lines, fence=fence, closed=closed, new=new)]
+        return [Block(BlockKind.FENCE, lines, fence=fence, closed=closed, new=new)]
 
     def _included(self, fence: Fence) -> Fence:
         if "8<--" not in fence.code:
@@ -122,7 +122,7 @@ class _Reader:
         return replace(fence, code="\n".join(out))
 
     def _directive(
-        self, name: str, argument: str, lines: tuple[Line, ...], body: list[Line], closed: bool
+        self, name: str, argument: str, lines: tuple[SourceLine, ...], body: list[SourceLine], closed: bool
     ) -> list[Block]:
         """A directive of MyST. The first of its blocks has the label that its options give it."""
         options, skipped = attributes.options([line.text for line in body])
@@ -138,60 +138,64 @@ class _Reader:
         fence = make_fence(f"{{code-cell}} {info}", directive.code, directive.lines[0].number)
         fence = self._included(replace(fence, skipped=directive.skipped))
         new = as_fence(fence, directive.lines)
-        return [Block(Kind.FENCE, directive.lines, fence=fence, closed=directive.closed, new=new)]
+        return [Block(BlockKind.FENCE, directive.lines, fence=fence, closed=directive.closed, new=new)]
 
     def _literal(self, directive: _Directive) -> list[Block]:
         file, lines = directive.argument, directive.lines
         text = self.include(file)
         if text is None:
-            return [Block(Kind.FENCE, lines, fence=make_fence("text", "", lines[0].number))]
+            return [Block(BlockKind.FENCE, lines, fence=make_fence("text", "", lines[0].number))]
         language = directive.options.get("language", "python" if file.endswith(".py") else "text")
         title = f' title="{file.rsplit("/", 1)[-1]}"' if file.endswith(".py") else ""
         fence = make_fence(language + title, text.rstrip("\n") + "\n", lines[0].number)
-        return [Block(Kind.FENCE, lines, fence=fence, new=as_fence(fence, lines))]
+        return [Block(BlockKind.FENCE, lines, fence=fence, new=as_fence(fence, lines))]
 
     def _include(self, directive: _Directive) -> list[Block]:
         text, number = self.include(directive.argument), directive.lines[0].number
         if not text:
-            return [Block(Kind.DROPPED, directive.lines)]
-        return list(self.inside([Line(line, number) for line in text.split("\n")]))
+            return [Block(BlockKind.DROPPED, directive.lines)]
+        return list(self.inside([SourceLine(line, number) for line in text.split("\n")]))
 
     def _image(self, directive: _Directive) -> list[Block]:
         number = directive.lines[0].number
-        new = (Line(attributes.image(directive.argument, directive.options), number), Line("", number), *directive.body)
+        new = (
+            SourceLine(attributes.image(directive.argument, directive.options), number),
+            SourceLine("", number),
+            *directive.body,
+        )
         caption = next((line.text.strip() for line in directive.body if line.text.strip()), "")
-        return [Block(Kind.TEXT, directive.lines, title=caption, new=new)]
+        return [Block(BlockKind.TEXT, directive.lines, title=caption, new=new)]
 
     def _unseen(self, directive: _Directive) -> list[Block]:
-        return [Block(Kind.DROPPED, directive.lines)]
+        return [Block(BlockKind.DROPPED, directive.lines)]
 
     def _mermaid(self, directive: _Directive) -> list[Block]:
         fence, new = make_fence("mermaid", directive.code, 1), directive.between("```mermaid", "```")
-        return [Block(Kind.FENCE, directive.lines, fence=fence, closed=directive.closed, new=new)]
+        return [Block(BlockKind.FENCE, directive.lines, fence=fence, closed=directive.closed, new=new)]
 
     def _math(self, directive: _Directive) -> list[Block]:
-        return [Block(Kind.TEXT, directive.lines, new=directive.between("$$", "$$"))]
+        return [Block(BlockKind.TEXT, directive.lines, new=directive.between("$$", "$$"))]
 
     def _holding(self, directive: _Directive) -> list[Block]:
         """An admonition, a tab and the like, or a directive that is not known."""
         kind, style, title = attributes.container(directive.name, directive.argument)
         if kind is None:
-            return [Block(Kind.FENCE, directive.lines, fence=make_fence(directive.name, directive.code, 1))]
+            return [Block(BlockKind.FENCE, directive.lines, fence=make_fence(directive.name, directive.code, 1))]
         inner, number = directive.body, directive.lines[0].number
         if style and not title and directive.argument:
-            inner = [Line(directive.argument, number), Line("", number), *inner]
-        return [Block(Kind(kind), directive.lines, self.inside(inner), title, style)]
+            inner = [SourceLine(directive.argument, number), SourceLine("", number), *inner]
+        return [Block(BlockKind(kind), directive.lines, self.inside(inner), title, style)]
 
-    def _snippet(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+    def _snippet(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         text = self.include(token.info)
         if text is None:
-            return [Block(Kind.TEXT, lines)]
+            return [Block(BlockKind.TEXT, lines)]
         return [
-            replace(block, new=block.new or block.lines) if block.kind is Kind.TEXT else block
-            for block in self.inside([Line(t, lines[0].number) for t in text.split("\n")])
+            replace(block, new=block.new or block.lines) if block.kind is BlockKind.TEXT else block
+            for block in self.inside([SourceLine(t, lines[0].number) for t in text.split("\n")])
         ]
 
-    def _container_any_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+    def _container_any_open(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         name, argument = attributes.container_name(token.info)
         ends = set(lines[-1].text.strip()) == {":"} and len(lines) > 1
         inner = list(lines[1:-1] if ends else lines[1:])
@@ -202,86 +206,91 @@ class _Reader:
         kind, style, title = attributes.container(name, argument, colon=not is_myst)
         title = title or options.get("title", "")
         if style and not title and argument and is_myst:
-            inner[:skipped] = [Line(argument, lines[0].number), Line("", lines[0].number)]
+            inner[:skipped] = [SourceLine(argument, lines[0].number), SourceLine("", lines[0].number)]
             skipped = 0
-        return [Block(Kind(kind or "group"), lines, self.inside(inner[skipped:]), title, style)]
+        return [Block(BlockKind(kind or "group"), lines, self.inside(inner[skipped:]), title, style)]
 
-    def _admonition_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+    def _admonition_open(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         style, title = attributes.admonition(token.info)
         indent = len(lines[0].text) - len(lines[0].text.lstrip()) + 4
-        kind = Kind.DETAILS if lines[0].text.lstrip().startswith("?") else Kind.ADMONITION
+        kind = BlockKind.DETAILS if lines[0].text.lstrip().startswith("?") else BlockKind.ADMONITION
         return [Block(kind, lines, self.inside(_dedented(lines[1:], indent)), title, style)]
 
-    def _tab(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
-        return [Block(Kind.TAB, lines, self.inside(_dedented(lines[1:], 4)), token.info)]
+    def _tab(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
+        return [Block(BlockKind.TAB, lines, self.inside(_dedented(lines[1:], 4)), token.info)]
 
-    def _callout(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
-        inner = (Line(token.info, lines[0].number),)
+    def _callout(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
+        inner = (SourceLine(token.info, lines[0].number),)
         return [
-            Block(Kind.ADMONITION, lines, (Block(Kind.TEXT, inner),), style="warning" if token.tag == "!" else "tip")
+            Block(
+                BlockKind.ADMONITION,
+                lines,
+                (Block(BlockKind.TEXT, inner),),
+                style="warning" if token.tag == "!" else "tip",
+            )
         ]
 
-    def _jsx(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
-        return [Block(Kind.TEXT, lines, new=(Line(token.content, lines[0].number),))]
+    def _jsx(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
+        return [Block(BlockKind.TEXT, lines, new=(SourceLine(token.content, lines[0].number),))]
 
-    def _kramdown(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
-        return [Block(Kind.DROPPED, lines, style=attributes.kramdown_style(token.info))]
+    def _kramdown(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
+        return [Block(BlockKind.DROPPED, lines, style=attributes.kramdown_style(token.info))]
 
-    def _label(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
-        return [Block(Kind.DROPPED, lines, label=token.tag)]
+    def _label(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
+        return [Block(BlockKind.DROPPED, lines, label=token.tag)]
 
-    def _dropped(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
-        return [Block(Kind.DROPPED, lines)]
+    def _dropped(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
+        return [Block(BlockKind.DROPPED, lines)]
 
-    def _marked(self, token: Token, lines: tuple[Line, ...], mark: str, name: str) -> list[Block]:
-        return [Block(Kind.DROPPED, lines, title=name, style=mark, new=(Line(token.info, lines[0].number),))]
+    def _marked(self, token: Token, lines: tuple[SourceLine, ...], mark: str, name: str) -> list[Block]:
+        return [Block(BlockKind.DROPPED, lines, title=name, style=mark, new=(SourceLine(token.info, lines[0].number),))]
 
-    def _liquid(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+    def _liquid(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         if token.tag == "include":
             given = attributes.pairs(token.info)
             source = given.get("image_path") or given.get("src") or given.get("url") or given.get("file")
             if source:
-                new = (Line(attributes.image(source, given), lines[0].number),)
-                return [Block(Kind.TEXT, lines, new=new)]
-            return [Block(Kind.DROPPED, lines)]
+                new = (SourceLine(attributes.image(source, given), lines[0].number),)
+                return [Block(BlockKind.TEXT, lines, new=new)]
+            return [Block(BlockKind.DROPPED, lines)]
         if token.tag.startswith("end"):
             return self._marked(token, lines, "close", token.tag[3:])
         return self._marked(token, lines, "open", token.tag)
 
-    def _tag_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+    def _tag_open(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         if token.content:
             token.info = f'title="{attributes.plain(token.content)}"'
         return self._marked(token, lines, "open", token.tag)
 
-    def _tag_close(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+    def _tag_close(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         return self._marked(token, lines, "close", token.tag)
 
-    def _tag_self(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+    def _tag_self(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         if token.tag == "summary":
             return [
                 Block(
-                    Kind.DROPPED,
+                    BlockKind.DROPPED,
                     lines,
                     title="summary",
                     style="summary",
-                    new=(Line(attributes.plain(token.content), 1),),
+                    new=(SourceLine(attributes.plain(token.content), 1),),
                 )
             ]
         if token.content:
             inner = token.content.rpartition("</")[0].strip()
-            return [Block(Kind.TEXT, lines, new=(Line(inner, lines[0].number),))]
-        return [Block(Kind.DROPPED, lines, new=_words(token, lines))]
+            return [Block(BlockKind.TEXT, lines, new=(SourceLine(inner, lines[0].number),))]
+        return [Block(BlockKind.DROPPED, lines, new=_words(token, lines))]
 
-    def _blockquote_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
-        return [Block(Kind.QUOTE, lines, self.inside([unquoted(line) for line in lines]))]
+    def _blockquote_open(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
+        return [Block(BlockKind.QUOTE, lines, self.inside([unquoted(line) for line in lines]))]
 
-    def _bullet_list_open(self, token: Token, lines: tuple[Line, ...]) -> list[Block]:
+    def _bullet_list_open(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         items = self._items(lines)
-        return [Block(Kind.LIST, lines, items)] if items else [Block(Kind.TEXT, lines)]
+        return [Block(BlockKind.LIST, lines, items)] if items else [Block(BlockKind.TEXT, lines)]
 
     _ordered_list_open = _bullet_list_open
 
-    def _items(self, lines: tuple[Line, ...]) -> tuple[Block, ...]:
+    def _items(self, lines: tuple[SourceLine, ...]) -> tuple[Block, ...]:
         tokens = parser().parse("\n".join(line.text for line in lines))
         items = [
             (token, token.map[0])
@@ -293,15 +302,15 @@ class _Reader:
         for (token, start), end in zip(items, ends, strict=False):
             own = lines[start:end]
             offset = _offset(own[0].text, len(token.info) + len(token.markup))
-            first = Line(own[0].text[offset:], own[0].number)
+            first = SourceLine(own[0].text[offset:], own[0].number)
             inner = self.inside([first, *_dedented(own[1:], offset)])
-            found.append(Block(Kind.ITEM, own, inner, title=token.info, style=token.markup, offset=offset))
+            found.append(Block(BlockKind.ITEM, own, inner, title=token.info, style=token.markup, offset=offset))
         return tuple(found)
 
 
 def read_blocks(text: str, include: Include) -> tuple[Block, ...]:
     """The blocks of a chapter's text."""
-    lines = [Line(content, number) for number, content in enumerate(text.split("\n"), start=1)]
+    lines = [SourceLine(content, number) for number, content in enumerate(text.split("\n"), start=1)]
     return _Reader(include).blocks(lines)
 
 
@@ -331,20 +340,20 @@ def _offset(text: str, marker: int) -> int:
     return start + (spaces if 1 <= spaces <= 4 else 1)
 
 
-def _dedented(lines: Sequence[Line], indent: int) -> list[Line]:
+def _dedented(lines: Sequence[SourceLine], indent: int) -> list[SourceLine]:
     out = []
     for line in lines:
         text = line.text.expandtabs(4) if line.text[:indent].count("\t") else line.text
         strip = min(indent, len(text) - len(text.lstrip(" ")))
-        out.append(Line(text[strip:], line.number))
+        out.append(SourceLine(text[strip:], line.number))
     return out
 
 
-def _is_closed(token: Token, lines: tuple[Line, ...]) -> bool:
+def _is_closed(token: Token, lines: tuple[SourceLine, ...]) -> bool:
     last = lines[-1].text.strip() if len(lines) > 1 else ""
     return set(last) == {token.markup[0]} and len(last) >= len(token.markup)
 
 
-def _words(token: Token, lines: tuple[Line, ...]) -> tuple[Line, ...]:
+def _words(token: Token, lines: tuple[SourceLine, ...]) -> tuple[SourceLine, ...]:
     """What an MDX component without content shows: the words among its properties."""
-    return tuple(Line(text, lines[0].number) for text in attributes.words_of(token.tag, token.info))
+    return tuple(SourceLine(text, lines[0].number) for text in attributes.words_of(token.tag, token.info))

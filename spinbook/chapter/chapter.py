@@ -7,14 +7,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from spinbook.chapter.block import Kind, Line
-from spinbook.chapter.classify import CellKind, Classified
+from spinbook.chapter.block import BlockKind, SourceLine
+from spinbook.chapter.classify import CellKind, ClassifiedFence
 from spinbook.chapter.layout import Piece
 from spinbook.chapter.terminal import Command, CommandKind
 
 
 @dataclass(frozen=True)
-class Cell:
+class ChapterCell:
     """One cell of a chapter. `line` is the chapter's line on which its source begins, counted from 1.
 
     `name` is a node's name (its file without .py), an exercise's, or an interface's, such as
@@ -74,23 +74,23 @@ class Chapter:
     file: Path
     title: str
     summary: str
-    cells: tuple[Cell, ...]
+    cells: tuple[ChapterCell, ...]
     static_fences: tuple[StaticFence, ...] = ()
     uses: tuple[Path, ...] = ()
     """The files of the course that it includes or shows, relative to the course."""
 
     @property
-    def interfaces(self) -> Iterator[Cell]:
+    def interfaces(self) -> Iterator[ChapterCell]:
         """The cells that define messages, services and actions, in order."""
         return (cell for cell in self.cells if cell.kind is CellKind.INTERFACE)
 
     @property
-    def files(self) -> Iterator[Cell]:
+    def files(self) -> Iterator[ChapterCell]:
         """The launch and parameter files of the package, in order."""
         return (cell for cell in self.cells if cell.kind is CellKind.FILE)
 
     @property
-    def nodes(self) -> Iterator[Cell]:
+    def nodes(self) -> Iterator[ChapterCell]:
         """The cells that are nodes, in order."""
         return (cell for cell in self.cells if cell.kind is CellKind.NODE)
 
@@ -99,10 +99,10 @@ class Chapter:
 _LONGEST_ID = 64
 
 
-def make_cells(pieces: Iterable[Piece], classified: dict[int, Classified]) -> tuple[Cell, ...]:
+def make_cells(pieces: Iterable[Piece], classified: dict[int, ClassifiedFence]) -> tuple[ChapterCell, ...]:
     """The cells of a chapter. `classified` are its fences by their line."""
     ids = _Ids()
-    cells: list[Cell] = []
+    cells: list[ChapterCell] = []
     lines: list[Piece] = []
     for piece in pieces:
         if piece.heading or piece.block is not None:
@@ -110,16 +110,16 @@ def make_cells(pieces: Iterable[Piece], classified: dict[int, Classified]) -> tu
             lines = []
         if piece.block is None:
             lines.append(piece)
-        elif piece.block.kind is Kind.EXERCISE:
+        elif piece.block.kind is BlockKind.EXERCISE:
             name = piece.block.title
-            cells.append(Cell(CellKind.EXERCISE, ids.named(f"exercise-{name}"), "", piece.block.line, name=name))
+            cells.append(ChapterCell(CellKind.EXERCISE, ids.named(f"exercise-{name}"), "", piece.block.line, name=name))
         elif piece.block.fence is not None:
             cells.append(_runnable(classified[piece.block.fence.line], ids))
     cells.extend(_prose(lines, ids))
     return tuple(cells)
 
 
-def _prose(pieces: list[Piece], ids: _Ids) -> Iterator[Cell]:
+def _prose(pieces: list[Piece], ids: _Ids) -> Iterator[ChapterCell]:
     """A piece of prose without the empty lines around it, which begins with the section's heading if it has one."""
     lines = [piece.line for piece in pieces if piece.line is not None]
     while lines and not lines[0].text.strip():
@@ -129,12 +129,12 @@ def _prose(pieces: list[Piece], ids: _Ids) -> Iterator[Cell]:
     if lines:
         heading = next((piece.line for piece in pieces if piece.heading), None)
         text = "\n".join(line.text for line in lines)
-        yield Cell(CellKind.PROSE, ids.prose(heading), text, lines[0].number)
+        yield ChapterCell(CellKind.PROSE, ids.prose(heading), text, lines[0].number)
 
 
-def _runnable(item: Classified, ids: _Ids) -> Cell:
+def _runnable(item: ClassifiedFence, ids: _Ids) -> ChapterCell:
     fence = item.fence
-    return Cell(
+    return ChapterCell(
         item.kind,
         _id(item, ids),
         fence.code,
@@ -154,7 +154,7 @@ def _runnable(item: Classified, ids: _Ids) -> Cell:
     )
 
 
-def _id(item: Classified, ids: _Ids) -> str:
+def _id(item: ClassifiedFence, ids: _Ids) -> str:
     if item.kind is CellKind.NODE:
         return ids.named(f"node-{item.name}")
     if item.kind is CellKind.PART:
@@ -175,7 +175,7 @@ class _Ids:
         self._section = "start"
         self._given: dict[str, int] = {}
 
-    def prose(self, heading: Line | None) -> str:
+    def prose(self, heading: SourceLine | None) -> str:
         if heading is not None:
             self._section = _slug(heading.text.strip().strip("#")) or "section"
         return self.named(self._section)

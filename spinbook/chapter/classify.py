@@ -13,7 +13,7 @@ from spinbook.chapter.attributes import not_included
 from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_path, interface_title, is_someone_elses
 from spinbook.chapter.launch_files import is_package_file, unsupported_in_launch_file
 from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect, programs_in_magics
-from spinbook.chapter.terminal import Command, CommandKind, NotRunnable, looks_like_shell, read_commands
+from spinbook.chapter.terminal import Command, CommandKind, UnsupportedCommand, looks_like_shell, read_commands
 
 #: Programs that a chapter never runs here, wherever they are named, because they change the machine or download
 #: something.
@@ -83,7 +83,7 @@ class CellKind(str, Enum):
 
 
 @dataclass(frozen=True)
-class Classified:
+class ClassifiedFence:
     """A fence and what it is. `why` says why a static one is not run; `sign` says it in a few words to readers.
 
     `name` is a node's, a part's or an interface's. `before` is the code that is put above a node's so that it is
@@ -129,18 +129,18 @@ class Classified:
         return self.before + self.fence.code
 
 
-def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[Classified, list[Problem]]:
+def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[ClassifiedFence, list[Problem]]:
     """Say what a fence is by itself. Python that can run is a snippet here, or a node if it is a program.
 
     `interface_package` is the package of an interface whose title does not name one.
     """
     problems = _unknown_attributes(fence, file)
     if fence.has("static"):
-        return Classified(fence, CellKind.STATIC, "it says `static`"), problems
+        return ClassifiedFence(fence, CellKind.STATIC, "it says `static`"), problems
     if interface := interface_path(fence.title or "", interface_package):
         return _interface(fence, interface, interface_package), problems
     if meant := interface_title(fence.title or ""):
-        return Classified(fence, CellKind.STATIC, "its title names no interface"), [_unnamed(fence, meant, file)]
+        return ClassifiedFence(fence, CellKind.STATIC, "its title names no interface"), [_unnamed(fence, meant, file)]
     if is_package_file(fence.title or "") and (item := _package_file(fence)):
         return item, problems
     fence = with_language(fence)
@@ -154,15 +154,15 @@ def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[C
         item, found = _python(fence, file)
         return item, problems + found
     what = f"`{fence.language}` is" if fence.language else "a fence without a language is"
-    return Classified(fence, CellKind.STATIC, f"{what} neither Python nor shell"), problems
+    return ClassifiedFence(fence, CellKind.STATIC, f"{what} neither Python nor shell"), problems
 
 
-def _interface(fence: Fence, path: str, own: str) -> Classified:
+def _interface(fence: Fence, path: str, own: str) -> ClassifiedFence:
     """A definition that is compiled, or one of an installed package, which is shown."""
     package = path.partition("/")[0]
     if is_someone_elses(package, own):
-        return Classified(fence, CellKind.STATIC, f"it shows an interface of {package}, which is installed")
-    return Classified(fence, CellKind.INTERFACE, name=path)
+        return ClassifiedFence(fence, CellKind.STATIC, f"it shows an interface of {package}, which is installed")
+    return ClassifiedFence(fence, CellKind.INTERFACE, name=path)
 
 
 def _unnamed(fence: Fence, meant: str, file: Path) -> Problem:
@@ -171,7 +171,7 @@ def _unnamed(fence: Fence, meant: str, file: Path) -> Problem:
     return Problem(file, fence.line, found, fix, Severity.NOT_RUN)
 
 
-def _package_file(fence: Fence) -> Classified | None:
+def _package_file(fence: Fence) -> ClassifiedFence | None:
     """A launch or parameter file that the package gets; None for a launch file that `ros2 launch` can't run here."""
     if fence.is_python:
         try:
@@ -179,7 +179,7 @@ def _package_file(fence: Fence) -> Classified | None:
                 return None
         except SyntaxError:
             return None
-    return Classified(fence, CellKind.FILE, name=fence.title)
+    return ClassifiedFence(fence, CellKind.FILE, name=fence.title)
 
 
 def with_language(fence: Fence) -> Fence:
@@ -205,63 +205,63 @@ def _unknown_attributes(fence: Fence, file: Path) -> list[Problem]:
     return [Problem(file, fence.line, found, f"Known are {known}.", Severity.WARNING)]
 
 
-def _absent(fence: Fence, name: str, file: Path) -> tuple[Classified, list[Problem]]:
+def _absent(fence: Fence, name: str, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
     found = f"the fence includes `{name}`, and there is no such file."
     fix = "Write the path relative to the chapter's folder, or to the course's."
     problem = Problem(file, fence.line, found, fix, Severity.NOT_RUN, group="files that are not there")
     why = f"it includes `{name}`, which is not here"
-    return Classified(fence, CellKind.STATIC, why, f"{why}."), [problem]
+    return ClassifiedFence(fence, CellKind.STATIC, why, f"{why}."), [problem]
 
 
-def _shell(fence: Fence, file: Path) -> tuple[Classified, list[Problem]]:
+def _shell(fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
     read = read_commands(fence.code)
-    refused = [command for command in read if isinstance(command, NotRunnable)]
+    refused = [command for command in read if isinstance(command, UnsupportedCommand)]
     commands = tuple(command for command in read if isinstance(command, Command))
     runnable = [command for command in commands if command.kind is not CommandKind.NOTE]
     if runnable and not refused:
-        return Classified(fence, CellKind.SHELL, commands=commands), []
+        return ClassifiedFence(fence, CellKind.SHELL, commands=commands), []
     ros = next((command for command in refused if command.is_ros), None)
     if runnable or ros:
         shown = ros or refused[0]
-        return Classified(fence, CellKind.STATIC, shown.why, f"{shown.why}."), [_not_run(fence, shown, file)]
+        return ClassifiedFence(fence, CellKind.STATIC, shown.why, f"{shown.why}."), [_not_run(fence, shown, file)]
     why = refused[0].why if refused else "it contains no command that a notebook runs"
-    return Classified(fence, CellKind.STATIC, why), []
+    return ClassifiedFence(fence, CellKind.STATIC, why), []
 
 
-def _not_run(fence: Fence, command: NotRunnable, file: Path) -> Problem:
+def _not_run(fence: Fence, command: UnsupportedCommand, file: Path) -> Problem:
     line = fence.first_code_line + command.line - 1
     found = f"this shell fence is shown and not run: {command.why} (`{command.text}`)."
     fix = "Put what can run into a fence of its own, or write `static` after the language to say that this is meant."
     return Problem(file, line, found, fix, Severity.WARNING, group="a real shell")
 
 
-def _python(fence: Fence, file: Path) -> tuple[Classified, list[Problem]]:
+def _python(fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
     try:
         code = inspect(fence.code)
     except CodeError as error:
         return _broken(fence, error, file)
     if why := _why_static(fence, code):
         sign = f"{why}." if why.startswith("it is a fragment") else ""
-        return Classified(fence, CellKind.STATIC, why, sign, code=code), []
+        return ClassifiedFence(fence, CellKind.STATIC, why, sign, code=code), []
     if refused := _refused(fence, code):
-        return Classified(fence, CellKind.STATIC, refused, f"{refused}.", code=code), []
+        return ClassifiedFence(fence, CellKind.STATIC, refused, f"{refused}.", code=code), []
     if _is_file(fence) or code.is_node:
         problems = _magics_in_node(fence, file)
         if problems:
-            return Classified(
+            return ClassifiedFence(
                 fence, CellKind.STATIC, "it contains a notebook command", "it contains a notebook command.", code=code
             ), problems
-        return Classified(fence, CellKind.NODE, code=code), []
-    return Classified(fence, CellKind.SNIPPET, code=code), []
+        return ClassifiedFence(fence, CellKind.NODE, code=code), []
+    return ClassifiedFence(fence, CellKind.SNIPPET, code=code), []
 
 
-def _broken(fence: Fence, error: CodeError, file: Path) -> tuple[Classified, list[Problem]]:
+def _broken(fence: Fence, error: CodeError, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
     line = fence.first_code_line + error.line - 1
     fix = "Fix the code, or write `static` after the language if it is only to be shown and not run."
     found = f"not Python: {error.message} (column {error.column})."
     problem = Problem(file, line, found, fix, Severity.NOT_RUN)
     sign = f"line {error.line} is not valid Python ({error.message})."
-    return Classified(fence, CellKind.STATIC, "it is not Python", sign), [problem]
+    return ClassifiedFence(fence, CellKind.STATIC, "it is not Python", sign), [problem]
 
 
 def _magics_in_node(fence: Fence, file: Path) -> list[Problem]:
@@ -300,7 +300,7 @@ def _why_static(fence: Fence, code: PythonCode) -> str:
     return ""
 
 
-def node_name(item: Classified, text: str, file: Path) -> tuple[str, bool, list[Problem]]:
+def node_name(item: ClassifiedFence, text: str, file: Path) -> tuple[str, bool, list[Problem]]:
     """(a node's file without .py, whether the author named it, problems). `text` is the file that the text names."""
     code = item.code
     given = item.fence.title if item.fence.title and item.fence.title.endswith(".py") else text

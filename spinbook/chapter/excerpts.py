@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from spinbook.chapter.classify import CellKind, Classified
+from spinbook.chapter.classify import CellKind, ClassifiedFence
 from spinbook.chapter.fence import Fence
 from spinbook.chapter.python_code import CodeError, inspect
 
@@ -23,7 +23,7 @@ def excerpts(fences: Sequence[Fence]) -> dict[int, str]:
     return found
 
 
-def is_excerpt(item: Classified, place: str) -> bool:
+def is_excerpt(item: ClassifiedFence, place: str) -> bool:
     """Whether a fence that repeats a piece of a program `place` ("above", "below", "") only explains it."""
     if not place:
         return False

@@ -47,7 +47,7 @@ _REAL = frozenset(
 
 
 @dataclass(frozen=True)
-class Missing:
+class MissingPackage:
     """Something that is missing here. `package` is the package to install."""
 
     package: str
@@ -58,7 +58,7 @@ class Missing:
 
 def missing_imports(
     code: PythonCode, own: Mapping[str, frozenset[str]], own_interfaces: Collection[str] = ()
-) -> list[Missing]:
+) -> list[MissingPackage]:
     """What a program imports and this environment does not have.
 
     `own` are the chapter's and the course's packages, each with its modules; under "" the modules of both.
@@ -84,9 +84,9 @@ def missing_imports(
     return found
 
 
-def _relative(module: str, line: int) -> Missing:
+def _relative(module: str, line: int) -> MissingPackage:
     stem = module.lstrip(".") or "module"
-    return Missing(
+    return MissingPackage(
         "relative imports",
         f"imports `{module}`, relative to a package.",
         f"A node's cell is a file of its own: write `import {stem}`, or `from PACKAGE import {stem}`.",
@@ -94,13 +94,13 @@ def _relative(module: str, line: int) -> Missing:
     )
 
 
-def _not_shown(module: str, modules: frozenset[str], line: int) -> Missing:
+def _not_shown(module: str, modules: frozenset[str], line: int) -> MissingPackage:
     known = ", ".join(sorted(modules)) or "none"
     fix = f"Show its file in a fence with a `title`. Modules that the chapters show: {known}."
-    return Missing(module.partition(".")[0], f"imports `{module}`, which no fence shows.", fix, line)
+    return MissingPackage(module.partition(".")[0], f"imports `{module}`, which no fence shows.", fix, line)
 
 
-def _not_installed(top: str, line: int) -> Missing:
+def _not_installed(top: str, line: int) -> MissingPackage:
     if top in _DISTRIBUTIONS:
         fix = f"Install it: pip install {_DISTRIBUTIONS[top]}"
     elif close := _similar(top):
@@ -109,7 +109,7 @@ def _not_installed(top: str, line: int) -> Missing:
         fix = remedy(top)
     else:
         fix = "Install it and add it to the course's dependencies, or write `static` after the fence's language."
-    return Missing(top, f"imports `{top}`, which is not installed here.", fix, line)
+    return MissingPackage(top, f"imports `{top}`, which is not installed here.", fix, line)
 
 
 def remedy(package: str) -> str:
@@ -118,7 +118,7 @@ def remedy(package: str) -> str:
     return shipped.how_to_add(package) or unknown
 
 
-def _no_module(module: str, names: list[str], line: int) -> Missing:
+def _no_module(module: str, names: list[str], line: int) -> MissingPackage:
     top, _, rest = module.partition(".")
     there = sorted(name for name in _modules_in(top) if not name.startswith(("_", f"{top}_s_")))
     close = difflib.get_close_matches(rest.partition(".")[0], there, n=1)
@@ -126,7 +126,7 @@ def _no_module(module: str, names: list[str], line: int) -> Missing:
     fix = f"Did you mean `{top}.{close[0]}`?" if close else f"It has {', '.join(there[:8])}."
     if elsewhere and names:
         fix = f"Did you mean `from {elsewhere[0]} import {names[0]}`?"
-    return Missing(module, f"imports `{module}`, and `{top}` has no such module.", fix, line)
+    return MissingPackage(module, f"imports `{module}`, and `{top}` has no such module.", fix, line)
 
 
 def _places_of(names: set[str], package: str) -> list[str]:
@@ -135,7 +135,7 @@ def _places_of(names: set[str], package: str) -> list[str]:
     return sorted(found, key=lambda place: (place.partition(".")[0] != package, place))
 
 
-def _no_interface(module: str, name: str, known: frozenset[str], line: int) -> Missing:
+def _no_interface(module: str, name: str, known: frozenset[str], line: int) -> MissingPackage:
     close = difflib.get_close_matches(name, known, n=1)
     if close:
         fix = f"Did you mean `{close[0]}`?"
@@ -143,7 +143,7 @@ def _no_interface(module: str, name: str, known: frozenset[str], line: int) -> M
         fix = f"Did you mean `from {elsewhere[0]} import {name}`?"
     else:
         fix = f"It has {', '.join(sorted(known)[:8])} …"
-    return Missing(f"{module}.{name}", f"`{module}` has no `{name}`.", fix, line)
+    return MissingPackage(f"{module}.{name}", f"`{module}` has no `{name}`.", fix, line)
 
 
 @functools.cache

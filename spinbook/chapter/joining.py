@@ -48,7 +48,7 @@ _PREFERRED = ("std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs", "example_i
 
 
 @dataclass(frozen=True)
-class Joined:
+class CompleteProgram:
     """A complete program. `before` is what was put above its code, `used` which pieces it needs, by number.
 
     `missing` are the names that nothing binds -> line of the code.
@@ -68,7 +68,7 @@ class Joined:
 
 
 @dataclass(frozen=True)
-class _Piece:
+class _CodePiece:
     """What a piece of Python binds at its top level: name -> the numbers of the statements that bind it."""
 
     source: str
@@ -84,7 +84,7 @@ class _Piece:
         return "\n".join(self.source.split("\n")[first - 1 : statement.end_lineno])
 
 
-def join(code: str, pieces: Sequence[str]) -> Joined:
+def join(code: str, pieces: Sequence[str]) -> CompleteProgram:
     """Put above `code` what it needs of earlier `pieces`, in their order, and the usual imports.
 
     Raises CodeError if `code` is not Python.
@@ -119,9 +119,9 @@ def join(code: str, pieces: Sequence[str]) -> Joined:
         # The class below then extends the one above.
         before += f"{base} = {amended}\n\n\n"
     if code.lstrip().startswith("from __future__") and before:
-        return Joined(code, missing=needs)
+        return CompleteProgram(code, missing=needs)
     used = sorted(number for group in taken for number in groups[group][0])
-    return Joined(code, before, tuple(used), missing, amended)
+    return CompleteProgram(code, before, tuple(used), missing, amended)
 
 
 def _amended(code: str, pieces: Sequence[str]) -> tuple[str, str]:
@@ -190,21 +190,21 @@ def _is_guard(statement: ast.stmt) -> bool:
 
 
 @functools.lru_cache(maxsize=512)
-def _piece(source: str) -> _Piece:
+def _piece(source: str) -> _CodePiece:
     """What a piece binds; nothing, if it is not valid Python by itself."""
     try:
         facts = inspect(source)
         statements = tuple(ast.parse(source).body)
     except (CodeError, SyntaxError, ValueError):
-        return _Piece(source, (), {}, blocks=True)
+        return _CodePiece(source, (), {}, blocks=True)
     if facts.fragment:
-        return _Piece(source, (), {}, blocks=True)
+        return _CodePiece(source, (), {}, blocks=True)
     bound: dict[str, list[int]] = {}
     for number, statement in enumerate(statements):
         for name in _bound_by(statement):
             bound.setdefault(name, []).append(number)
     blocks = facts.loops or (facts.spins and any(_spins(s) for s in statements)) or facts.calls_main
-    return _Piece(source, statements, {name: tuple(at) for name, at in bound.items()}, blocks)
+    return _CodePiece(source, statements, {name: tuple(at) for name, at in bound.items()}, blocks)
 
 
 def _spins(statement: ast.stmt) -> bool:

@@ -22,7 +22,7 @@ from mdit_py_plugins.anchors.index import slugify, unique_slug
 from mdit_py_plugins.myst_role import myst_role_plugin
 
 from groundwork.problem import Problem, Severity
-from spinbook.chapter.block import Block, Kind
+from spinbook.chapter.block import Block, BlockKind
 from spinbook.chapter.files import is_elsewhere, locate
 from spinbook.chapter.links import places_of, rule_of
 
@@ -70,7 +70,7 @@ def headings(blocks: Iterable[Block]) -> Iterator[Heading]:
     """The headings of a chapter, in order. JupyterLab finds the first of equal ones."""
     seen: set[str] = set()
     for block in _all(blocks):
-        if block.kind is Kind.HEADING:
+        if block.kind is BlockKind.HEADING:
             words = words_of(block)
             text = _text(words)
             first = slugify(text) not in seen
@@ -85,11 +85,11 @@ def labels(blocks: Sequence[Block], file: Path) -> dict[str, Label]:
     waiting: list[str] = []
     above = Heading("", "", "")
     for block in _all(blocks):
-        if block.kind is Kind.HEADING:
+        if block.kind is BlockKind.HEADING:
             above = next(coming)
         elif not any(line.text.strip() for line in block.lines):
             continue
-        if block.label and block.kind is Kind.DROPPED:
+        if block.label and block.kind is BlockKind.DROPPED:
             waiting.append(block.label)
             continue
         here = [*waiting, *([block.label] if block.label else [])]
@@ -120,7 +120,7 @@ def _text(markdown: str) -> str:
 
 
 @dataclass(frozen=True)
-class _Found:
+class _LabelReference:
     """A reference in an inline token's content, from `start` to `end`. `role` is "" for a link."""
 
     start: int
@@ -168,7 +168,7 @@ class References:
         for block in _all(blocks):
             lines = block.new or block.lines
             text = "\n".join(line.text for line in lines)
-            if block.children or block.fence or block.kind is Kind.DROPPED or not may_refer(text, self.known):
+            if block.children or block.fence or block.kind is BlockKind.DROPPED or not may_refer(text, self.known):
                 continue
             for first, content, found in _references(text):
                 for item in found:
@@ -184,7 +184,7 @@ class References:
         looks_so = _normal(unquote(target)) in self.known or (bool(self.known) and bool(_LABEL.fullmatch(target)))
         return looks_so and locate(self.root, folder, target) is None
 
-    def _problem(self, item: _Found, unknown: str, line: int) -> Problem:
+    def _problem(self, item: _LabelReference, unknown: str, line: int) -> Problem:
         if item.role.endswith("doc"):
             found = f"a reference leads to the document `{unknown}`, and there is no such file."
             fix = "Write its path relative to the chapter's folder, without .md."
@@ -193,7 +193,7 @@ class References:
             fix = f"Write `({unknown})=` on a line before the heading that is meant."
         return Problem(self.file, line, found, fix, Severity.WARNING, group="labels that no chapter has")
 
-    def _new(self, item: _Found) -> tuple[str | None, str]:
+    def _new(self, item: _LabelReference) -> tuple[str | None, str]:
         """(what takes a reference's place, the name that is unknown); None leaves it as it is."""
         if item.role.endswith("doc"):
             return self._document(item.words, item.target)
@@ -206,7 +206,7 @@ class References:
             return self._link(label, item.words), ""
         return self._other_link(item)
 
-    def _other_link(self, item: _Found) -> tuple[str | None, str]:
+    def _other_link(self, item: _LabelReference) -> tuple[str | None, str]:
         """A link to a label that no chapter has, or one without words to a heading or a chapter."""
         heading = self.sections.get(item.target.removeprefix("#")) if item.target.startswith("#") else None
         if heading and not item.words:
@@ -255,16 +255,16 @@ def _watched(rule: Any, read: Any) -> Any:
     return watch
 
 
-def _role(state: StateInline, start: int, before: int) -> _Found | None:
+def _role(state: StateInline, start: int, before: int) -> _LabelReference | None:
     token = next(token for token in state.tokens[before:] if token.type == "myst_role")
     name = str(token.meta["name"])
     content = token.content.strip()
     titled = _TITLED.match(content)
     words, target = (titled[1], titled[2].strip()) if titled else ("", content)
-    return _Found(start, state.pos, name, words, target.lstrip("!~")) if name in _ROLES else None
+    return _LabelReference(start, state.pos, name, words, target.lstrip("!~")) if name in _ROLES else None
 
 
-def _link(state: StateInline, start: int, before: int) -> _Found | None:
+def _link(state: StateInline, start: int, before: int) -> _LabelReference | None:
     """A link whose target is written behind its words; for `[words][name]` it is elsewhere."""
     opening = next(token for token in state.tokens[before:] if token.type == "link_open")
     end, pos = state.pos, state.pos
@@ -273,10 +273,10 @@ def _link(state: StateInline, start: int, before: int) -> _Found | None:
     if state.src[label_end + 1 : label_end + 2] != "(" or "title" in opening.attrs:
         return None
     words = state.src[start + 1 : label_end].replace("\n", " ")
-    return _Found(start, end, "", words, unquote(str(opening.attrs.get("href", ""))))
+    return _LabelReference(start, end, "", words, unquote(str(opening.attrs.get("href", ""))))
 
 
-def _references(text: str) -> Iterator[tuple[int, str, list[_Found]]]:
+def _references(text: str) -> Iterator[tuple[int, str, list[_LabelReference]]]:
     """(first line, content, references) of each part of a text that is read as one, such as a paragraph."""
     md = _parser()
     env: dict[str, Any] = {}
@@ -285,10 +285,10 @@ def _references(text: str) -> Iterator[tuple[int, str, list[_Found]]]:
             yield (token.map or (0, 0))[0], token.content, _in_inline(md, token, env)
 
 
-def _in_inline(md: MarkdownIt, token: Token, env: dict[str, Any]) -> list[_Found]:
+def _in_inline(md: MarkdownIt, token: Token, env: dict[str, Any]) -> list[_LabelReference]:
     env |= {"watched": token.content, "found": []}
     md.inline.parse(token.content, md, env, [])
-    out: list[_Found] = []
+    out: list[_LabelReference] = []
     for item in sorted(env["found"], key=lambda item: (item.start, -item.end)):
         if not out or item.start >= out[-1].end:
             out.append(item)
@@ -296,7 +296,12 @@ def _in_inline(md: MarkdownIt, token: Token, env: dict[str, Any]) -> list[_Found
 
 
 def _put(
-    lines: list[str], at: list[int], places: Sequence[tuple[int, int] | None], content: str, item: _Found, new: str
+    lines: list[str],
+    at: list[int],
+    places: Sequence[tuple[int, int] | None],
+    content: str,
+    item: _LabelReference,
+    new: str,
 ) -> None:
     """Put a reference's link into its lines; of one that goes on in the next line, into that in which text remains."""
     first, last = (content.count("\n", 0, offset) for offset in (item.start, item.end))

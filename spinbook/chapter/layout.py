@@ -10,16 +10,16 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from spinbook.chapter.attributes import STYLES
-from spinbook.chapter.block import Block, Kind, Line
+from spinbook.chapter.block import Block, BlockKind, SourceLine
 
-_RESHAPED = frozenset({Kind.ADMONITION, Kind.TAB, Kind.GROUP})
+_RESHAPED = frozenset({BlockKind.ADMONITION, BlockKind.TAB, BlockKind.GROUP})
 
 
 @dataclass(frozen=True)
 class Piece:
     """A line of prose, or a block that becomes a cell. `heading` says that a section begins with this line."""
 
-    line: Line | None = None
+    line: SourceLine | None = None
     block: Block | None = None
     heading: bool = False
 
@@ -30,7 +30,7 @@ class Piece:
 
 
 @dataclass(frozen=True)
-class Layout:
+class ChapterLayout:
     """How blocks are laid out. `runs` says which fences become cells, `sign` what is below one that does not."""
 
     runs: Callable[[Block], bool]
@@ -40,7 +40,7 @@ class Layout:
         """The chapter's pieces, in order."""
         out: list[Piece] = []
         for block in blocks:
-            if block.kind is Kind.HEADING:
+            if block.kind is BlockKind.HEADING:
                 first, *rest = block.lines
                 out += [Piece(first, heading=True), *_lines(rest)]
             else:
@@ -48,7 +48,7 @@ class Layout:
         return out
 
     def _becomes_cell(self, block: Block) -> bool:
-        return block.kind in {Kind.EXERCISE, Kind.FENCE} and self.runs(block)
+        return block.kind in {BlockKind.EXERCISE, BlockKind.FENCE} and self.runs(block)
 
     def _holds_cell(self, block: Block) -> bool:
         return any(self._becomes_cell(inner) for inner in block.walk())
@@ -57,9 +57,9 @@ class Layout:
         return any(
             inner.new is not None
             or inner.kind in _RESHAPED
-            or inner.kind is Kind.DROPPED
-            or (inner.kind is Kind.DETAILS and not inner.lines[0].text.lstrip().startswith("<"))
-            or (inner.kind is Kind.FENCE and bool(self.sign(inner)))
+            or inner.kind is BlockKind.DROPPED
+            or (inner.kind is BlockKind.DETAILS and not inner.lines[0].text.lstrip().startswith("<"))
+            or (inner.kind is BlockKind.FENCE and bool(self.sign(inner)))
             for inner in block.walk()
         )
 
@@ -69,17 +69,17 @@ class Layout:
         if not self._is_changed(block) and not self._holds_cell(block):
             return _lines(block.lines)
         shown = {
-            Kind.FENCE: self._fence,
-            Kind.ADMONITION: self._admonition,
-            Kind.TAB: self._tab,
-            Kind.DETAILS: self._details,
-            Kind.LIST: self._list,
-            Kind.QUOTE: self._quote,
-            Kind.GROUP: self._group,
+            BlockKind.FENCE: self._fence,
+            BlockKind.ADMONITION: self._admonition,
+            BlockKind.TAB: self._tab,
+            BlockKind.DETAILS: self._details,
+            BlockKind.LIST: self._list,
+            BlockKind.QUOTE: self._quote,
+            BlockKind.GROUP: self._group,
         }.get(block.kind)
         if shown:
             return shown(block, depth)
-        if block.kind is Kind.DROPPED:
+        if block.kind is BlockKind.DROPPED:
             return _lines(block.new or ()) if not block.style else []
         return _lines(block.lines if block.new is None else block.new)
 
@@ -87,8 +87,8 @@ class Layout:
         out: list[Piece] = []
         before: Block | None = None
         for block in blocks:
-            if block.kind is Kind.TAB and not self._holds_cell(block):
-                out += self._folded(block, depth, is_open=before is None or before.kind is not Kind.TAB)
+            if block.kind is BlockKind.TAB and not self._holds_cell(block):
+                out += self._folded(block, depth, is_open=before is None or before.kind is not BlockKind.TAB)
             else:
                 out += self._block(block, depth)
             before = block if any(line.text.strip() for line in block.lines) else before
@@ -98,7 +98,11 @@ class Layout:
         lines = _lines(block.lines if block.new is None else block.new)
         number = block.lines[-1].number
         sign = self.sign(block)
-        return [*lines, *_lines([Line("", number), Line(sign, number), Line("", number)])] if sign else lines
+        return (
+            [*lines, *_lines([SourceLine("", number), SourceLine(sign, number), SourceLine("", number)])]
+            if sign
+            else lines
+        )
 
     def _group(self, block: Block, depth: int) -> list[Piece]:
         return _spaced(self._children(block.children, depth), block)
@@ -120,7 +124,9 @@ class Layout:
         return self._titled(block, depth) if self._holds_cell(block) else self._folded(block, depth, is_open=False)
 
     def _titled(self, block: Block, depth: int) -> list[Piece]:
-        title = _lines([Line(f"**{block.title}**", block.line), Line("", block.line)]) if block.title else []
+        title = (
+            _lines([SourceLine(f"**{block.title}**", block.line), SourceLine("", block.line)]) if block.title else []
+        )
         return _spaced([*title, *self._children(block.children, depth)], block)
 
     def _folded(self, block: Block, depth: int, *, is_open: bool) -> list[Piece]:
@@ -154,18 +160,18 @@ def _item(pieces: list[Piece], marker: str, item: Block) -> list[Piece]:
     for piece in pieces:
         if piece.block is not None:
             if first:
-                out.append(Piece(Line(marker.rstrip(), item.line)))
-            out += [Piece(Line("", item.line)), piece, Piece(Line("", item.line))]
+                out.append(Piece(SourceLine(marker.rstrip(), item.line)))
+            out += [Piece(SourceLine("", item.line)), piece, Piece(SourceLine("", item.line))]
             in_item = first = False
         elif in_item and not (first and piece.is_blank):
             out.append(_prefixed(piece, marker if first else " " * item.offset))
             first = False
         elif not in_item:
             out.append(piece)
-    return out if out else [Piece(Line(marker.rstrip(), item.line))]
+    return out if out else [Piece(SourceLine(marker.rstrip(), item.line))]
 
 
-def _lines(lines: Iterable[Line]) -> list[Piece]:
+def _lines(lines: Iterable[SourceLine]) -> list[Piece]:
     return [Piece(line) for line in lines]
 
 
@@ -174,11 +180,11 @@ def _prefixed(piece: Piece, prefix: str) -> Piece:
 
 
 def _changed(piece: Piece, change: Callable[[str], str]) -> Piece:
-    return piece if piece.line is None else Piece(Line(change(piece.line.text), piece.line.number))
+    return piece if piece.line is None else Piece(SourceLine(change(piece.line.text), piece.line.number))
 
 
 def _height(block: Block) -> int:
-    inner = [_height(child) + (child.kind is Kind.ADMONITION) for child in block.children]
+    inner = [_height(child) + (child.kind is BlockKind.ADMONITION) for child in block.children]
     return max(inner, default=0)
 
 
@@ -186,8 +192,8 @@ def _spaced(pieces: list[Piece], block: Block) -> list[Piece]:
     """With an empty line before and behind: what is put instead of a tag must not run into its neighbours."""
     if not pieces:
         return []
-    before = [] if pieces[0].is_blank else _lines([Line("", block.line)])
-    behind = [] if pieces[-1].is_blank else _lines([Line("", block.lines[-1].number)])
+    before = [] if pieces[0].is_blank else _lines([SourceLine("", block.line)])
+    behind = [] if pieces[-1].is_blank else _lines([SourceLine("", block.lines[-1].number)])
     return [*before, *pieces, *behind]
 
 
@@ -203,8 +209,8 @@ def _wrapped(pieces: list[Piece], opening: Sequence[str], closing: Sequence[str]
             lines.pop()
         if lines:
             end = lines[-1].line.number if lines[-1].line else block.line
-            out.extend([*_lines(Line(text, block.line) for text in opening), *lines])
-            out.extend(_lines([*(Line(text, end) for text in closing), Line("", end)]))
+            out.extend([*_lines(SourceLine(text, block.line) for text in opening), *lines])
+            out.extend(_lines([*(SourceLine(text, end) for text in closing), SourceLine("", end)]))
         lines.clear()
 
     for piece in pieces:

@@ -21,7 +21,7 @@ _ATTRIBUTES = {"img": "src", "a": "href", "source": "src", "video": "src"}
 
 
 @dataclass(frozen=True)
-class _Found:
+class _LinkTarget:
     """A target in an inline token's content: from `start` to `end`."""
 
     start: int
@@ -60,7 +60,7 @@ def _watched(rule: Any, is_image: bool) -> Any:
     return watch
 
 
-def _destination(state: StateInline, label: int, is_image: bool) -> _Found | None:
+def _destination(state: StateInline, label: int, is_image: bool) -> _LinkTarget | None:
     """The place of `target` in `[text](target "title")`; None for a reference, whose target is elsewhere."""
     # Links in links are not allowed, but images are: the end of the label must be searched again.
     pos = state.pos
@@ -73,7 +73,7 @@ def _destination(state: StateInline, label: int, is_image: bool) -> _Found | Non
     while state.src[at : at + 1] in {" ", "\n"}:
         at += 1
     found = state.md.helpers.parseLinkDestination(state.src, at, state.posMax)
-    return _Found(at, found.pos, found.str, is_image) if found.ok and found.str else None
+    return _LinkTarget(at, found.pos, found.str, is_image) if found.ok and found.str else None
 
 
 def _attribute_list(state: StateInline) -> None:
@@ -81,7 +81,7 @@ def _attribute_list(state: StateInline) -> None:
     rest = state.src[state.pos :]
     if rest.startswith("{") and "}" in rest and (rest[1] in ":.#" or "=" in rest.partition("}")[0]):
         end = state.pos + rest.index("}") + 1
-        state.env["found"].append(_Found(state.pos, end, "", False))
+        state.env["found"].append(_LinkTarget(state.pos, end, "", False))
 
 
 def _watched_html(rule: Any) -> Any:
@@ -90,7 +90,7 @@ def _watched_html(rule: Any) -> Any:
         if not rule(state, silent):
             return False
         if not silent and state.src == state.env.get("watched"):
-            state.env["found"].append(_Found(start, state.pos, state.src[start : state.pos], False, is_html=True))
+            state.env["found"].append(_LinkTarget(start, state.pos, state.src[start : state.pos], False, is_html=True))
         return True
 
     return watch
@@ -118,7 +118,9 @@ def linked(text: str, target: Target) -> str:
     return "\n".join(lines)
 
 
-def _replace(lines: list[str], at: list[int], first: int, content: str, found: list[_Found], target: Target) -> None:
+def _replace(
+    lines: list[str], at: list[int], first: int, content: str, found: list[_LinkTarget], target: Target
+) -> None:
     """Put new targets into the lines of one inline token. `at` is how far each line has been read."""
     places = list(places_of(lines, at, first, content))
     for item in sorted(found, key=lambda item: -item.start):
@@ -146,7 +148,7 @@ def places_of(lines: list[str], at: list[int], first: int, content: str) -> Iter
         yield (number, place) if place >= 0 else None
 
 
-def _new(content: str, item: _Found, target: Target) -> str | None:
+def _new(content: str, item: _LinkTarget, target: Target) -> str | None:
     if item.is_html:
         changed = in_html(item.target, target)
         return changed if changed != item.target else None

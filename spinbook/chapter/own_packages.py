@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from markdown_it import MarkdownIt
 
-from spinbook.chapter.block import Block, Kind
+from spinbook.chapter.block import Block, BlockKind
 from spinbook.chapter.fence import Fence
 from spinbook.chapter.terminal import programs_of
 
@@ -116,13 +116,13 @@ def named_files(blocks: Iterable[Block]) -> dict[int, str]:
     found: dict[int, str] = {}
     words: list[str] = []
     for block in (inner for top in blocks for inner in top.walk()):
-        if block.kind in {Kind.TEXT, Kind.HEADING}:
+        if block.kind in {BlockKind.TEXT, BlockKind.HEADING}:
             text = "\n".join(line.text for line in block.lines)
             if text.strip():
                 words = _files_in(text)
-        elif block.kind is Kind.TAB and block.title.endswith(".py"):
+        elif block.kind is BlockKind.TAB and block.title.endswith(".py"):
             words = [block.title]
-        elif block.kind is Kind.FENCE and block.fence is not None:
+        elif block.kind is BlockKind.FENCE and block.fence is not None:
             fence = block.fence
             if fence.is_shell:
                 words = _edited(fence) or words

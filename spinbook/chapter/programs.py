@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from groundwork.problem import Problem, Severity
-from spinbook.chapter.classify import CellKind, Classified, node_name
-from spinbook.chapter.imports import Missing, missing_imports
-from spinbook.chapter.joining import Joined, join
+from spinbook.chapter.classify import CellKind, ClassifiedFence, node_name
+from spinbook.chapter.imports import MissingPackage, missing_imports
+from spinbook.chapter.joining import CompleteProgram, join
 from spinbook.chapter.node_classes import needs_arguments
 from spinbook.chapter.python_code import PythonCode, inspect
 
@@ -33,7 +33,7 @@ class Programs:
     _names: dict[str, str] = field(default_factory=dict)
     _used: dict[int, tuple[int, ...]] = field(default_factory=dict)
 
-    def decide(self, items: Sequence[Classified]) -> list[Classified]:
+    def decide(self, items: Sequence[ClassifiedFence]) -> list[ClassifiedFence]:
         """What each fence becomes; fences without Python stay as they are."""
         out = list(items)
         for number, item in enumerate(items):
@@ -45,7 +45,7 @@ class Programs:
                 self._pieces.append(number)
         return _with_parts(out, self._used)
 
-    def _node(self, number: int, item: Classified, out: Sequence[Classified]) -> Classified:
+    def _node(self, number: int, item: ClassifiedFence, out: Sequence[ClassifiedFence]) -> ClassifiedFence:
         code = item.code
         assert code is not None
         joined = self._joined(item, out)
@@ -54,7 +54,7 @@ class Programs:
             return self._made(number, item, joined)
         return self._not_run(item, code, joined) or self._made(number, item, joined)
 
-    def _not_run(self, item: Classified, code: PythonCode, joined: Joined) -> Classified | None:
+    def _not_run(self, item: ClassifiedFence, code: PythonCode, joined: CompleteProgram) -> ClassifiedFence | None:
         """The fence as one that is only shown, with the reason; None if it can run."""
         if joined.missing:
             return self._undefined(item, code, joined.missing)
@@ -71,19 +71,19 @@ class Programs:
         missing = missing_imports(_facts(joined, code), self.own, self.interfaces)
         return self._missing(item, missing, joined) if missing else None
 
-    def _made(self, number: int, item: Classified, joined: Joined) -> Classified:
+    def _made(self, number: int, item: ClassifiedFence, joined: CompleteProgram) -> ClassifiedFence:
         name, named = self._name(item)
         if joined.used:
             self._used[number] = tuple(self._pieces[i] for i in joined.used)
         return replace(item, name=name, named=named, before=joined.before)
 
-    def _joined(self, item: Classified, out: Sequence[Classified]) -> Joined:
+    def _joined(self, item: ClassifiedFence, out: Sequence[ClassifiedFence]) -> CompleteProgram:
         assert item.code is not None
         if not (item.code.needs or item.code.lacking or item.code.nameless):
-            return Joined(item.fence.code)
+            return CompleteProgram(item.fence.code)
         return join(item.fence.code, [out[i].fence.code for i in self._pieces])
 
-    def _snippet(self, item: Classified) -> Classified:
+    def _snippet(self, item: ClassifiedFence) -> ClassifiedFence:
         code = item.code
         assert code is not None
         missing = [name for name in code.needs if name not in self._defined]
@@ -99,11 +99,11 @@ class Programs:
         if code.leaves or (code.wants_ros and not code.initializes):
             return _static(item, code.leaves or "nothing calls `rclpy.init` before it")
         if absent := missing_imports(code, self.own, self.interfaces):
-            return self._missing(item, absent, Joined(item.fence.code))
+            return self._missing(item, absent, CompleteProgram(item.fence.code))
         self._defined |= code.defines
         return item
 
-    def _undefined(self, item: Classified, code: PythonCode, missing: Mapping[str, int]) -> Classified:
+    def _undefined(self, item: ClassifiedFence, code: PythonCode, missing: Mapping[str, int]) -> ClassifiedFence:
         names = ", ".join(f"`{name}`" for name in missing)
         verb = "is" if len(missing) == 1 else "are"
         if code.is_complete and code.imports:
@@ -113,7 +113,7 @@ class Programs:
             self.problems.append(Problem(self.file, line, found, fix, Severity.NOT_RUN))
         return _static(item, f"it uses {names}, which nothing above defines")
 
-    def _uninitialized(self, item: Classified, code: PythonCode) -> Classified:
+    def _uninitialized(self, item: ClassifiedFence, code: PythonCode) -> ClassifiedFence:
         name, line = next(iter(code.never_initialized.items()))
         found = f"`{name}.__init__` never calls `super().__init__(…)`, so nothing of this node works."
         fix = "Call it first, with the node's name, or write `static` behind the language if this is a template."
@@ -121,7 +121,7 @@ class Programs:
         self.problems.append(Problem(self.file, at, found, fix, Severity.NOT_RUN))
         return _static(item, f"`{name}.__init__` never calls `super().__init__(…)`")
 
-    def _lacking(self, item: Classified, code: PythonCode) -> None:
+    def _lacking(self, item: ClassifiedFence, code: PythonCode) -> None:
         name = code.fails_at_once or next(iter(code.lacking))
         line = code.lacking[name]
         severity = Severity.NOT_RUN if code.fails_at_once else Severity.WARNING
@@ -130,7 +130,9 @@ class Programs:
         at = item.fence.first_code_line + line - 1
         self.problems.append(Problem(self.file, at, found, fix, severity))
 
-    def _missing(self, item: Classified, missing: Sequence[Missing], joined: Joined) -> Classified:
+    def _missing(
+        self, item: ClassifiedFence, missing: Sequence[MissingPackage], joined: CompleteProgram
+    ) -> ClassifiedFence:
         above = joined.before.count("\n")
         packages = list(dict.fromkeys(one.package for one in missing))
         for one in missing:
@@ -145,7 +147,7 @@ class Programs:
         verb = "is" if len(packages) == 1 else "are"
         return _static(item, f"it needs {names}, which {verb} not installed", f"it needs {names}, not installed here.")
 
-    def _name(self, item: Classified) -> tuple[str, bool]:
+    def _name(self, item: ClassifiedFence) -> tuple[str, bool]:
         """A name for a node's cell; a file that is shown again, changed, keeps its own."""
         name, named, problems = node_name(item, self.named_files.get(item.fence.line, ""), self.file)
         self.problems += problems
@@ -160,7 +162,7 @@ class Programs:
         return name, named
 
 
-def _why_fragment(item: Classified, code: PythonCode, joined: Joined) -> str:
+def _why_fragment(item: ClassifiedFence, code: PythonCode, joined: CompleteProgram) -> str:
     """What a class without a main lacks to be a program; empty if nothing."""
     if code.is_complete or not code.node_classes or code.calls_main:
         return ""
@@ -173,26 +175,26 @@ def _why_fragment(item: Classified, code: PythonCode, joined: Joined) -> str:
     return ""
 
 
-def _facts(joined: Joined, code: PythonCode) -> PythonCode:
+def _facts(joined: CompleteProgram, code: PythonCode) -> PythonCode:
     return inspect(joined.whole) if joined.before else code
 
 
-def _needs_arguments(joined: Joined) -> bool:
+def _needs_arguments(joined: CompleteProgram) -> bool:
     """Whether the class that code adds methods to can't be made without arguments."""
     above = ast.parse(joined.before).body if joined.amends else []
     classes = [item for item in above if isinstance(item, ast.ClassDef) and item.name == joined.amends]
     return bool(classes) and needs_arguments(classes[-1])
 
 
-def _is_file(item: Classified) -> bool:
+def _is_file(item: ClassifiedFence) -> bool:
     return bool(item.fence.title and item.fence.title.endswith(".py"))
 
 
-def _static(item: Classified, why: str, sign: str = "") -> Classified:
+def _static(item: ClassifiedFence, why: str, sign: str = "") -> ClassifiedFence:
     return replace(item, kind=CellKind.STATIC, why=why, sign=sign or f"{why}.")
 
 
-def _with_parts(items: list[Classified], used: Mapping[int, Iterable[int]]) -> list[Classified]:
+def _with_parts(items: list[ClassifiedFence], used: Mapping[int, Iterable[int]]) -> list[ClassifiedFence]:
     """Name the pieces that complete later nodes, and turn those that are not programs by themselves into parts."""
     out = list(items)
     needed = {i for number, pieces in used.items() if out[number].kind is CellKind.NODE for i in pieces}
@@ -215,7 +217,7 @@ def _with_parts(items: list[Classified], used: Mapping[int, Iterable[int]]) -> l
     return out
 
 
-def _goes_on(number: int, used: Mapping[int, Iterable[int]], items: Sequence[Classified]) -> bool:
+def _goes_on(number: int, used: Mapping[int, Iterable[int]], items: Sequence[ClassifiedFence]) -> bool:
     """Whether a class without a main, or a script that only begins, gets what it lacks further down."""
     code = items[number].code
     if code is None or code.has_main or code.has_main_guard or code.spins or code.loops:
@@ -227,7 +229,7 @@ def _goes_on(number: int, used: Mapping[int, Iterable[int]], items: Sequence[Cla
     return False
 
 
-def _part_name(item: Classified, taken: set[str | None]) -> str:
+def _part_name(item: ClassifiedFence, taken: set[str | None]) -> str:
     code = item.code
     names = sorted(code.defines) if code else []
     base = (

@@ -11,15 +11,15 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
 from groundwork.problem import Problem, Severity
-from spinbook.chapter.block import Block, Kind, Line
+from spinbook.chapter.block import Block, BlockKind, SourceLine
 from spinbook.chapter.blocks import read_blocks
 from spinbook.chapter.chapter import Chapter, StaticFence, make_cells
-from spinbook.chapter.classify import CellKind, Classified, first_look, with_language
+from spinbook.chapter.classify import CellKind, ClassifiedFence, first_look, with_language
 from spinbook.chapter.excerpts import excerpts, is_excerpt
 from spinbook.chapter.fence import Fence, interface_package
 from spinbook.chapter.files import is_elsewhere, locate, read_included
 from spinbook.chapter.labels import Heading, Label, References, headings, labels, words_of
-from spinbook.chapter.layout import Layout, Piece
+from spinbook.chapter.layout import ChapterLayout, Piece
 from spinbook.chapter.own_packages import OwnPackages, named_files, own_packages
 from spinbook.chapter.programs import Programs
 from spinbook.chapter.shells import Shells
@@ -46,7 +46,7 @@ class Surroundings:
 
 
 @dataclass(frozen=True)
-class Reading:
+class ReadResult:
     """The result of reading a chapter's file: the chapter, unless an error stopped it, and all problems."""
 
     chapter: Chapter | None
@@ -54,7 +54,7 @@ class Reading:
 
 
 @dataclass(frozen=True)
-class _Parsed:
+class _ParsedChapter:
     source: Source | None
     blocks: tuple[Block, ...]
     problems: tuple[Problem, ...]
@@ -66,12 +66,12 @@ class _Parsed:
         return (block for top in self.blocks for block in top.walk() if block.fence is not None)
 
 
-def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> Reading:
+def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResult:
     """Read the chapter at `root / file`. Never raises because of its content: every fault is a Problem."""
     parsed = _parse(root, file)
     problems = list(parsed.problems)
     if parsed.source is None:
-        return Reading(None, tuple(problems))
+        return ReadResult(None, tuple(problems))
     classified, found = _classify(parsed, file, surroundings)
     title, title_problems = _title(parsed, file)
     own = labels(parsed.blocks, file)
@@ -98,7 +98,7 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> Reading:
             if item.kind is CellKind.STATIC
         ),
     )
-    return Reading(chapter, tuple(problems))
+    return ReadResult(chapter, tuple(problems))
 
 
 def fences_of(root: Path, file: Path) -> Iterator[Fence]:
@@ -129,7 +129,7 @@ def title_of(root: Path, file: Path) -> str:
     return _title(parsed, file)[0] if parsed.source else ""
 
 
-def _parse(root: Path, file: Path) -> _Parsed:
+def _parse(root: Path, file: Path) -> _ParsedChapter:
     try:
         changed = (root / file).stat().st_mtime_ns
     except OSError:
@@ -144,26 +144,28 @@ def forget_chapters() -> None:
 
 
 @functools.lru_cache(maxsize=512)
-def _parsed(root: Path, file: Path, changed: int) -> _Parsed:
+def _parsed(root: Path, file: Path, changed: int) -> _ParsedChapter:
     source, problems = read_source(root / file, file)
     if source is None:
-        return _Parsed(None, (), tuple(problems))
+        return _ParsedChapter(None, (), tuple(problems))
     folder = file.parent.as_posix()
     included: list[Path] = []
     blocks = read_blocks(source.text, lambda name: read_included(root, folder, name, included))
-    return _Parsed(source, blocks, tuple(problems), tuple(included))
+    return _ParsedChapter(source, blocks, tuple(problems), tuple(included))
 
 
-def _classify(parsed: _Parsed, file: Path, surroundings: Surroundings) -> tuple[list[Classified], list[Problem]]:
+def _classify(
+    parsed: _ParsedChapter, file: Path, surroundings: Surroundings
+) -> tuple[list[ClassifiedFence], list[Problem]]:
     problems: list[Problem] = []
-    items: list[Classified] = []
+    items: list[ClassifiedFence] = []
     own = interface_package(surroundings.package)
     repeated = excerpts([with_language(block.fence) for block in parsed.fences if block.fence])
     for block in parsed.fences:
         assert block.fence is not None
         item, found = _unclosed(block, file) if not block.closed else first_look(block.fence, file, own)
         if is_excerpt(item, repeated.get(block.fence.line, "")):
-            item, found = Classified(block.fence, CellKind.STATIC, "it is a piece of a program of the chapter"), []
+            item, found = ClassifiedFence(block.fence, CellKind.STATIC, "it is a piece of a program of the chapter"), []
         bad = _bad_seconds(item, file)
         items.append(replace(item, fence=_without_seconds(item.fence)) if bad else item)
         problems += [*found, *bad]
@@ -172,7 +174,7 @@ def _classify(parsed: _Parsed, file: Path, surroundings: Surroundings) -> tuple[
     programs = Programs(file, own_modules, named_files(parsed.blocks), surroundings.interfaces)
     items = programs.decide(items)
     modules = surroundings.modules | {item.name for item in items if item.kind is CellKind.NODE and item.name}
-    exercise = any(block.kind is Kind.EXERCISE for top in parsed.blocks for block in top.walk())
+    exercise = any(block.kind is BlockKind.EXERCISE for top in parsed.blocks for block in top.walk())
     shells = Shells(
         file,
         surroundings.package,
@@ -186,7 +188,9 @@ def _classify(parsed: _Parsed, file: Path, surroundings: Surroundings) -> tuple[
     return items, problems + programs.problems + shells.problems
 
 
-def _own(packages: OwnPackages, surroundings: Surroundings, items: Sequence[Classified]) -> dict[str, frozenset[str]]:
+def _own(
+    packages: OwnPackages, surroundings: Surroundings, items: Sequence[ClassifiedFence]
+) -> dict[str, frozenset[str]]:
     """Package of the chapter or the course -> the modules that fences show."""
     titles = {Path(item.fence.title).name.removesuffix(".py") for item in items if item.fence.title}
     modules = surroundings.modules | titles
@@ -200,19 +204,19 @@ def _kinds(surroundings: Surroundings) -> dict[str, frozenset[str]]:
     return {package: frozenset(kind for of, kind in pairs if of == package) for package, _ in pairs}
 
 
-def _unclosed(block: Block, file: Path) -> tuple[Classified, list[Problem]]:
+def _unclosed(block: Block, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
     assert block.fence is not None
     found = f"the code fence that opens here (`{block.lines[0].text.strip()[:60]}`) is never closed."
     mark = block.lines[0].text.strip()[:3]
     problem = Problem(file, block.fence.line, found, f"Close it with a line of its own: {mark}", Severity.NOT_RUN)
-    return Classified(block.fence, CellKind.STATIC, "its fence is never closed", "its fence is never closed."), [
+    return ClassifiedFence(block.fence, CellKind.STATIC, "its fence is never closed", "its fence is never closed."), [
         problem
     ]
 
 
-def _layout(by_line: Mapping[int, Classified], surroundings: Surroundings) -> Layout:
+def _layout(by_line: Mapping[int, ClassifiedFence], surroundings: Surroundings) -> ChapterLayout:
     def runs(block: Block) -> bool:
-        if block.kind is Kind.EXERCISE:
+        if block.kind is BlockKind.EXERCISE:
             return block.title in surroundings.exercises
         return block.fence is not None and by_line[block.fence.line].kind is not CellKind.STATIC
 
@@ -220,10 +224,10 @@ def _layout(by_line: Mapping[int, Classified], surroundings: Surroundings) -> La
         item = by_line[block.fence.line] if block.fence is not None else None
         return f"<small>Not run here: {item.sign}</small>" if item and item.sign else ""
 
-    return Layout(runs, sign)
+    return ChapterLayout(runs, sign)
 
 
-def _bad_seconds(item: Classified, file: Path) -> list[Problem]:
+def _bad_seconds(item: ClassifiedFence, file: Path) -> list[Problem]:
     given = item.fence.attributes.get("seconds")
     if given is None:
         return []
@@ -240,9 +244,11 @@ def _without_seconds(fence: Fence) -> Fence:
     return replace(fence, attributes={key: value for key, value in fence.attributes.items() if key != "seconds"})
 
 
-def _references(parsed: _Parsed, surroundings: Surroundings, root: Path, references: References) -> Iterator[Problem]:
+def _references(
+    parsed: _ParsedChapter, surroundings: Surroundings, root: Path, references: References
+) -> Iterator[Problem]:
     file = references.file
-    for block in (inner for top in parsed.blocks for inner in top.walk() if inner.kind is Kind.EXERCISE):
+    for block in (inner for top in parsed.blocks for inner in top.walk() if inner.kind is BlockKind.EXERCISE):
         if block.title not in surroundings.exercises:
             known = ", ".join(sorted(surroundings.exercises)) or "none yet"
             found = f"there is no exercise `{block.title}`."
@@ -260,7 +266,7 @@ def _references(parsed: _Parsed, surroundings: Surroundings, root: Path, referen
             yield Problem(file, line, found, fix, Severity.WARNING, group="files that are not there")
 
 
-def _uses(parsed: _Parsed, root: Path, file: Path) -> tuple[Path, ...]:
+def _uses(parsed: _ParsedChapter, root: Path, file: Path) -> tuple[Path, ...]:
     """The files of the course that the chapter includes, or links to."""
     assert parsed.source is not None
     folder = file.parent.as_posix()
@@ -288,19 +294,19 @@ def _links_in(token: Token) -> Iterator[tuple[str, int]]:
             yield target, line
 
 
-def _heading(parsed: _Parsed, title: str) -> list[Piece]:
+def _heading(parsed: _ParsedChapter, title: str) -> list[Piece]:
     """The title as the chapter's heading, where it is only in the front matter, as Docusaurus and Jekyll want it."""
-    headings = [block.lines for block in parsed.blocks if block.kind is Kind.HEADING]
+    headings = [block.lines for block in parsed.blocks if block.kind is BlockKind.HEADING]
     if any(lines[0].text.lstrip().startswith("# ") or len(lines) > 1 for lines in headings):
         return []
-    return [Piece(Line(f"# {title}", 1), heading=True), Piece(Line("", 1))]
+    return [Piece(SourceLine(f"# {title}", 1), heading=True), Piece(SourceLine("", 1))]
 
 
-def _title(parsed: _Parsed, file: Path) -> tuple[str, list[Problem]]:
+def _title(parsed: _ParsedChapter, file: Path) -> tuple[str, list[Problem]]:
     assert parsed.source is not None
     front = parsed.source.front_matter
     given = front.get("title") or front.get("sidebar_label")
-    heading = next((block for block in parsed.blocks if block.kind is Kind.HEADING), None)
+    heading = next((block for block in parsed.blocks if block.kind is BlockKind.HEADING), None)
     if heading:
         return str(given or words_of(heading)), []
     fix = "Begin it with one line such as `# Nodes and Topics`."

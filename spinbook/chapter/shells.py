@@ -13,7 +13,7 @@ from grader.recording.types import OWN_SERVICES
 from groundwork.problem import Problem, Severity
 from interface_compiler import prefixes
 from ros_in_python.ros2 import executables
-from spinbook.chapter.classify import CellKind, Classified
+from spinbook.chapter.classify import CellKind, ClassifiedFence
 from spinbook.chapter.imports import interfaces_of, own_names, remedy, ros_packages
 from spinbook.chapter.launch_files import launched_nodes
 from spinbook.chapter.own_packages import OwnPackages, created_package
@@ -33,7 +33,7 @@ _TYPE = re.compile(r"(\w+)/(msg|srv|action)/(\w+)")
 
 
 @dataclass(frozen=True)
-class _Refused:
+class _Reason:
     """Why a command can't run here. `group` is what is missing."""
 
     why: str
@@ -41,7 +41,7 @@ class _Refused:
     group: str
 
 
-class _Said:
+class _CodeSoFar:
     """The text of all that runs so far: a name that a program gives is somewhere in it."""
 
     def __init__(self) -> None:
@@ -82,11 +82,11 @@ class Shells:
     _files: set[str] = field(default_factory=set)
     """Launch and parameter files that cells above have put into the package, by name."""
     _launch_files: dict[str, str] = field(default_factory=dict)
-    _said: _Said = field(default_factory=_Said)
+    _said: _CodeSoFar = field(default_factory=_CodeSoFar)
     _nodes: dict[str, int] = field(default_factory=dict)
     """The chapter's nodes so far -> their number among the fences."""
 
-    def decide(self, items: Sequence[Classified]) -> list[Classified]:
+    def decide(self, items: Sequence[ClassifiedFence]) -> list[ClassifiedFence]:
         """What each fence becomes; a node that `ros2 run` starts further down gets the names that it has there."""
         out = list(items)
         for number, item in enumerate(items):
@@ -107,7 +107,7 @@ class Shells:
                 self._said.add(item.whole)
         return out
 
-    def _fence(self, item: Classified, out: list[Classified]) -> Classified:
+    def _fence(self, item: ClassifiedFence, out: list[ClassifiedFence]) -> ClassifiedFence:
         item = replace(item, commands=tuple(part for command in item.commands for part in self._launched(command)))
         for command in item.commands:
             refused = self._refused(command, out)
@@ -120,14 +120,14 @@ class Shells:
             return replace(item, kind=CellKind.STATIC, why=refused.why, sign=f"{refused.why}.")
         return item
 
-    def _refused(self, command: Command, out: list[Classified]) -> _Refused | None:
+    def _refused(self, command: Command, out: list[ClassifiedFence]) -> _Reason | None:
         if command.kind is CommandKind.COLCON:
             return self._colcon(command)
         if command.kind is not CommandKind.ROS2:
             return None
         if self._lacks_file(command):
             fix = "Give the parameters with -p NAME:=VALUE."
-            return _Refused("it reads a parameter file, which is missing", fix, "files of parameters")
+            return _Reason("it reads a parameter file, which is missing", fix, "files of parameters")
         if command.runs is not None:
             return self._run(*command.runs, out) or self._lacks_words(command, out)
         if command.words[1:2] == ("launch",):
@@ -136,7 +136,7 @@ class Shells:
             return self._create(command)
         return self._types(command) or self._named(command)
 
-    def _run(self, package: str, executable: str, out: list[Classified]) -> _Refused | None:
+    def _run(self, package: str, executable: str, out: list[ClassifiedFence]) -> _Reason | None:
         if package == self.package and executable in self.modules:
             return None
         if not self._is_elsewhere(package) and (number := self._started(package, executable, out)) is not None:
@@ -147,7 +147,7 @@ class Shells:
         if package == self.package:
             found = f"the course's package `{package}` has no executable `{executable}`"
             fix = f"Its node cells make these: {', '.join(sorted(self.modules)) or 'none'}."
-            return _Refused(found, fix, "")
+            return _Reason(found, fix, "")
         return self._foreign(package, executable)
 
     def _is_elsewhere(self, package: str) -> bool:
@@ -155,7 +155,7 @@ class Shells:
         comes_with_us = package in executables.BUILT_IN and package not in self.own.names
         return comes_with_us or package in ros_packages()
 
-    def _lacks_words(self, command: Command, out: Sequence[Classified]) -> _Refused | None:
+    def _lacks_words(self, command: Command, out: Sequence[ClassifiedFence]) -> _Reason | None:
         """Whether a program of the chapter reads more words than the command gives it."""
         given = list(itertools.takewhile(lambda word: not word.startswith("-"), command.words[4:]))
         for number in self._nodes.values():
@@ -163,23 +163,23 @@ class Shells:
             if command.runs in out[number].executables and code and code.words_read > len(given):
                 words = "a word" if code.words_read == 1 else f"{code.words_read} words"
                 why = f"`{command.words[3]}` reads {words} from its command line"
-                return _Refused(why, "Write them behind the command, as a reader would.", "")
+                return _Reason(why, "Write them behind the command, as a reader would.", "")
         return None
 
-    def _launch(self, command: Command) -> _Refused | None:
+    def _launch(self, command: Command) -> _Reason | None:
         names = [word for word in command.words[2:] if not word.startswith("-") and ":=" not in word]
         if any(_file_name(name) in self._files for name in names):
             return None
         package = names[0] if len(names) > 1 else ""
         if not package or package in {self.package, *self.own.names, *ros_packages()}:
-            return _Refused("no fence above is its launch file", "Show it in a fence above.", "launch files")
+            return _Reason("no fence above is its launch file", "Show it in a fence above.", "launch files")
         fix = "Install it, or show its launch file and its programs in fences of the chapter."
-        return _Refused(f"there is no package `{package}` here", fix, package)
+        return _Reason(f"there is no package `{package}` here", fix, package)
 
-    def _foreign(self, package: str, executable: str) -> _Refused | None:
+    def _foreign(self, package: str, executable: str) -> _Reason | None:
         if (package, executable) in _READ_KEYS:
             fix = "Run it in a terminal; write `static` behind the language to say that this is meant."
-            return _Refused(f"`{executable}` reads keys from a terminal", fix, "keys from a terminal")
+            return _Reason(f"`{executable}` reads keys from a terminal", fix, "keys from a terminal")
         there = set(executables.BUILT_IN.get(package, ()))
         if package in ros_packages():
             prefix = prefixes.prefix_of(package, prefixes.installed())
@@ -190,17 +190,17 @@ class Shells:
             return _lacking(needed) if lacks else None
         if there:
             fix = f"It has these: {', '.join(sorted(there))}."
-            return _Refused(f"`{package}` has no program `{executable}` here", fix, f"programs of {package}")
+            return _Reason(f"`{package}` has no program `{executable}` here", fix, f"programs of {package}")
         close = difflib.get_close_matches(
             package, [self.package, *executables.BUILT_IN, *self.own.names], n=1, cutoff=0.85
         )
         if package in self.own.names:
             fix = f'Show its program in a fence above: ```python title="{executable}.py"'
-            return _Refused(f"no fence above shows `{executable}` of `{package}`", fix, "programs that no fence shows")
+            return _Reason(f"no fence above shows `{executable}` of `{package}`", fix, "programs that no fence shows")
         fix = f"Did you mean `{close[0]}`?" if close else "Install it, or show its program in a fence of the chapter."
-        return _Refused(f"there is no package `{package}` here", fix, package)
+        return _Reason(f"there is no package `{package}` here", fix, package)
 
-    def _started(self, package: str, executable: str, out: Sequence[Classified]) -> int | None:
+    def _started(self, package: str, executable: str, out: Sequence[ClassifiedFence]) -> int | None:
         """The node above that `ros2 run` means, by the setup.py shown, by its file, by its node's name or its class."""
         stem = executable.removesuffix(".py")
         module = self.own.executables.get((package, executable))
@@ -240,18 +240,18 @@ class Shells:
         note = Command(CommandKind.NOTE, f"# {command.text} starts:", (), command.line)
         return [note, *(node.command(command.line) for node in nodes)]
 
-    def _create(self, command: Command) -> _Refused | None:
+    def _create(self, command: Command) -> _Reason | None:
         name, build_type = created_package(command.words)
         if build_type != "ament_python":
-            return _Refused(
+            return _Reason(
                 "it makes a package for C++", "Python packages have --build-type ament_python.", "C++ packages"
             )
         if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
-            return _Refused("it names no package", "Write: ros2 pkg create --build-type ament_python NAME", "")
+            return _Reason("it names no package", "Write: ros2 pkg create --build-type ament_python NAME", "")
         self._created.add(name)
         return None
 
-    def _colcon(self, command: Command) -> _Refused | None:
+    def _colcon(self, command: Command) -> _Reason | None:
         words = command.words
         makes = bool(self._nodes) or self.has_exercise
         there = self._created | ({self.package} if makes else set())
@@ -261,10 +261,10 @@ class Shells:
         if not there or (chosen and unknown and not (self._nodes and set(chosen) & self.own.names)):
             what = f"`{unknown[0]}`" if unknown else "anything"
             fix = "Node cells above it make what it builds."
-            return _Refused(f"no cell above makes {what} to build", fix, "packages that no fence shows")
+            return _Reason(f"no cell above makes {what} to build", fix, "packages that no fence shows")
         return None
 
-    def _named(self, command: Command) -> _Refused | None:
+    def _named(self, command: Command) -> _Reason | None:
         """A topic, service or node whose name no program of the chapter contains: a command that uses it fails."""
         words = [word for word in command.words[3:] if not word.startswith("-")]
         if command.words[1] not in _ASKING or command.words[2] not in _ASKING[command.words[1]] or self.has_exercise:
@@ -274,9 +274,9 @@ class Shells:
         if not name or typed or name in {"rosout", "parameter_events"} or name in self._said:
             return None
         fix = "Show what makes it in a fence above."
-        return _Refused(f"nothing above makes `{words[0]}`", fix, "names that nothing makes")
+        return _Reason(f"nothing above makes `{words[0]}`", fix, "names that nothing makes")
 
-    def _types(self, command: Command) -> _Refused | None:
+    def _types(self, command: Command) -> _Reason | None:
         """Types of interfaces that a command names."""
         for package, kind, name in _TYPE.findall(command.text):
             own = own_names(f"{package}.{kind}", self.interfaces)
@@ -286,12 +286,12 @@ class Shells:
             if known and name not in known:
                 close = difflib.get_close_matches(name, known, n=1)
                 fix = f"Did you mean `{close[0]}`?" if close else "Look at `ros2 interface list`."
-                return _Refused(f"`{package}/{kind}` has no `{name}`", fix, "")
+                return _Reason(f"`{package}/{kind}` has no `{name}`", fix, "")
         return None
 
 
-def _lacking(package: str) -> _Refused:
-    return _Refused(f"it needs `{package}`, not installed here", remedy(package), package)
+def _lacking(package: str) -> _Reason:
+    return _Reason(f"it needs `{package}`, not installed here", remedy(package), package)
 
 
 def _last_name(path: str) -> str:

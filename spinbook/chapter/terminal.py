@@ -82,7 +82,7 @@ class Command:
 
 
 @dataclass(frozen=True)
-class NotRunnable:
+class UnsupportedCommand:
     """A command that a notebook can't run, and why."""
 
     text: str
@@ -95,11 +95,11 @@ class NotRunnable:
         return self.text.split(" ")[0] in PROGRAMS
 
 
-def read_commands(code: str) -> list[Command | NotRunnable]:
+def read_commands(code: str) -> list[Command | UnsupportedCommand]:
     """The commands of a shell fence, in order. Next to a command that runs, what is only for a terminal is a note."""
     read = [_read(part, line) for text, line in _logical_lines(code) for part in _parts(text)]
     runs = any(isinstance(command, Command) and command.kind is not CommandKind.NOTE for command in read)
-    return [_noted(command) if runs and isinstance(command, NotRunnable) else command for command in read]
+    return [_noted(command) if runs and isinstance(command, UnsupportedCommand) else command for command in read]
 
 
 def looks_like_shell(code: str) -> bool:
@@ -122,7 +122,7 @@ def programs_of(code: str) -> list[tuple[str, ...]]:
     return [words for words in found if words]
 
 
-def _noted(command: NotRunnable) -> Command | NotRunnable:
+def _noted(command: UnsupportedCommand) -> Command | UnsupportedCommand:
     if command.text.split(" ")[0] in _BESIDE and not _SHELL_SYNTAX.search(command.text):
         return Command(CommandKind.NOTE, f"# {command.text}", (), command.line)
     return command
@@ -177,13 +177,13 @@ def _inside_quotes(text: str) -> bool:
     return False
 
 
-def _read(text: str, line: int) -> Command | NotRunnable:
+def _read(text: str, line: int) -> Command | UnsupportedCommand:
     if text.startswith("#"):
         return Command(CommandKind.NOTE, text, (), line)
     try:
         words = tuple(shlex.split(text, comments=True) if _QUOTING.search(text) or "#" in text else text.split())
     except ValueError:
-        return NotRunnable(text, line, "a quotation mark is never closed")
+        return UnsupportedCommand(text, line, "a quotation mark is never closed")
     if not words:
         return Command(CommandKind.NOTE, f"# {text}", (), line)
     text = _without_comment(text)
@@ -192,13 +192,13 @@ def _read(text: str, line: int) -> Command | NotRunnable:
     if program in _MOVING_ABOUT:
         return Command(CommandKind.NOTE, f"# {text}", (), line)
     if program not in PROGRAMS:
-        return NotRunnable(text, line, f"`{program}` is none of ros2, colcon and rqt_plot")
+        return UnsupportedCommand(text, line, f"`{program}` is none of ros2, colcon and rqt_plot")
     if any(_PLACEHOLDER.fullmatch(word) for word in words[1:]):
-        return NotRunnable(text, line, "it holds placeholders for what a reader fills in")
+        return UnsupportedCommand(text, line, "it holds placeholders for what a reader fills in")
     if _SHELL_SYNTAX.search(outside_quotes):
-        return NotRunnable(text, line, "pipes, `;`, `&` and redirections need a real shell")
+        return UnsupportedCommand(text, line, "pipes, `;`, `&` and redirections need a real shell")
     if re.search(r"\.\.\.|…", outside_quotes):
-        return NotRunnable(text, line, "it is an alias for other commands")
+        return UnsupportedCommand(text, line, "it is an alias for other commands")
     if program == "ros2":
         return _ros2(text, words, line)
     kind = CommandKind.COLCON if program == "colcon" else CommandKind.PLOT
@@ -218,11 +218,11 @@ def _without_comment(text: str) -> str:
     return text
 
 
-def _ros2(text: str, words: tuple[str, ...], line: int) -> Command | NotRunnable:
+def _ros2(text: str, words: tuple[str, ...], line: int) -> Command | UnsupportedCommand:
     noun = words[1] if len(words) > 1 else ""
     if noun not in ROS2:
-        return NotRunnable(text, line, f"`ros2 {noun}` is none of: {', '.join(ROS2)}")
+        return UnsupportedCommand(text, line, f"`ros2 {noun}` is none of: {', '.join(ROS2)}")
     verb = words[2] if len(words) > 2 else ""
     if ROS2[noun] and verb not in ROS2[noun] and not verb.startswith("-"):
-        return NotRunnable(text, line, f"`ros2 {noun} {verb}` is none of: {', '.join(sorted(ROS2[noun]))}")
+        return UnsupportedCommand(text, line, f"`ros2 {noun} {verb}` is none of: {', '.join(sorted(ROS2[noun]))}")
     return Command(CommandKind.ROS2, text, words, line)

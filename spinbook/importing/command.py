@@ -15,7 +15,7 @@ from markupsafe import Markup, escape
 
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem
-from spinbook.build.notebooks import Built, build_notebooks
+from spinbook.build.notebooks import BuildResult, build_notebooks
 from spinbook.chapter.chapter import Chapter
 from spinbook.chapter.classify import CellKind
 from spinbook.chapters import read_all
@@ -138,7 +138,7 @@ def _shown(contents: Path | None, root: Path) -> str:
     return contents.relative_to(root).as_posix() if contents else "their names"
 
 
-def _report(course: Course, built: Iterable[Built]) -> None:
+def _report(course: Course, built: Iterable[BuildResult]) -> None:
     built = list(built)
     chapters = [reading.chapter for reading in read_all(course) if reading.chapter]
     problems = [problem for item in built for problem in item.problems]

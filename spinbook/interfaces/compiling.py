@@ -25,7 +25,7 @@ _HAS_ONE = re.compile(rb"\b(msg|srv|action)/[\w-]+\.\1\b")
 
 
 @dataclass(frozen=True)
-class Collected:
+class CourseDefinitions:
     """A course's definitions, each with the file and line that it is from, and what could not be read."""
 
     definitions: tuple[Definition, ...]
@@ -37,7 +37,7 @@ class Collected:
         return tuple(sorted({item.package for item in self.definitions}))
 
 
-def collect(course: Course) -> Collected:
+def collect(course: Course) -> CourseDefinitions:
     """Every definition of a course. A definition that is in two chapters with the same text counts once."""
     definitions, faults = read_folder(course.root / FOLDER, course.root)
     known = {(item.full_name, item.text) for item in definitions}
@@ -45,10 +45,10 @@ def collect(course: Course) -> Collected:
         if (item.full_name, item.text) not in known:
             known.add((item.full_name, item.text))
             definitions.append(item)
-    return Collected(tuple(definitions), tuple(problems(faults)))
+    return CourseDefinitions(tuple(definitions), tuple(problems(faults)))
 
 
-def checked(course: Course) -> Collected:
+def checked(course: Course) -> CourseDefinitions:
     """The same, of a course whose definitions have no faults. Raises SpinbookError with each fault there is."""
     collected = collect(course)
     faults = check(collected.definitions, prefixes.interfaces(prefixes.installed()))
@@ -86,7 +86,7 @@ def folder_of(course: Course) -> Path:
     return course.build_folder / "interfaces"
 
 
-def compile_course(course: Course, collected: Collected | None = None) -> Compiled | None:
+def compile_course(course: Course, collected: CourseDefinitions | None = None) -> Compiled | None:
     """Compile a course's interfaces, if it has any and they have changed, and use them in this process from now on.
 
     Raises:
@@ -109,7 +109,7 @@ def compile_course(course: Course, collected: Collected | None = None) -> Compil
     return compiled
 
 
-def _are_sourced(collected: Collected) -> bool:
+def _are_sourced(collected: CourseDefinitions) -> bool:
     """Whether a sourced workspace has them all, built by colcon from the same text."""
     places = [prefix for prefix in prefixes.installed() if prefix not in activation.active()]
     return all(

@@ -24,11 +24,11 @@ from grader.submission.problems import Undecided, Unreadable
 from grader.submission.python_code import definitions
 from spinbook.kernel.process import CellFailed, KeptProcess
 from spinbook.kernel.session import Session
-from spinbook.kernel.showing import Bound
+from spinbook.kernel.showing import DisplayLimit
 
 
 @dataclass(frozen=True)
-class Checked:
+class CheckedCode:
     """The exercise's code, and its origin, which completes "Checked: …". `warning` says that the cell's text has
     changed; it is empty if that is not known.
     """
@@ -44,7 +44,7 @@ class Checked:
         return f"{text}\nWARNING: {self.warning.format(command=command)}" if self.warning else text
 
 
-def code_of(exercise: Exercise, session: Session, shell: Any, notebook: Path | None) -> Checked:
+def code_of(exercise: Exercise, session: Session, shell: Any, notebook: Path | None) -> CheckedCode:
     """The exercise's code, as the session ran it last: its cell, and what that needs of the others.
 
     Raises CellFailed, with what to do, if the cell has not been run and the notebook's file is not known.
@@ -56,15 +56,15 @@ def code_of(exercise: Exercise, session: Session, shell: Any, notebook: Path | N
             code = code_of_notebook(Notebook(cells_as_run(session, shell)), exercise)
             edited = saved and digest_of(saved.source) != digest_of(code.source)
             edited = edited and _saved_after(notebook, session.ran_at[node])
-            return Checked(code, _as_run(node, session.ran_at[node]), _edited(node) if edited else "")
+            return CheckedCode(code, _as_run(node, session.ran_at[node]), _edited(node) if edited else "")
         if saved and notebook:
             not_run = (
                 f"it has not been run since the kernel started, so this is how it was last saved in {notebook.name}"
             )
-            return Checked(saved, f"the cell %%node {node}; {not_run}")
+            return CheckedCode(saved, f"the cell %%node {node}; {not_run}")
         with contextlib.suppress(Unreadable):
             code = code_of_notebook(Notebook(cells_as_run(session, shell)), exercise)
-            return Checked(code, "the cells as you ran them last, without any change that you made after that")
+            return CheckedCode(code, "the cells as you ran them last, without any change that you made after that")
     except (Unreadable, Undecided) as error:
         raise CellFailed(str(error)) from None
     raise CellFailed(f"Run the cell that begins with %%node {node} first. Then run this one again.")
@@ -228,4 +228,4 @@ def submit_cell(session: Session, shell: Any, name: str, course: str, student: s
         command += [os.fspath(notebook)] if notebook else []
         command += ["--code", os.fspath(file if one else Path(folder, exercise.name))]
         command += ["--student", student] if student is not None else []
-        session.run_command(command, {}, Path.cwd(), Bound(seconds), f"%submit {name}")
+        session.run_command(command, {}, Path.cwd(), DisplayLimit(seconds), f"%submit {name}")

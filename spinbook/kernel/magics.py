@@ -16,8 +16,8 @@ from IPython.core.magic import Magics, cell_magic, line_magic, magics_class, no_
 from spinbook.course.course import Package
 from spinbook.kernel import environment, interface_cell, picture_cells, terminal_cells, timeline_cell
 from spinbook.kernel.process import CellFailed
-from spinbook.kernel.session import COMMAND_SECONDS, GRAPH_SECONDS, LOG_SECONDS, NODE_SECONDS, Session, Start
-from spinbook.kernel.showing import Bound
+from spinbook.kernel.session import COMMAND_SECONDS, GRAPH_SECONDS, LOG_SECONDS, NODE_SECONDS, NodeStart, Session
+from spinbook.kernel.showing import DisplayLimit
 
 _OWN_OPTION = re.compile(r"""\s*--(seconds|until)\s+("[^"]*"|'[^']*'|\S+)\s*""")
 
@@ -51,7 +51,7 @@ def split(line: str) -> list[str]:
         raise CellFailed(f"can't read this line: {error}. A quotation mark is missing in: {line}") from None
 
 
-def own_options(line: str, seconds: float) -> tuple[Bound, str]:
+def own_options(line: str, seconds: float) -> tuple[DisplayLimit, str]:
     """Split leading options `--seconds N` and `--until TEXT` from a line whose rest belongs to another command.
     `seconds` is the default.
     """
@@ -66,7 +66,7 @@ def own_options(line: str, seconds: float) -> tuple[Bound, str]:
             seconds = float(value)
         except ValueError:
             raise CellFailed("`--seconds` needs a number, as in --seconds 5.") from None
-    return Bound(seconds, until), line
+    return DisplayLimit(seconds, until), line
 
 
 @magics_class
@@ -137,11 +137,11 @@ class SpinbookMagics(Magics):
             if not name.isidentifier():
                 raise CellFailed(f"`{name}` can't be a node's file name: use letters, digits and underscores.")
             parts = given.after if given.after or given.usual_imports else None
-            start = Start(tuple(given.classes), given.main, tuple(given.known_as))
+            start = NodeStart(tuple(given.classes), given.main, tuple(given.known_as))
             if given.keep:
                 self.session.keep_node(name, cell, start, parts)
             else:
-                self.session.run_node(name, cell, Bound(given.seconds, given.until), start, parts)
+                self.session.run_node(name, cell, DisplayLimit(given.seconds, given.until), start, parts)
 
     @no_var_expand
     @cell_magic
@@ -202,7 +202,7 @@ class SpinbookMagics(Magics):
         reader.add_argument("--seconds", type=float, default=LOG_SECONDS, help="how long to wait for it at most")
         if given := reader.read(line):
             if given.until is not None:
-                self.session.wait_for(given.name, Bound(given.seconds, given.until))
+                self.session.wait_for(given.name, DisplayLimit(given.seconds, given.until))
             print(self.session.log(given.name, given.all))
 
     @no_var_expand

@@ -18,7 +18,7 @@ from spinbook.graph.picture import in_words, node_graph_svg
 from spinbook.kernel.environment import EXECUTING
 from spinbook.kernel.plot.drawing import as_png, draw, moving_plot
 from spinbook.kernel.plot.drawing import in_words as plot_in_words
-from spinbook.kernel.plot.recording import Recording, RecordingTime
+from spinbook.kernel.plot.recording import PlotRecording, RecordingTime
 from spinbook.kernel.process import CellFailed, KeptProcess
 
 #: How long the look may take beyond the counting (s).
@@ -77,7 +77,7 @@ def show_plot(paths: list[str], seconds: float, title: str) -> None:
     """Record these paths for this many seconds from the first sample on, and show the plot. Raises CellFailed."""
     argv = [sys.executable, "-u", "-m", "spinbook.kernel.plot.recorder", *paths]
     process = KeptProcess(argv, os.environ, Path.cwd())
-    recording = Recording()
+    recording = PlotRecording()
     try:
         handle = _record(process, recording, seconds, title)
     finally:
@@ -90,7 +90,7 @@ def show_plot(paths: list[str], seconds: float, title: str) -> None:
     _show(recording, title, handle)
 
 
-def _record(process: KeptProcess, recording: Recording, seconds: float, title: str) -> Any:
+def _record(process: KeptProcess, recording: PlotRecording, seconds: float, title: str) -> Any:
     """Take in what arrives. Returns the handle of the picture that is being watched, if one is."""
     watched = EXECUTING not in os.environ
     handle: Any = None
@@ -113,7 +113,7 @@ def _record(process: KeptProcess, recording: Recording, seconds: float, title: s
         return handle
 
 
-def _show(recording: Recording, title: str, handle: Any) -> Any:
+def _show(recording: PlotRecording, title: str, handle: Any) -> Any:
     """Show what has been recorded so far. Where nobody has watched it come, it comes again, as a moving picture."""
     words = plot_in_words(recording)
     bundle = {"image/png": as_png(draw(recording, title)), "text/plain": words}

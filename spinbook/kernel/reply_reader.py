@@ -51,7 +51,7 @@ class _Qos(ctypes.Structure):
     ]
 
 
-class _Options(ctypes.Structure):
+class _SubscriptionOptions(ctypes.Structure):
     """rmw_subscription_options_t."""
 
     _fields_ = [
@@ -76,7 +76,7 @@ class _Information(ctypes.Structure):
 _RELIABLE = (1, 100, 1, 2, (0, 0), (0, 0), 1, (0, 0), True)
 
 
-class ReplyReader:
+class ServiceReplyReader:
     """The answers of one service; `answer` is their class."""
 
     def __init__(self, node: Node, service: str, answer: Any) -> None:
@@ -94,7 +94,7 @@ class ReplyReader:
 def _subscribe(node: Node, topic: str, answer: Any) -> int | None:
     rcl, rmw, core = ctypes.CDLL("librcl.so"), ctypes.CDLL(f"lib{_FAST_DDS}.so"), ctypes.CDLL("librmw.so")
     handle = _typed(rcl.rcl_node_get_rmw_handle, ctypes.c_void_p, ctypes.c_void_p)(node.handle.pointer)
-    options = _typed(core.rmw_get_default_subscription_options, _Options)()
+    options = _typed(core.rmw_get_default_subscription_options, _SubscriptionOptions)()
     create = _typed(
         rmw.rmw_create_subscription, ctypes.c_void_p, *[ctypes.c_void_p] * 2, ctypes.c_char_p, *[ctypes.c_void_p] * 2
     )

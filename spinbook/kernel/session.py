@@ -16,8 +16,8 @@ from spinbook.course.course import Package
 from spinbook.kernel import environment
 from spinbook.kernel.environment import Domain
 from spinbook.kernel.process import STOP_GRACE, CellFailed, KeptProcess, Status
-from spinbook.kernel.showing import Bound, in_short, joins, show_for, show_rest
-from spinbook.kernel.timeline_cell import Timeline
+from spinbook.kernel.showing import DisplayLimit, in_short, joins, show_for, show_rest
+from spinbook.kernel.timeline_cell import TimelineProcess
 from spinbook.package.files import Module
 from spinbook.package.write import add_file, add_module
 
@@ -31,7 +31,7 @@ class RunningNode:
 
 
 @dataclass(frozen=True)
-class Stopped:
+class StopResult:
     """How a node ended when it was asked to. `output` is what it printed after that."""
 
     name: str
@@ -79,11 +79,11 @@ class NodeRegistry:
         """The current status of a node."""
         return self._nodes[name].process.wait(0)
 
-    def stop(self, name: str) -> Stopped:
+    def stop(self, name: str) -> StopResult:
         """End a node as Ctrl-C would, or by force if that does not help, and forget it."""
         return self.stop_all([name])[0]
 
-    def stop_all(self, names: Sequence[str] | None = None) -> list[Stopped]:
+    def stop_all(self, names: Sequence[str] | None = None) -> list[StopResult]:
         """End these nodes (all without `names`) at the same time, and forget them."""
         chosen = [self._nodes.pop(name) for name in (self.names() if names is None else names)]
         had_ended = []
@@ -97,7 +97,7 @@ class NodeRegistry:
             status = node.process.wait(sum(STOP_GRACE) + 5)
             output, _ = node.process.read()
             node.process.close()
-            stopped.append(Stopped(node.name, status, output.decode(errors="replace"), ended))
+            stopped.append(StopResult(node.name, status, output.decode(errors="replace"), ended))
         return stopped
 
 
@@ -115,7 +115,7 @@ COMMAND_GRACE = (3.0, 1.0)
 
 
 @dataclass(frozen=True)
-class Start:
+class NodeStart:
     """How a node's code is started: by itself, by its `main`, or by spinning these classes.
 
     `known_as` are the names `PACKAGE/EXECUTABLE` by which `ros2 run` finds it.
@@ -147,9 +147,9 @@ class Session:
     """When that was (s since the epoch)."""
     parts: dict[str, str] = field(default_factory=dict)
     """Code that later nodes use, by its name."""
-    starts: dict[str, tuple[Path, Start]] = field(default_factory=dict)
+    starts: dict[str, tuple[Path, NodeStart]] = field(default_factory=dict)
     """The file of each node and how it is started, by the node's name."""
-    timeline: Timeline | None = None
+    timeline: TimelineProcess | None = None
     """What is being recorded for `%timeline`."""
 
     def __post_init__(self) -> None:
@@ -168,17 +168,22 @@ class Session:
         return Path.cwd() / self.package.workspace
 
     def run_node(
-        self, name: str, code: str, bound: Bound, start: Start | None = None, after: Sequence[str] | None = None
+        self,
+        name: str,
+        code: str,
+        bound: DisplayLimit,
+        start: NodeStart | None = None,
+        after: Sequence[str] | None = None,
     ) -> None:
         """Write a node's code as a module of its package, start it and show its log for a while.
 
         `after` names the nodes and parts whose code makes it whole; None: it is whole.
         """
-        start = start or Start()
+        start = start or NodeStart()
         file = self._saved(name, code, start, after)
         self.run_background(name, start.argv(file), self._import_path(file), Path.cwd(), bound)
 
-    def keep_node(self, name: str, code: str, start: Start, after: Sequence[str] | None = None) -> None:
+    def keep_node(self, name: str, code: str, start: NodeStart, after: Sequence[str] | None = None) -> None:
         """Write a node's code as a module of its package, for `ros2 run` to start with words of its own."""
         known_as = start.known_as or (f"{self.package.name}/{name}",)
         self._saved(name, code, replace(start, known_as=known_as), after)
@@ -186,7 +191,7 @@ class Session:
         print("— saved, not started: it reads words from its command line. Start it with them:")
         print(f"  %ros2 run {package} {executable} …")
 
-    def _saved(self, name: str, code: str, start: Start, after: Sequence[str] | None) -> Path:
+    def _saved(self, name: str, code: str, start: NodeStart, after: Sequence[str] | None) -> Path:
         package, executables = self._package_of(start.known_as)
         if package.name == name:
             raise CellFailed(f"A node can't have the package's name, {name}.")
@@ -234,7 +239,9 @@ class Session:
         paths = [os.fspath(module.parents[1]), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
         return {"PYTHONPATH": os.pathsep.join(path for path in paths if path)}
 
-    def run_executable(self, package: str, executable: str, words: Sequence[str], bound: Bound, known_as: str) -> bool:
+    def run_executable(
+        self, package: str, executable: str, words: Sequence[str], bound: DisplayLimit, known_as: str
+    ) -> bool:
         """Start the node that a cell made as this executable. False if no cell did.
 
         `known_as` is another name than the executable's where it runs next to the one that has that.
@@ -246,7 +253,9 @@ class Session:
                 return True
         return False
 
-    def run_background(self, name: str, argv: list[str], settings: dict[str, str], cwd: Path, bound: Bound) -> None:
+    def run_background(
+        self, name: str, argv: list[str], settings: dict[str, str], cwd: Path, bound: DisplayLimit
+    ) -> None:
         """Start a process that continues in the background, and show its log for a while. Raises CellFailed."""
         if self.nodes.get(name):
             if self.nodes.status(name).running:
@@ -255,7 +264,7 @@ class Session:
         node = self.nodes.start(name, argv, settings, cwd)
         self._show(node, bound)
 
-    def _show(self, node: RunningNode, bound: Bound) -> None:
+    def _show(self, node: RunningNode, bound: DisplayLimit) -> None:
         has_joined = joins(node.process, self.domain.number)
         try:
             show_for(node.process, bound, f": %log {node.name} shows them", has_joined)
@@ -272,7 +281,9 @@ class Session:
         else:
             raise CellFailed(f"{node.name} {_how_it_ended(status.exit)} Its last output is above.")
 
-    def run_command(self, argv: list[str], settings: dict[str, str], cwd: Path, bound: Bound, shown_as: str) -> None:
+    def run_command(
+        self, argv: list[str], settings: dict[str, str], cwd: Path, bound: DisplayLimit, shown_as: str
+    ) -> None:
         """Run a command in the cell; if it has not ended when its time is up, end it as Ctrl-C would. Raises CellFailed
         if it fails.
         """
@@ -294,7 +305,7 @@ class Session:
         elif not bounded and status.exit != 0:
             raise CellFailed(f"{shown_as}: {_how_it_ended(status.exit or 0)}")
 
-    def wait_for(self, name: str, bound: Bound) -> None:
+    def wait_for(self, name: str, bound: DisplayLimit) -> None:
         """Wait until a node's log holds the bound's text, or its time is up. Raises CellFailed for an unknown name."""
         node = self.find(name)
         deadline = time.monotonic() + bound.seconds
@@ -322,7 +333,7 @@ class Session:
             raise CellFailed(f"This notebook has not started a node `{name}`. Started: {there}.")
         return node
 
-    def stop(self, names: list[str] | None) -> list[Stopped]:
+    def stop(self, names: list[str] | None) -> list[StopResult]:
         """End these nodes, or all. Raises CellFailed for an unknown name."""
         for name in names or ():
             self.find(name)

@@ -23,7 +23,7 @@ _STARTING_S = 20.0
 
 
 @dataclass(frozen=True)
-class Bound:
+class DisplayLimit:
     """How long a process is shown: for this many seconds, or until it has printed this text, or until it ends.
 
     The seconds count from its first line, so that a slow machine shows as much as a fast one.
@@ -40,7 +40,9 @@ class Countdown:
     at least as many as it took to join: where starting takes long, so does the first message.
     """
 
-    def __init__(self, bound: Bound, has_joined: Callable[[], bool], now: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self, bound: DisplayLimit, has_joined: Callable[[], bool], now: Callable[[], float] = time.monotonic
+    ) -> None:
         self._bound = bound
         self._has_joined = has_joined
         self._now = now
@@ -87,7 +89,7 @@ def joins(process: KeptProcess, domain: int) -> Callable[[], bool]:
     return has_joined
 
 
-class Shown:
+class OutputPrinter:
     """Prints lines as they come; of very many it prints the first and, at the end, the last."""
 
     def __init__(self, first: int = FIRST_LINES, last: int = LAST_LINES) -> None:
@@ -139,17 +141,19 @@ class Shown:
 NEVER_APPEARED = re.compile(r"^— the text (.+) did not appear within ([\d.]+) s —$", re.MULTILINE)
 
 
-def never_appeared(bound: Bound) -> str:
+def never_appeared(bound: DisplayLimit) -> str:
     """Say that the text a cell waited for was not printed in its time; `NEVER_APPEARED` finds it again."""
     return f"— the text {bound.until!r} did not appear within {bound.seconds:g} s —"
 
 
-def show_for(process: KeptProcess, bound: Bound, rest_is: str, has_joined: Callable[[], bool] = lambda: False) -> None:
+def show_for(
+    process: KeptProcess, bound: DisplayLimit, rest_is: str, has_joined: Callable[[], bool] = lambda: False
+) -> None:
     """Show what a process prints until it ends, or until its time is up; then say what did not come.
 
     `has_joined` says whether the process takes part in ROS yet (see `joins`).
     """
-    shown = Shown()
+    shown = OutputPrinter()
     countdown = Countdown(bound, has_joined)
     over = came = False
     while not over:
@@ -169,7 +173,7 @@ def show_for(process: KeptProcess, bound: Bound, rest_is: str, has_joined: Calla
 
 def show_rest(process: KeptProcess, seconds: float) -> None:
     """Show what a process that was asked to end still prints, for at most this many seconds."""
-    shown = Shown()
+    shown = OutputPrinter()
     deadline = time.monotonic() + seconds
     while True:
         shown.add(*process.read())

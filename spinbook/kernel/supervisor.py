@@ -28,7 +28,7 @@ def _prctl(option: int, value: int) -> None:
     ctypes.CDLL(None, use_errno=True).prctl(option, value, 0, 0, 0)
 
 
-class Printed:
+class ProcessOutput:
     """What a process printed: its first and last bytes, and how many came between them."""
 
     def __init__(self, kept_at_each_end: int = KEPT_AT_EACH_END) -> None:
@@ -88,7 +88,7 @@ class Supervisor:
         self._selector = selectors.DefaultSelector()
         self._selector.register(control, selectors.EVENT_READ)
         self._requests = bytearray()
-        self._printed = Printed()
+        self._printed = ProcessOutput()
         self._process: subprocess.Popen[bytes] | None = None
         self._exit: int | None = None
         self._ended_by: str | None = None

@@ -12,14 +12,14 @@ from interface_compiler import toolchain
 from spinbook.chapter.own_packages import created_package
 from spinbook.kernel.process import CellFailed
 from spinbook.kernel.session import Session
-from spinbook.kernel.showing import Bound
+from spinbook.kernel.showing import DisplayLimit
 from spinbook.package.write import write_package, written_definitions
 
 #: How long a build may take (s).
 COLCON_SECONDS = 120.0
 
 
-def run_colcon(session: Session, words: list[str], bound: Bound) -> None:
+def run_colcon(session: Session, words: list[str], bound: DisplayLimit) -> None:
     """Run colcon with these words. Raises CellFailed if there is nothing to build, or if the build fails."""
     workspace = session.workspace
     if not (workspace / "src").is_dir():
@@ -45,7 +45,7 @@ def _without_interfaces(session: Session) -> list[str]:
     return ["--packages-ignore", *packages] if packages else []
 
 
-def run_ros2(session: Session, words: list[str], bound: Bound) -> None:
+def run_ros2(session: Session, words: list[str], bound: DisplayLimit) -> None:
     """Run a `ros2` command, for no longer than its limit. Raises CellFailed if it fails."""
     if words[:1] == ["run"] and not {"-h", "--help"} & set(words):
         _run_executable(session, words[1:], bound)
@@ -66,7 +66,7 @@ def _folder(session: Session, words: list[str]) -> Path:
     return session.workspace if reads_files and session.workspace.is_dir() else Path.cwd()
 
 
-def _launch(session: Session, words: list[str], bound: Bound) -> None:
+def _launch(session: Session, words: list[str], bound: DisplayLimit) -> None:
     """`ros2 launch …`: continues in the background as a node does, under the name of its file: `humanoid`."""
     files = [word.rpartition("/")[2] for word in words if re.search(r"launch\.(py|ya?ml|xml)$", word)]
     name = files[0].split(".")[0] if files else "launch"
@@ -86,7 +86,7 @@ def _create_package(session: Session, words: list[str]) -> None:
     print(f"Created the package {name} in {folder.relative_to(Path.cwd())}")
 
 
-def _run_executable(session: Session, words: list[str], bound: Bound) -> None:
+def _run_executable(session: Session, words: list[str], bound: DisplayLimit) -> None:
     """`ros2 run PACKAGE EXECUTABLE …`: a node like any other of the notebook, called as it or as `__node:=` says."""
     if len(words) < 2 or words[0].startswith("-"):
         raise CellFailed("Write: ros2 run PACKAGE EXECUTABLE, such as ros2 run turtlesim turtlesim_node")

@@ -16,7 +16,7 @@ RUNS = ("EXECUTING", "CANCELING")
 
 
 @dataclass(frozen=True)
-class Event:
+class TimelineEvent:
     """Something that was sent at a time (s): by which name, what, for which goal, and what it said in short.
 
     `what` is "message" (topic), "request", "response" (service), "goal", "accepted", "rejected", "feedback", "cancel",
@@ -34,7 +34,7 @@ class Event:
 class RecordedEvents:
     """What the recorder has reported so far."""
 
-    events: list[Event] = field(default_factory=list)
+    events: list[TimelineEvent] = field(default_factory=list)
     kinds: dict[str, str] = field(default_factory=dict)
     error: str | None = None
 
@@ -42,7 +42,7 @@ class RecordedEvents:
         """Take in lines that the recorder printed."""
         for kind, rest in read_lines(lines):
             if kind == "event":
-                self.events.append(Event(*rest))
+                self.events.append(TimelineEvent(*rest))
             elif kind == "found":
                 self.kinds[rest[0]] = rest[1]
             elif kind == "error":
@@ -92,11 +92,11 @@ def lanes(recording: RecordedEvents) -> tuple[Lane, ...]:
     return tuple(drawn)
 
 
-def _topic(name: str, events: list[Event]) -> Lane:
+def _topic(name: str, events: list[TimelineEvent]) -> Lane:
     return Lane(name, name, (), tuple(Mark(event.at, "tick") for event in events))
 
 
-def _calls(name: str, events: list[Event], end: float) -> Lane:
+def _calls(name: str, events: list[TimelineEvent], end: float) -> Lane:
     """Requests and their responses, which come in the order of the requests.
 
     A response before the first request belongs to one that was sent before the recording began.
@@ -112,7 +112,7 @@ def _calls(name: str, events: list[Event], end: float) -> Lane:
     return Lane(name, name, tuple(spans), tuple(sorted(marks, key=lambda mark: mark.at)))
 
 
-def _goals(name: str, events: list[Event], end: float) -> Iterator[Lane]:
+def _goals(name: str, events: list[TimelineEvent], end: float) -> Iterator[Lane]:
     """A lane for each goal, in the order in which they were sent."""
     numbers = dict.fromkeys(event.goal for event in events if event.goal)
     answers = _answers(events)
@@ -123,13 +123,13 @@ def _goals(name: str, events: list[Event], end: float) -> Iterator[Lane]:
         yield _goal(name, label, [*own, *answers.get(number, [])], end)
 
 
-def _answers(events: list[Event]) -> dict[str, list[Event]]:
+def _answers(events: list[TimelineEvent]) -> dict[str, list[TimelineEvent]]:
     """Goal -> the answers that name no goal: they come in the order of the questions.
 
     A goal that has got into any state was not rejected.
     """
     accepted = {event.goal for event in events if event.what in (*RUNS, *ENDS, "ACCEPTED")}
-    found: dict[str, list[Event]] = {}
+    found: dict[str, list[TimelineEvent]] = {}
     for question, answer in (("goal", "rejected"), ("cancel", "cancel answered")):
         waiting = [
             each for each in events if each.what == question and (answer != "rejected" or each.goal not in accepted)
@@ -140,12 +140,12 @@ def _answers(events: list[Event]) -> dict[str, list[Event]]:
     return found
 
 
-def _goal(name: str, label: str, events: list[Event], end: float) -> Lane:
+def _goal(name: str, label: str, events: list[TimelineEvent], end: float) -> Lane:
     events = sorted(events, key=lambda event: event.at)
     return Lane(name, label, tuple(_bars(events, end)), tuple(filter(None, map(_mark, events))))
 
 
-def _bars(events: list[Event], end: float) -> Iterator[Span]:
+def _bars(events: list[TimelineEvent], end: float) -> Iterator[Span]:
     """What the goal went through: it waits for an answer, runs, and is being cancelled."""
     looks: dict[str, Literal["waits", "runs", "cancels"]] = {
         "goal": "waits",
@@ -160,7 +160,7 @@ def _bars(events: list[Event], end: float) -> Iterator[Span]:
             yield Span(step.at, after, looks[step.what], index + 1 == len(steps))
 
 
-def _mark(event: Event) -> Mark | None:
+def _mark(event: TimelineEvent) -> Mark | None:
     if event.what == "goal":
         return Mark(event.at, "asked", "goal")
     if event.what == "feedback":

@@ -22,7 +22,7 @@ _LATE_S = 0.3
 _STOP_GRACE = (10.0, 1.0)
 
 
-class Timeline:
+class TimelineProcess:
     """A recorder that listens while other cells run. `names` are those of services, actions and topics."""
 
     def __init__(self, names: list[str]) -> None:
@@ -67,9 +67,9 @@ class Timeline:
         self._process.close()
 
 
-def begin(names: list[str]) -> Timeline:
+def begin(names: list[str]) -> TimelineProcess:
     """Start recording, and say so. Raises CellFailed if it fails."""
-    timeline = Timeline(names)
+    timeline = TimelineProcess(names)
     try:
         missing = timeline.wait_for_all()
     except KeyboardInterrupt:
@@ -81,7 +81,7 @@ def begin(names: list[str]) -> Timeline:
     return timeline
 
 
-def show(timeline: Timeline, title: str) -> None:
+def show(timeline: TimelineProcess, title: str) -> None:
     """Stop recording and draw what has happened. Raises CellFailed if nothing has."""
     happenings = timeline.end()
     if happenings.error:

@@ -37,7 +37,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from ros_in_python.ros2.interfaces import action_class, message_class, service_class
 from spinbook.kernel.recorder_lines import errors_written, write_line
-from spinbook.kernel.reply_reader import ReplyReader
+from spinbook.kernel.reply_reader import ServiceReplyReader
 
 _HEARS_ALL = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
 _FEEDBACK = QoSProfile(depth=100)
@@ -107,11 +107,11 @@ class TimelineRecorder(Node):
         kind = service_class(type_name)
         if self.count_clients(name):
             self._polled.append((self._requests(kind, name), partial(_event, name, "request")))
-        self._polled.append((ReplyReader(self, name, kind.Response).take, partial(_event, name, "response")))
+        self._polled.append((ServiceReplyReader(self, name, kind.Response).take, partial(_event, name, "response")))
 
     def _follow_calls(self, kind: Any, name: str, asked: Callable[..., None], answered: Callable[..., None]) -> None:
         self._polled.append((self._requests(kind, name), asked))
-        self._polled.append((ReplyReader(self, name, kind.Response).take, answered))
+        self._polled.append((ServiceReplyReader(self, name, kind.Response).take, answered))
 
     def _requests(self, kind: Any, name: str) -> Take:
         """What is asked of a service, taken as a server of its own would, and never answered."""

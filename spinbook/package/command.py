@@ -13,7 +13,7 @@ import click
 
 from groundwork.problem import Problem
 from interface_compiler.definition import Definition
-from spinbook.chapter.chapter import Cell
+from spinbook.chapter.chapter import ChapterCell
 from spinbook.chapter.fence import interface_path
 from spinbook.chapter.joining import join
 from spinbook.chapter.python_code import CodeError
@@ -201,7 +201,7 @@ def _of_notebooks(folder: Path) -> Sources:
 
 def course_modules(course: Course) -> list[Module]:
     """Every node cell of the course as a module. Raises SpinbookError where two chapters' modules clash."""
-    first: dict[str, tuple[Path, Cell]] = {}
+    first: dict[str, tuple[Path, ChapterCell]] = {}
     problems: list[Problem] = []
     for reading in read_all(course):
         problems += [problem for problem in reading.problems if problem.is_error]
@@ -226,7 +226,7 @@ def course_files(course: Course) -> dict[str, str]:
 
     Raises SpinbookError where two chapters' files clash.
     """
-    first: dict[str, tuple[Path, Cell]] = {}
+    first: dict[str, tuple[Path, ChapterCell]] = {}
     for reading in read_all(course):
         for cell in reading.chapter.files if reading.chapter else ():
             assert cell.name is not None

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from spinbook.chapter.chapter import Cell, Chapter
+from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.classify import CellKind
 from spinbook.site.drawing import smaller, still_of
 from spinbook.site.page import Repository, exercise_page
@@ -75,7 +75,7 @@ def chapter_notebook(
     }
 
 
-def _prose(cell: Cell, text: str) -> dict[str, Any]:
+def _prose(cell: ChapterCell, text: str) -> dict[str, Any]:
     return {"cell_type": "markdown", "id": cell.id, "metadata": {"spinbook": {"line": cell.line}}, "source": text}
 
 
@@ -88,7 +88,7 @@ def _card(exercise: ExerciseCard) -> str:
     )
 
 
-def _code(cell: Cell, ran: ExecutedNotebook, source_link: str, download: str) -> dict[str, Any]:
+def _code(cell: ChapterCell, ran: ExecutedNotebook, source_link: str, download: str) -> dict[str, Any]:
     shown = ran.outputs(cell.id)
     outputs = [_published(output) for output in shown]
     stills = [still_of(output) for output in shown if is_picture(output)]
@@ -119,13 +119,13 @@ def _code(cell: Cell, ran: ExecutedNotebook, source_link: str, download: str) ->
     }
 
 
-def _after(cell: Cell) -> str:
+def _after(cell: ChapterCell) -> str:
     """What a node that is shown in pieces runs with, in words."""
     with_what = [*cell.after] or (["the usual imports"] if cell.before else [])
     return f"runs with {', '.join(with_what)}" if with_what else ""
 
 
-def _run(cell: Cell) -> dict[str, Any]:
+def _run(cell: ChapterCell) -> dict[str, Any]:
     """What a page adds to code that is not whole by itself, what `ros2 run` calls a node, how long output is shown."""
     how = ["--main"] if cell.runs_main else ["--class", *cell.spin_classes] if cell.spin_classes else []
     names = [f"{package}/{executable}" for package, executable in cell.executables]
@@ -156,7 +156,7 @@ def is_picture(output: Mapping[str, Any]) -> bool:
     return any(kind.startswith("image/") for kind in output.get("data", {}))
 
 
-def alternative(output: Mapping[str, Any], cell: Cell) -> str:
+def alternative(output: Mapping[str, Any], cell: ChapterCell) -> str:
     """What a picture says in words: what its maker says, else what a terminal would show, else where it is from."""
     for about in output.get("metadata", {}).values():
         if isinstance(about, dict) and about.get("alt"):

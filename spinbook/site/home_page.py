@@ -18,7 +18,7 @@ from pygments.formatters.html import HtmlFormatter
 
 from grader.exercise.exercise import Exercise
 from spinbook.build.digest import digest
-from spinbook.chapter.chapter import Cell, Chapter
+from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.classify import CellKind
 from spinbook.course.course import Course
 from spinbook.site.chapter_page import ExecutedNotebook, alternative, is_picture
@@ -96,14 +96,14 @@ def _coloured(log: str) -> str:
     return str(highlight(log, LogLexer(), HtmlFormatter(nowrap=True)))
 
 
-def _pictures(chapter: Chapter, ran: ExecutedNotebook) -> Iterator[tuple[Cell, dict[str, Any]]]:
+def _pictures(chapter: Chapter, ran: ExecutedNotebook) -> Iterator[tuple[ChapterCell, dict[str, Any]]]:
     for cell in chapter.cells:
         for output in ran.outputs(cell.id):
             if is_picture(output):
                 yield cell, output
 
 
-def _shown(chapter: Chapter, cell: Cell, output: Mapping[str, Any], caption: str) -> Shown:
+def _shown(chapter: Chapter, cell: ChapterCell, output: Mapping[str, Any], caption: str) -> Shown:
     data = output["data"]
     if "image/svg+xml" in data:
         picture, suffix = "".join(data["image/svg+xml"]).encode(), ".svg"

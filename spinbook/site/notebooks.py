@@ -13,7 +13,7 @@ from urllib.parse import quote
 
 from rich.console import Console
 
-from spinbook.build.execution import Job, execute
+from spinbook.build.execution import NotebookJob, execute
 from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course
 from spinbook.course.obstacles import ranked
@@ -42,7 +42,7 @@ def bring_up_to_date(course: Course, console: Console, *, is_strict: bool) -> bo
         console.print(line, markup=False)
     if any(item.failed for item in built):
         return False
-    jobs = [Job(item.chapter, item.notebook, course.build_folder) for item in built]
+    jobs = [NotebookJob(item.chapter, item.notebook, course.build_folder) for item in built]
     good = True
     with console.status("Looking for chapters to run …") as status:
         for executed in execute(

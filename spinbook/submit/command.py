@@ -20,8 +20,8 @@ from groundwork.problem import Problem
 from spinbook.problem import SpinbookError
 from spinbook.submit import hand_in as names
 from spinbook.submit.hand_in import (
-    Candidate,
     HandIn,
+    HandInCandidate,
     SelfCheck,
     default_target,
     exercise_named,
@@ -90,12 +90,12 @@ def print_result(checked: SelfCheck, exercise: Exercise, console: Console) -> No
         console.print(f"No self-check: {checked.why} You can hand in all the same.", markup=False, soft_wrap=True)
 
 
-def _ran(code: Path, notebook: Path | None, exercise: Exercise) -> Candidate:
+def _ran(code: Path, notebook: Path | None, exercise: Exercise) -> HandInCandidate:
     """The code that a notebook's kernel ran last, which may not have been saved yet."""
     return replace(given(code, exercise), file=notebook, origin="the cell as you ran it last")
 
 
-def _found(exercise: Exercise, folder: Path) -> Candidate:
+def _found(exercise: Exercise, folder: Path) -> HandInCandidate:
     return found(exercise, folder, "spinbook submit", "Which one do you hand in?")
 
 

@@ -29,7 +29,7 @@ from spinbook.update.handout import BASE
 
 
 @dataclass(frozen=True)
-class Candidate:
+class HandInCandidate:
     """What the student may want to hand in: the exercise's code, and the file it is from, if there is one.
 
     `origin` tells where the code is from, in words or by the file's name.
@@ -40,7 +40,7 @@ class Candidate:
     origin: str
 
 
-def candidates(exercise: Exercise, folder: Path) -> list[Candidate]:
+def candidates(exercise: Exercise, folder: Path) -> list[HandInCandidate]:
     """The files that hold the exercise: notebooks and ROS 2 packages in `folder`, and the .py of its name, there or in
     the exercise's own folder. One whose program is a question has a submission without one.
 
@@ -49,7 +49,7 @@ def candidates(exercise: Exercise, folder: Path) -> list[Candidate]:
     """
     files = [folder / exercise.file_name, *sorted(folder.glob("*.ipynb")), *_packages(folder)]
     files.append(exercise.folder / exercise.file_name)
-    found = [Candidate(file, read(str(file), exercise), _name(file, folder)) for file in files if file.exists()]
+    found = [HandInCandidate(file, read(str(file), exercise), _name(file, folder)) for file in files if file.exists()]
     found = [one for one in found if one.submission.program or one.submission.question]
     begun = [candidate for candidate in found if not is_starter(candidate, exercise)]
     by_code = {_bare(candidate.submission.source): candidate for candidate in reversed(begun or found)}
@@ -62,7 +62,7 @@ def _packages(folder: Path) -> list[Path]:
     return sorted({manifest.parent for pattern in patterns for manifest in folder.glob(pattern)})
 
 
-def is_starter(candidate: Candidate, exercise: Exercise) -> bool:
+def is_starter(candidate: HandInCandidate, exercise: Exercise) -> bool:
     """Whether this is still the unchanged starter."""
     return _bare(candidate.submission.source) in _starters(exercise)
 
@@ -133,7 +133,7 @@ class HandIn:
     """What is handed in, by whom, and what the public checks say of it."""
 
     exercise: Exercise
-    work: Candidate
+    work: HandInCandidate
     student: str
     check: SelfCheck
 
@@ -202,7 +202,7 @@ def exercise_named(name: str) -> Exercise:
         raise SpinbookError(error.problem) from None
 
 
-def given(file: Path, exercise: Exercise) -> Candidate:
+def given(file: Path, exercise: Exercise) -> HandInCandidate:
     """Return the code in the file that the student named. Raises `UsageError` and `SpinbookError`."""
     if not os.path.lexists(file) and not can_be_read(file.name):
         raise click.UsageError(f"{file}: give a notebook (.ipynb), a Python file (.py), an archive or a folder.")
@@ -212,7 +212,7 @@ def given(file: Path, exercise: Exercise) -> Candidate:
         raise click.UsageError(str(error)) from None
     if submission.program is None:
         raise SpinbookError(_no_program(file, submission))
-    return Candidate(file, submission, file.name)
+    return HandInCandidate(file, submission, file.name)
 
 
 def _no_program(file: Path, submission: Submission) -> Problem:
@@ -221,7 +221,7 @@ def _no_program(file: Path, submission: Submission) -> Problem:
     return Problem(file, None, submission.problem, "There is no code for the exercise in it yet.")
 
 
-def found(exercise: Exercise, folder: Path, command: str, question: str) -> Candidate:
+def found(exercise: Exercise, folder: Path, command: str, question: str) -> HandInCandidate:
     """Return the code in the one file of `folder` that holds the exercise; of several the student chooses one.
 
     `command` is what the student typed. Raises `UsageError` and `SpinbookError`.

@@ -32,7 +32,7 @@ LAST_LINES = 12
 
 
 @dataclass(frozen=True)
-class Row:
+class CheckRow:
     """One check as it is shown. `facts` are label and value; `remark` is what they leave out.
 
     `before` is above the first of several checks that all wait for the same one.
@@ -112,23 +112,23 @@ def _end(log: str) -> str:
     return as_students_see_it(log).strip()[-LONGEST:]
 
 
-def _rows(grade: Grade, exercise: Exercise) -> list[Row]:
+def _rows(grade: Grade, exercise: Exercise) -> list[CheckRow]:
     rows = []
     for needs, group in groupby(shown_checks(grade), key=lambda check: check.needs):
         first, *rest = group
         if needs:
             which = f"The next {len(rest) + 1} checks" if rest else "The next check"
             before = f"{which} can't be judged until this is right: {' '.join(needs)}"
-            rows += [Row(first, before=before), *(Row(check) for check in rest)]
+            rows += [CheckRow(first, before=before), *(CheckRow(check) for check in rest)]
         else:
             rows += [_row(check, grade, exercise) for check in (first, *rest)]
     return rows
 
 
-def _row(check: ShownCheck, grade: Grade, exercise: Exercise) -> Row:
+def _row(check: ShownCheck, grade: Grade, exercise: Exercise) -> CheckRow:
     if not check.finding:
-        return Row(check)
-    return Row(check, *_facts(check.finding, grade, exercise.element_name))
+        return CheckRow(check)
+    return CheckRow(check, *_facts(check.finding, grade, exercise.element_name))
 
 
 def _facts(finding: Finding, grade: Grade, element: str) -> tuple[tuple[tuple[str, str], ...], str]:

@@ -12,7 +12,7 @@ from groundwork.problem import Problem
 from spinbook.problem import SpinbookError
 from spinbook.update.handout import BASE, read_handout, refuse_another_course
 from spinbook.update.merging import MergeReport
-from spinbook.update.plan import Plan, carry_out, plan
+from spinbook.update.plan import UpdatePlan, carry_out, plan
 
 #: Files that say what to install.
 _INSTALLS = {"requirements.txt", "environment.yml"}
@@ -93,7 +93,7 @@ def _is_handout(file: Path) -> bool:
         return False
 
 
-def _print_plan(made: Plan) -> None:
+def _print_plan(made: UpdatePlan) -> None:
     for path, lines in sorted(made.report.items()):
         for line in lines:
             click.echo(f"{path}: {line}")

@@ -98,7 +98,7 @@ _NOT_LOOKED_IN = {".spinbook", ".ipynb_checkpoints", ".venv", "backups", "build"
 
 
 @dataclass
-class Plan:
+class UpdatePlan:
     """Files to write, what to report about each, and entries of the base that are out of date.
 
     `report` has a line or more for each file, by the file's path; `notebooks` what became of cells.
@@ -115,9 +115,9 @@ class Plan:
         self.report.setdefault(path, []).append(line)
 
 
-def plan(folder: Path, handout: Mapping[PurePosixPath, bytes]) -> Plan:
+def plan(folder: Path, handout: Mapping[PurePosixPath, bytes]) -> UpdatePlan:
     """What brings the student's `folder` up to `handout`. Changes nothing."""
-    made = Plan()
+    made = UpdatePlan()
     base = _base_in(folder)
     for path, data in sorted(handout.items()):
         if path.parts[0] == ".spinbook":
@@ -146,13 +146,13 @@ def _base_in(folder: Path) -> Files:
     }
 
 
-def _own(made: Plan, folder: Path, path: PurePosixPath, data: bytes) -> None:
+def _own(made: UpdatePlan, folder: Path, path: PurePosixPath, data: bytes) -> None:
     """A file of ours, which no student edits."""
     if _content(folder / path) != data:
         made.base[path] = data
 
 
-def _file(made: Plan, folder: Path, path: PurePosixPath, base: bytes | None, new: bytes) -> None:
+def _file(made: UpdatePlan, folder: Path, path: PurePosixPath, base: bytes | None, new: bytes) -> None:
     mine = _content(folder / path)
     if mine == new or new == base:
         return
@@ -166,7 +166,7 @@ def _file(made: Plan, folder: Path, path: PurePosixPath, base: bytes | None, new
         _beside(made, folder, path, new, "You have changed it and so has the handout. Yours is kept")
 
 
-def _notebook(made: Plan, folder: Path, path: PurePosixPath, base: bytes | None, new: bytes) -> None:
+def _notebook(made: UpdatePlan, folder: Path, path: PurePosixPath, base: bytes | None, new: bytes) -> None:
     if new == base:
         return
     where = _students(folder, path, new)
@@ -214,7 +214,7 @@ def _chapter_of(path: Path) -> str:
         return ""
 
 
-def _beside(made: Plan, folder: Path, path: PurePosixPath, new: bytes, why: str) -> None:
+def _beside(made: UpdatePlan, folder: Path, path: PurePosixPath, new: bytes, why: str) -> None:
     beside = path.with_name(f"{path.stem}.new{path.suffix}")
     if _content(folder / beside) != new:
         made.writes[beside] = new
@@ -231,7 +231,7 @@ def _content(file: Path) -> bytes | None:
 BACKUPS = "backups"
 
 
-def carry_out(plan: Plan, folder: Path) -> Path | None:
+def carry_out(plan: UpdatePlan, folder: Path) -> Path | None:
     """Write everything. Returns the folder with a copy of each file that is replaced, None where none is.
 
     If it breaks off, the same update can be done again: what was handed out is remembered last. Raises `OSError`.

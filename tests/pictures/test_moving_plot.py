@@ -15,14 +15,16 @@ from playwright.sync_api import Browser
 
 from ros_in_python.animation import BEFORE_S
 from spinbook.kernel.plot.drawing import MOST_CURVES, Scale, around, moving_plot
-from spinbook.kernel.plot.recording import Recording, RecordingTime
+from spinbook.kernel.plot.recording import PlotRecording, RecordingTime
 
 JOINTS = ["left_elbow", "right_elbow", "<b>&"]
 
 
-def recorded(value: Callable[[float], float] = math.sin, seconds: float = 4.0, joints: list[str] = JOINTS) -> Recording:
+def recorded(
+    value: Callable[[float], float] = math.sin, seconds: float = 4.0, joints: list[str] = JOINTS
+) -> PlotRecording:
     """Return a recording of joints at 10 Hz."""
-    recording = Recording()
+    recording = PlotRecording()
     recording.take(
         json.dumps(["sample", "/joint_commands", "position", "rad", joint, 100 + n / 10, value(n / 10 + offset)])
         for n in range(int(seconds * 10) + 1)
@@ -31,7 +33,7 @@ def recorded(value: Callable[[float], float] = math.sin, seconds: float = 4.0, j
     return recording
 
 
-def svg_of(recording: Recording) -> str:
+def svg_of(recording: PlotRecording) -> str:
     svg = moving_plot(recording)
     assert svg is not None
     return svg
@@ -61,8 +63,10 @@ def test_a_constant_curve_and_one_with_a_hole_do_not_hurt() -> None:
     assert ">broken<" not in svg_of(recording)
 
 
-@pytest.mark.parametrize("recording", [Recording(), recorded(seconds=0), recorded(joints=list(map(str, range(99))))])
-def test_what_can_not_move_has_no_moving_picture(recording: Recording) -> None:
+@pytest.mark.parametrize(
+    "recording", [PlotRecording(), recorded(seconds=0), recorded(joints=list(map(str, range(99))))]
+)
+def test_what_can_not_move_has_no_moving_picture(recording: PlotRecording) -> None:
     assert moving_plot(recording) is None
     assert MOST_CURVES < 99
 
@@ -94,7 +98,7 @@ def test_in_a_browser_the_window_grows_as_time_went_by(browser: Browser, tmp_pat
 
 
 def test_the_seconds_count_from_the_first_sample_and_a_slow_start_is_no_silence() -> None:
-    recording, time = Recording(), RecordingTime(seconds=3.0, now=0.0)
+    recording, time = PlotRecording(), RecordingTime(seconds=3.0, now=0.0)
     assert not time.is_over(recording, 25.0), "the recorder has not started yet"
     recording.take(['["looking"]'])
     assert not time.is_over(recording, 26.0)
@@ -106,7 +110,7 @@ def test_the_seconds_count_from_the_first_sample_and_a_slow_start_is_no_silence(
 
 
 def test_a_recorder_that_hears_nothing_is_given_up() -> None:
-    recording, time = Recording(), RecordingTime(seconds=3.0, now=0.0)
+    recording, time = PlotRecording(), RecordingTime(seconds=3.0, now=0.0)
     recording.take(['["looking"]'])
     assert not time.is_over(recording, 1.0)
     assert time.is_over(recording, 8.5)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ros_in_python.ros2.domain import participants, participates
 from spinbook.kernel.process import KeptProcess
-from spinbook.kernel.showing import Bound, Countdown
+from spinbook.kernel.showing import Countdown, DisplayLimit
 
 
 @dataclass
@@ -22,7 +22,7 @@ class Machine:
     joined: bool = False
 
     def countdown(self, seconds: float) -> Countdown:
-        return Countdown(Bound(seconds), lambda: self.joined, lambda: self.now)
+        return Countdown(DisplayLimit(seconds), lambda: self.joined, lambda: self.now)
 
 
 def test_the_seconds_count_from_the_first_line_however_late_it_comes() -> None:

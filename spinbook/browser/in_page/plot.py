@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from spinbook.kernel.plot.recording import Recording
+    from spinbook.kernel.plot.recording import PlotRecording
 
 
 def plot(paths: Sequence[str], seconds: float, title: str) -> str:
@@ -17,9 +17,9 @@ def plot(paths: Sequence[str], seconds: float, title: str) -> str:
     Return the picture as JSON: `picture`, `words` and `problem`, "" if there is none.
     """
     from spinbook.kernel.plot.drawing import in_words, plot_svg
-    from spinbook.kernel.plot.recording import Recording
+    from spinbook.kernel.plot.recording import PlotRecording
 
-    recording = Recording()
+    recording = PlotRecording()
     _record(recording, paths, seconds)
     problem = recording.error or ("" if recording.curves else recording.why_empty(paths))
     if problem:
@@ -27,12 +27,12 @@ def plot(paths: Sequence[str], seconds: float, title: str) -> str:
     return json.dumps({"picture": plot_svg(recording, title) or "", "words": in_words(recording), "problem": ""})
 
 
-def _record(recording: Recording, paths: Sequence[str], seconds: float) -> None:
+def _record(recording: PlotRecording, paths: Sequence[str], seconds: float) -> None:
     import rclpy
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.node import Node
 
-    from spinbook.kernel.plot.recorder import Recorder
+    from spinbook.kernel.plot.recorder import PlotRecorder
     from spinbook.kernel.plot.recording import RecordingTime
 
     context = rclpy.Context()
@@ -41,7 +41,7 @@ def _record(recording: Recording, paths: Sequence[str], seconds: float) -> None:
     recorder: Node | None = None
     recording_time = RecordingTime(seconds, time.monotonic())
     try:
-        recorder = Recorder(paths, recording.note, context)
+        recorder = PlotRecorder(paths, recording.note, context)
         executor.add_node(recorder)
         while not recording_time.is_over(recording, time.monotonic()):
             executor.spin_once(timeout_sec=0.05)

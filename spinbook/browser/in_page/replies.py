@@ -13,7 +13,7 @@ from rcl_python import cdr, participant
 from rcl_python.link import Frame
 
 
-class ReplyReader:
+class ServiceReplyReader:
     """The answers of one service; `answer` is their class."""
 
     def __init__(self, node: Any, service: str, answer: Any) -> None:

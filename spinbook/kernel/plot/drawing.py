@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from ros_in_python.animation import Cycle, coord, on_paper
 from ros_in_python.thinning import thinned
-from spinbook.kernel.plot.recording import Curve, Recording
+from spinbook.kernel.plot.recording import PlotCurve, PlotRecording
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,7 +23,7 @@ COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 _DASHES = ["-", "--", "-.", ":"]
 
 
-def draw(recording: Recording, title: str = "") -> Figure:
+def draw(recording: PlotRecording, title: str = "") -> Figure:
     """A figure of what was recorded. Time counts from the first sample."""
     # Web pages read other parts of this module, and have no matplotlib.
     from matplotlib.figure import Figure
@@ -55,15 +55,15 @@ def draw(recording: Recording, title: str = "") -> Figure:
     return figure
 
 
-def panels(recording: Recording) -> dict[tuple[str, str], list[Curve]]:
+def panels(recording: PlotRecording) -> dict[tuple[str, str], list[PlotCurve]]:
     """(kind, unit) -> the curves that share an axis, in the order in which they first appeared."""
-    panels: dict[tuple[str, str], list[Curve]] = {}
+    panels: dict[tuple[str, str], list[PlotCurve]] = {}
     for quantity, curve in recording.curves.items():
         panels.setdefault((quantity.kind, quantity.unit), []).append(curve)
     return panels
 
 
-def in_words(recording: Recording) -> str:
+def in_words(recording: PlotRecording) -> str:
     """What the figure shows, for those who can't see it and for front ends without pictures."""
     lines = []
     for (kind, unit), curves in panels(recording).items():
@@ -122,7 +122,7 @@ _NAME_CHAR = 6.9
 
 
 def panel(
-    name: str, curves: Mapping[str, Curve], top: float, across: Scale, start: float, key: str
+    name: str, curves: Mapping[str, PlotCurve], top: float, across: Scale, start: float, key: str
 ) -> tuple[str, float]:
     """The panel below `top` with curves by label, and where it ends.
 
@@ -173,7 +173,7 @@ def _legend(looks: Mapping[str, str], y: float) -> tuple[str, float]:
     return texts, y + 14
 
 
-def _polyline(curve: Curve, across: Scale, up: Scale, start: float) -> str:
+def _polyline(curve: PlotCurve, across: Scale, up: Scale, start: float) -> str:
     """The curve's path, each point relative to the one before it."""
     places = [(across.at(time - start), up.at(value)) for time, value in zip(curve.times, curve.values, strict=True)]
     precision = PRECISION_PX
@@ -194,12 +194,12 @@ MOST_CURVES = 12
 _TOP = 28
 
 
-def moving_plot(recording: Recording, title: str = "") -> str | None:
+def moving_plot(recording: PlotRecording, title: str = "") -> str | None:
     """The picture, or None where nothing can move: no time has passed, or there are too many curves."""
     return plot_svg(recording, title) if sum(map(len, _shown(recording).values())) <= MOST_CURVES else None
 
 
-def plot_svg(recording: Recording, title: str = "") -> str | None:
+def plot_svg(recording: PlotRecording, title: str = "") -> str | None:
     """The picture, without motion if there are too many curves; None where no time has passed."""
     shown = _shown(recording)
     curves = [curve for by_label in shown.values() for curve in by_label.values()]
@@ -223,10 +223,10 @@ def plot_svg(recording: Recording, title: str = "") -> str | None:
     return on_paper(content, WIDTH, math.ceil(y), key, name, words)
 
 
-def _shown(recording: Recording) -> dict[str, dict[str, Curve]]:
+def _shown(recording: PlotRecording) -> dict[str, dict[str, PlotCurve]]:
     """Axis -> label -> curve, of curves that can be drawn."""
     several_topics = len({quantity.topic for quantity in recording.curves}) > 1
-    shown: dict[str, dict[str, Curve]] = {}
+    shown: dict[str, dict[str, PlotCurve]] = {}
     for (kind, unit), curves in panels(recording).items():
         axis = f"{kind.replace('_', ' ')} ({unit})" if unit else kind.replace("_", " ")
         for curve in curves:

@@ -61,7 +61,7 @@ UNITS = {
 
 
 @dataclass(frozen=True)
-class Quantity:
+class PlotQuantity:
     """What one curve shows: `kind` names the axis ("position"), `label` the curve ("left_elbow")."""
 
     topic: str
@@ -70,7 +70,7 @@ class Quantity:
     label: str
 
 
-def quantities(path: TopicPath, message: Any, type_name: str) -> Iterator[tuple[Quantity, float]]:
+def quantities(path: TopicPath, message: Any, type_name: str) -> Iterator[tuple[PlotQuantity, float]]:
     """Every number that the path leads to in this message, with what it is.
 
     `type_name` is "package/Type". Raises LookupError if the message has no such field.
@@ -103,7 +103,7 @@ def _numbers(
 
 def _describe(
     path: TopicPath, message: Any, type_name: str, names: tuple[str, ...], indices: tuple[int, ...]
-) -> Quantity:
+) -> PlotQuantity:
     unit = next(
         (UNITS[type_name, key] for key in _prefixes(names) if (type_name, key) in UNITS),
         "",
@@ -117,7 +117,7 @@ def _describe(
             label = str(joints[index])
         else:
             label = f"{'/'.join(names)}[{index}]"
-    return Quantity(path.topic, kind, unit, label or kind)
+    return PlotQuantity(path.topic, kind, unit, label or kind)
 
 
 def _prefixes(names: tuple[str, ...]) -> Iterator[str]:

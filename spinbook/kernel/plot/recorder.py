@@ -29,7 +29,7 @@ from spinbook.kernel.recorder_lines import errors_written, write_line
 _HEARS_ALL = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
 
 
-class Recorder(Node):
+class PlotRecorder(Node):
     """Looks for the topics that paths name, and hands every number that comes from them to `write`, as a line."""
 
     def __init__(
@@ -83,7 +83,7 @@ def main() -> None:
 
 
 def _record(paths: list[str]) -> None:
-    recorder: Node = Recorder(paths)
+    recorder: Node = PlotRecorder(paths)
     try:
         rclpy.spin(recorder)
     finally:

@@ -6,24 +6,24 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from spinbook.kernel.plot.quantity import Quantity
+from spinbook.kernel.plot.quantity import PlotQuantity
 from spinbook.kernel.recorder_lines import read_lines
 
 
 @dataclass
-class Curve:
+class PlotCurve:
     """One quantity over time: `times` and `values` have the same length; times in s, on the messages' own clock."""
 
-    quantity: Quantity
+    quantity: PlotQuantity
     times: list[float] = field(default_factory=list)
     values: list[float] = field(default_factory=list)
 
 
 @dataclass
-class Recording:
+class PlotRecording:
     """Curves in the order in which they first appeared, and what is still waited for."""
 
-    curves: dict[Quantity, Curve] = field(default_factory=dict)
+    curves: dict[PlotQuantity, PlotCurve] = field(default_factory=dict)
     waiting: list[str] = field(default_factory=list)
     published: list[str] = field(default_factory=list)
     error: str | None = None
@@ -39,8 +39,8 @@ class Recording:
         """Take in what the recorder says: a line's kind and values."""
         if kind == "sample":
             *about, when, value = values
-            quantity = Quantity(*about)
-            curve = self.curves.setdefault(quantity, Curve(quantity))
+            quantity = PlotQuantity(*about)
+            curve = self.curves.setdefault(quantity, PlotCurve(quantity))
             curve.times.append(when)
             curve.values.append(value)
         elif kind == "looking":
@@ -79,7 +79,7 @@ class RecordingTime:
         self._ends = now + _STARTING_S
         self._is_looking = self._has_samples = False
 
-    def is_over(self, recording: Recording, now: float) -> bool:
+    def is_over(self, recording: PlotRecording, now: float) -> bool:
         """Ask this again and again; `now` is a monotonic clock's time (s)."""
         if recording.is_looking and not self._is_looking:
             self._is_looking, self._ends = True, now + _APPEAR_S
