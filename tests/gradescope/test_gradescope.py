@@ -106,7 +106,7 @@ def test_the_zip_holds_what_compiles_messages_and_the_courses_own_definitions(
     with zipfile.ZipFile(BytesIO(bundle(load(TEMPLATE / "exercises" / EXERCISE)))) as archive:
         names = archive.namelist()
     assert "course/interfaces/arm_msgs/msg/Joint.msg" in names
-    assert "course/packages/interface_compiler/interface_compiler/definitions/standard/turtlesim/msg/Pose.msg" in names
+    assert "course/packages/interface_compiler/interface_compiler/definitions/standard/turtlesim.txt" in names
     assert "course/course.toml" in names
 
 

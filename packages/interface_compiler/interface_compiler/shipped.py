@@ -1,13 +1,19 @@
-"""The definitions that come with this package: example_interfaces and turtlesim, and optional ones."""
+"""The definitions that come with this package: example_interfaces and turtlesim, and optional ones.
+
+A package is one file. Its definitions follow one another as in the schemas of an MCAP bag: a line of 80 equals signs, a
+line `MSG: package/msg/Name` (or SRV, ACTION), and the text (https://mcap.dev/spec/registry#ros2msg).
+"""
 
 from __future__ import annotations
 
 import functools
+import re
 from pathlib import Path
 
-from interface_compiler.definition import Definition, read_folder
+from interface_compiler.definition import Definition
 
 _FOLDER = Path(__file__).with_name("definitions")
+_HEAD = re.compile(rf"^{'=' * 80}\n[A-Z]+: (?P<package>\w+)/(?P<kind>\w+)/(?P<name>\w+)\n", re.MULTILINE)
 
 
 @functools.cache
@@ -33,9 +39,19 @@ def definitions(package: str) -> list[Definition]:
     """Return the definitions of one of these packages. Raises KeyError for any other."""
     for group in ("standard", "optional"):
         if package in _packages(group):
-            return [item for item in read_folder(_FOLDER / group)[0] if item.package == package]
+            return _read(_FOLDER / group / f"{package}.txt")
     raise KeyError(package)
 
 
+def _read(file: Path) -> list[Definition]:
+    text = file.read_text(encoding="utf-8")
+    heads = list(_HEAD.finditer(text))
+    ends = [head.start() for head in heads[1:]] + [len(text)]
+    return [
+        Definition(**head.groupdict(), text=text[head.end() : end], file=file, line=text.count("\n", 0, head.end()) + 1)
+        for head, end in zip(heads, ends, strict=True)
+    ]
+
+
 def _packages(group: str) -> tuple[str, ...]:
-    return tuple(sorted(folder.name for folder in (_FOLDER / group).glob("*") if folder.is_dir()))
+    return tuple(sorted(file.stem for file in (_FOLDER / group).glob("*.txt")))
