@@ -26,7 +26,7 @@ from nbclient import NotebookClient
 from nbclient.exceptions import DeadKernelError
 
 from groundwork.files import write_if_changed
-from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
+from spinbook.graph.model import GraphEndpoint, GraphNode, GraphTopic, NodeGraph
 from spinbook.kernel.environment import DOMAIN_NOTE, EXECUTING, for_domain
 
 
@@ -55,21 +55,21 @@ class History:
 
         Ends that were connected at some time are, and a topic's rate is the last one counted.
         """
-        nodes = (SeenNode(name, first, last) for name, (first, last) in self._nodes.items())
+        nodes = (GraphNode(name, first, last) for name, (first, last) in self._nodes.items())
         topics = (
-            Topic(name, _ends(self._publishers[name]), _ends(self._subscriptions[name]), self._rates.get(name))
+            GraphTopic(name, _ends(self._publishers[name]), _ends(self._subscriptions[name]), self._rates.get(name))
             for name in sorted(self._publishers)
         )
         return NodeGraph(tuple(nodes), tuple(topics))
 
 
-def _merge(ends: dict[tuple[str, str], bool], more: tuple[End, ...]) -> None:
+def _merge(ends: dict[tuple[str, str], bool], more: tuple[GraphEndpoint, ...]) -> None:
     for end in more:
         ends[end.node, end.type] = end.connected or ends.get((end.node, end.type), False)
 
 
-def _ends(ends: dict[tuple[str, str], bool]) -> tuple[End, ...]:
-    return tuple(sorted(End(node, kind, connected) for (node, kind), connected in ends.items()))
+def _ends(ends: dict[tuple[str, str], bool]) -> tuple[GraphEndpoint, ...]:
+    return tuple(sorted(GraphEndpoint(node, kind, connected) for (node, kind), connected in ends.items()))
 
 
 #: Cells during which messages may be counted: no command and no snippet looks at the graph meanwhile.

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from ros_in_python.ros2.cli import CONTEXT, CommandError
-from spinbook.doctor.diagnosis import CHECKS, Check, Finding, State, diagnose, is_able, show
+from spinbook.doctor.diagnosis import CHECKS, MachineCheck, MachineFinding, State, diagnose, is_able, show
 
 
 @click.command()
@@ -47,7 +47,7 @@ def doctor(checks: tuple[str, ...], as_json: bool) -> None:
     sys.exit(0 if is_able(findings) else 1)
 
 
-def _with_progress(chosen: list[Check]) -> list[Finding]:
+def _with_progress(chosen: list[MachineCheck]) -> list[MachineFinding]:
     """Make the checks under a bar on stderr, which goes away at the end."""
     columns = (TextColumn("Examining"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"))
     console = Console(stderr=True)

@@ -33,7 +33,7 @@ class State(str, Enum):
 
 
 @dataclass(frozen=True)
-class Finding:
+class MachineFinding:
     """One thing that was looked at.
 
     `found` says what is there, with versions and paths. `fix` says what to do if something is wrong.
@@ -45,25 +45,25 @@ class Finding:
     fix: str = ""
 
 
-def ok(name: str, found: str) -> Finding:
+def ok(name: str, found: str) -> MachineFinding:
     """It works."""
-    return Finding(name, State.OK, found)
+    return MachineFinding(name, State.OK, found)
 
 
-def warning(name: str, found: str, fix: str) -> Finding:
+def warning(name: str, found: str, fix: str) -> MachineFinding:
     """It works, but not as well as it could."""
-    return Finding(name, State.WARNING, found, fix)
+    return MachineFinding(name, State.WARNING, found, fix)
 
 
-def missing(name: str, found: str, fix: str) -> Finding:
+def missing(name: str, found: str, fix: str) -> MachineFinding:
     """Something that is needed does not work."""
-    return Finding(name, State.MISSING, found, fix)
+    return MachineFinding(name, State.MISSING, found, fix)
 
 
 SIGNS = {State.OK: ("✓", "green"), State.WARNING: ("!", "yellow"), State.MISSING: ("✗", "red")}
 
 
-def show(console: Console, findings: Sequence[Finding]) -> None:
+def show(console: Console, findings: Sequence[MachineFinding]) -> None:
     """Print every finding, then what to do about those that are not well, then a line that sums up."""
     table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 1))
     table.add_column(width=1)
@@ -83,12 +83,12 @@ def show(console: Console, findings: Sequence[Finding]) -> None:
     console.print(_summary(findings), soft_wrap=True)
 
 
-def is_able(findings: Sequence[Finding]) -> bool:
+def is_able(findings: Sequence[MachineFinding]) -> bool:
     """Whether everything that is needed to build and grade works."""
     return all(finding.state is not State.MISSING for finding in findings)
 
 
-def _summary(findings: Sequence[Finding]) -> str:
+def _summary(findings: Sequence[MachineFinding]) -> str:
     amiss = sum(finding.state is State.MISSING for finding in findings)
     warnings = sum(finding.state is State.WARNING for finding in findings)
     also = f" ({warnings} {'warning' if warnings == 1 else 'warnings'})" if warnings else ""
@@ -103,7 +103,7 @@ def _with_tilde(text: str) -> str:
 
 
 @dataclass(frozen=True)
-class Check:
+class MachineCheck:
     """One thing to look at.
 
     `function` is what does it, as `module:name`; it is called with `name`. `seconds` is how long it may take.
@@ -122,24 +122,24 @@ _NODE = ("ros", "libraries", "middleware", "logs")
 
 
 CHECKS = (
-    Check("python", "Python", "spinbook.doctor.machine:examine_python"),
-    Check("folder", "Folder", "spinbook.doctor.machine:examine_folder"),
-    Check("libraries", "Library path", "spinbook.doctor.ros:examine_library_path"),
-    Check("ros", "ROS 2", "spinbook.doctor.ros:examine_ros_library", 30.0, ("libraries",)),
-    Check("middleware", "Middleware", "spinbook.doctor.middleware:examine_middleware", 30.0, ("ros",)),
-    Check("logs", "Log folder", "spinbook.doctor.middleware:examine_log_folder"),
-    Check("message", "A message", "spinbook.doctor.middleware:examine_message", 60.0, _NODE),
-    Check("environment", "ROS settings", "spinbook.doctor.ros:examine_ros_settings"),
-    Check("memory", "Shared memory", "spinbook.doctor.middleware:examine_shared_memory"),
-    Check("kernel", "Jupyter kernel", "spinbook.doctor.machine:examine_kernel", 60.0),
-    Check("colcon", "colcon", "spinbook.doctor.machine:examine_colcon", 90.0),
-    Check("compiler", "Compiler", "spinbook.doctor.machine:examine_compiler"),
-    Check("namespaces", "Namespaces", "spinbook.doctor.sandbox:examine_namespaces"),
-    Check("sandbox", "Sandbox", "spinbook.doctor.sandbox:examine_sandbox", 150.0, _NODE),
-    Check("bubblewrap", "bubblewrap", "spinbook.doctor.sandbox:examine_bubblewrap"),
-    Check("lockstep", "Lockstep", "spinbook.doctor.middleware:examine_lockstep", 30.0, ("ros",)),
-    Check("ros2", "ros2, turtlesim", "spinbook.doctor.machine:examine_ros2_command"),
-    Check("browser", "Browser", "spinbook.doctor.machine:examine_browser", 45.0),
+    MachineCheck("python", "Python", "spinbook.doctor.machine:examine_python"),
+    MachineCheck("folder", "Folder", "spinbook.doctor.machine:examine_folder"),
+    MachineCheck("libraries", "Library path", "spinbook.doctor.ros:examine_library_path"),
+    MachineCheck("ros", "ROS 2", "spinbook.doctor.ros:examine_ros_library", 30.0, ("libraries",)),
+    MachineCheck("middleware", "Middleware", "spinbook.doctor.middleware:examine_middleware", 30.0, ("ros",)),
+    MachineCheck("logs", "Log folder", "spinbook.doctor.middleware:examine_log_folder"),
+    MachineCheck("message", "A message", "spinbook.doctor.middleware:examine_message", 60.0, _NODE),
+    MachineCheck("environment", "ROS settings", "spinbook.doctor.ros:examine_ros_settings"),
+    MachineCheck("memory", "Shared memory", "spinbook.doctor.middleware:examine_shared_memory"),
+    MachineCheck("kernel", "Jupyter kernel", "spinbook.doctor.machine:examine_kernel", 60.0),
+    MachineCheck("colcon", "colcon", "spinbook.doctor.machine:examine_colcon", 90.0),
+    MachineCheck("compiler", "Compiler", "spinbook.doctor.machine:examine_compiler"),
+    MachineCheck("namespaces", "Namespaces", "spinbook.doctor.sandbox:examine_namespaces"),
+    MachineCheck("sandbox", "Sandbox", "spinbook.doctor.sandbox:examine_sandbox", 150.0, _NODE),
+    MachineCheck("bubblewrap", "bubblewrap", "spinbook.doctor.sandbox:examine_bubblewrap"),
+    MachineCheck("lockstep", "Lockstep", "spinbook.doctor.middleware:examine_lockstep", 30.0, ("ros",)),
+    MachineCheck("ros2", "ros2, turtlesim", "spinbook.doctor.machine:examine_ros2_command"),
+    MachineCheck("browser", "Browser", "spinbook.doctor.machine:examine_browser", 45.0),
 )
 
 
@@ -147,12 +147,12 @@ CHECKS = (
 _AT_ONCE = 4
 
 
-def diagnose(checks: Sequence[Check], done: Callable[[Finding], None]) -> list[Finding]:
+def diagnose(checks: Sequence[MachineCheck], done: Callable[[MachineFinding], None]) -> list[MachineFinding]:
     """The findings in the order of `checks`; `done` is called with each as it comes."""
 
-    started: dict[str, Future[Finding]] = {}
+    started: dict[str, Future[MachineFinding]] = {}
 
-    def one(check: Check, needed: list[Future[Finding]]) -> Finding:
+    def one(check: MachineCheck, needed: list[Future[MachineFinding]]) -> MachineFinding:
         amiss = [need.result().name for need in needed if need.result().state is State.MISSING]
         finding = missing(check.name, f"not tried, because of: {', '.join(amiss)}", "") if amiss else examine(check)
         done(finding)
@@ -165,7 +165,7 @@ def diagnose(checks: Sequence[Check], done: Callable[[Finding], None]) -> list[F
         return [future.result() for future in started.values()]
 
 
-def examine(check: Check) -> Finding:
+def examine(check: MachineCheck) -> MachineFinding:
     """Run one check, whatever happens to it."""
     argv = [sys.executable, "-m", "spinbook.doctor.diagnosis", check.function, check.name]
     try:
@@ -178,7 +178,7 @@ def examine(check: Check) -> Finding:
         )
     try:
         fields = json.loads(done.stdout)
-        return Finding(fields["name"], State(fields["state"]), fields["found"], fields["fix"])
+        return MachineFinding(fields["name"], State(fields["state"]), fields["found"], fields["fix"])
     except (ValueError, KeyError, TypeError):
         return missing(
             check.name, _how_it_ended(done.returncode, done.stderr), "See the message; docs/installing.md may help."

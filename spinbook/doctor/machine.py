@@ -17,12 +17,12 @@ from groundwork.child_process import run_program
 from interface_compiler import prefixes, shipped, toolchain
 from ros_in_python.ros2.executables import is_built_in, real_ros2
 from spinbook.doctor import python_build
-from spinbook.doctor.diagnosis import Finding, missing, ok, warning
+from spinbook.doctor.diagnosis import MachineFinding, missing, ok, warning
 
 OLDEST, NEWEST = (3, 10), (3, 14)
 
 
-def examine_python(name: str) -> Finding:
+def examine_python(name: str) -> MachineFinding:
     """Look at the Python that runs this: its version, and how it was compiled."""
     found = f"{platform.python_implementation()} {platform.python_version()}, {sys.executable}"
     if not (OLDEST <= sys.version_info[:2] <= NEWEST and platform.python_implementation() == "CPython"):
@@ -43,7 +43,7 @@ def _faster_build() -> str:
     )
 
 
-def examine_folder(name: str) -> Finding:
+def examine_folder(name: str) -> MachineFinding:
     """Look for characters that break colcon's shell scripts or the search paths."""
     places = (Path.cwd(), Path(sys.prefix))
     for place in places:
@@ -60,7 +60,7 @@ def examine_folder(name: str) -> Finding:
 _WITHOUT = "Only courses that define interfaces of their own need them; a handout's wheels need no compiler."
 
 
-def examine_compiler(name: str) -> Finding:
+def examine_compiler(name: str) -> MachineFinding:
     """Look for both, and for the packages that set-up compiles with them."""
     if ros := toolchain.sourced_ros():
         return ok(name, f"colcon compiles interfaces, with the ROS 2 in {ros}")
@@ -100,7 +100,7 @@ setup(name='{_NAME}', version='0.0.0', packages=['{_NAME}'],
 _TOO_NEW = 80
 
 
-def examine_colcon(name: str) -> Finding:
+def examine_colcon(name: str) -> MachineFinding:
     """Build a package of one module with `--symlink-install`."""
     try:
         colcon, setuptools = version("colcon-core"), version("setuptools")
@@ -163,7 +163,7 @@ _PAGE = "data:text/html,<title>spinbook</title>"
 _DEADLINE_S = 30.0
 
 
-def examine_browser(name: str) -> Finding:
+def examine_browser(name: str) -> MachineFinding:
     """Open a page in it, without a window."""
     path = next(filter(None, map(shutil.which, _NAMES)), None)
     if path is None:
@@ -182,7 +182,7 @@ def examine_browser(name: str) -> Finding:
     return ok(name, path)
 
 
-def examine_ros2_command(name: str) -> Finding:
+def examine_ros2_command(name: str) -> MachineFinding:
     """Look for them. The chapters run without them too, so their absence is never a fault."""
     ros2 = real_ros2([], os.environ)
     prefix = prefixes.prefix_of("turtlesim", prefixes.installed())
@@ -198,7 +198,7 @@ _KERNEL_DEADLINE_S = 45.0
 _CELL = "%load_ext spinbook\nimport sys; print(sys.prefix)"
 
 
-def examine_kernel(name: str) -> Finding:
+def examine_kernel(name: str) -> MachineFinding:
     """Start the kernel that the notebooks name, and run a cell in it."""
     try:
         from jupyter_client.manager import start_new_kernel

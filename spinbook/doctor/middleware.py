@@ -14,7 +14,7 @@ from pathlib import Path
 
 from rmw_lockstep import IDENTIFIER
 from rmw_lockstep.library import Library, library
-from spinbook.doctor.diagnosis import Finding, missing, ok, warning
+from spinbook.doctor.diagnosis import MachineFinding, missing, ok, warning
 from spinbook.kernel.environment import claim_domain, for_domain, missing_middleware
 
 #: What rclpy exits with where RMW_IMPLEMENTATION can't be loaded.
@@ -22,7 +22,7 @@ NOT_LOADED = 102
 _NAME_IT = "from rclpy.utilities import get_rmw_implementation_identifier as name; print(name())"
 
 
-def examine_middleware(name: str) -> Finding:
+def examine_middleware(name: str) -> MachineFinding:
     """Load the middleware in a process of its own: it ends the process where it is absent."""
     wanted = os.environ.get("RMW_IMPLEMENTATION", "")
     absent = missing_middleware(os.environ)
@@ -51,7 +51,7 @@ _NEEDED = "Without it nothing can be graded or checked."
 _NAME_LOCKSTEP = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
 
 
-def examine_lockstep(name: str) -> Finding:
+def examine_lockstep(name: str) -> MachineFinding:
     """Let rclpy load it in a process of its own, and name it."""
     found = library()
     if not isinstance(found, Library):
@@ -80,7 +80,7 @@ _ENOUGH = 32 * 2**20
 _NOT_NEEDED = "Notebooks and the grader don't need it; nodes in your terminals print warnings without it."
 
 
-def examine_shared_memory(name: str) -> Finding:
+def examine_shared_memory(name: str) -> MachineFinding:
     """Write there, and look at how much is free."""
     place = Path("/dev/shm")
     try:
@@ -100,7 +100,7 @@ def examine_shared_memory(name: str) -> Finding:
     return ok(name, found)
 
 
-def examine_log_folder(name: str) -> Finding:
+def examine_log_folder(name: str) -> MachineFinding:
     """Write a file where ROS 2 would: ROS_LOG_DIR, else ROS_HOME/log, else ~/.ros/log."""
     chosen, variable = _place()
     if chosen is None:
@@ -128,7 +128,7 @@ def _place() -> tuple[Path | None, str]:
     return None, "HOME"
 
 
-def _fallback(name: str, reason: str) -> Finding:
+def _fallback(name: str, reason: str) -> MachineFinding:
     """Notebooks and `spinbook ros2` then write below the folder for temporary files, if that can be written."""
     try:
         with tempfile.TemporaryFile():
@@ -147,7 +147,7 @@ def _fallback(name: str, reason: str) -> Finding:
 _ARRIVES_WITHIN_S = 30.0
 
 
-def examine_message(name: str) -> Finding:
+def examine_message(name: str) -> MachineFinding:
     """Start a publisher and a subscriber as processes, in a ROS domain of their own, on this machine's loopback."""
     inherited = dict(os.environ)
     if missing_middleware(inherited):

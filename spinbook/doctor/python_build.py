@@ -23,7 +23,7 @@ _PATIENCE_S = 20.0
 
 
 @dataclass(frozen=True)
-class Build:
+class PythonBuild:
     """A Python. An environment can be made from it if it is `complete`: with venv, ensurepip and Python.h."""
 
     executable: str
@@ -32,14 +32,14 @@ class Build:
     complete: bool
 
 
-def this_build() -> Build:
+def this_build() -> PythonBuild:
     """The Python that runs this."""
     modules = all(find_spec(module) for module in ("venv", "ensurepip"))
     headers = Path(sysconfig.get_path("include"), "Python.h").is_file()
     # In an active environment, the Python that it was made from.
     executable = getattr(sys, "_base_executable", sys.executable)
     version = "{}.{}".format(*sys.version_info[:2])
-    return Build(executable, version, is_optimized(), modules and headers)
+    return PythonBuild(executable, version, is_optimized(), modules and headers)
 
 
 def is_optimized() -> bool:
@@ -50,7 +50,7 @@ def is_optimized() -> bool:
     return sys.base_prefix == "/usr" or "--enable-optimizations" in str(sysconfig.get_config_var("CONFIG_ARGS"))
 
 
-def faster_build(this: Build, path: str) -> str | None:
+def faster_build(this: PythonBuild, path: str) -> str | None:
     """Return the first Python on `path` that is a faster build of the same version as `this`; None if there is none."""
     if this.optimized:
         return None
@@ -58,7 +58,7 @@ def faster_build(this: Build, path: str) -> str | None:
     return next((other.executable for other in others if other and other.optimized and other.complete), None)
 
 
-def _described(folder: str, version: str) -> Build | None:
+def _described(folder: str, version: str) -> PythonBuild | None:
     """The Python of this version in a folder; None if it has none that answers."""
     program = Path(folder, f"python{version}")
     if not program.is_file():
@@ -67,7 +67,7 @@ def _described(folder: str, version: str) -> Build | None:
         answer = subprocess.run(
             [program, "-I", __file__, "--describe"], capture_output=True, timeout=_PATIENCE_S, check=True
         )
-        return Build(**json.loads(answer.stdout))
+        return PythonBuild(**json.loads(answer.stdout))
     except (OSError, subprocess.SubprocessError, ValueError, TypeError):
         return None
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from ros_in_python.ros2.executables import GUARD
-from spinbook.doctor.diagnosis import Finding, missing, ok, warning
+from spinbook.doctor.diagnosis import MachineFinding, missing, ok, warning
 from spinbook.doctor.ros_origin import NoRos, ros_origin, this_machine
 from spinbook.kernel.environment import HIGHEST, LOOPBACK_PROFILE
 
@@ -19,7 +19,7 @@ MESSAGES = ("builtin_interfaces", "geometry_msgs", "rosgraph_msgs", "sensor_msgs
 _SET_UP_AGAIN = "Set the environment up again, in the terminal that you want to use: make setup"
 
 
-def examine_ros_library(name: str) -> Finding:
+def examine_ros_library(name: str) -> MachineFinding:
     """Import rclpy with its compiled part and a type support, and compare with what else is installed."""
     # A middleware that is not installed would end this process. It is a matter of its own: see middleware.py.
     os.environ.pop("RMW_IMPLEMENTATION", None)
@@ -86,7 +86,7 @@ _WATCHED = (
 )
 
 
-def examine_ros_settings(name: str) -> Finding:
+def examine_ros_settings(name: str) -> MachineFinding:
     """Look at the variables that decide which nodes see one another."""
     surprises = [*_about_domain(), *_about_profiles(), *_about_discovery()]
     if surprises:
@@ -146,7 +146,7 @@ def _about_discovery() -> list[tuple[str, str]]:
 # variable. Where the guard is inherited without the path, or from another environment, the second start is skipped.
 
 
-def examine_library_path(name: str) -> Finding:
+def examine_library_path(name: str) -> MachineFinding:
     """Compare LD_LIBRARY_PATH with where this environment's libraries are."""
     entries = [Path(entry) for entry in os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep) if entry]
     with_ros = list(dict.fromkeys(entry for entry in entries if (entry / "librcl.so").exists()))

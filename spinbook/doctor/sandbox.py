@@ -7,7 +7,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from spinbook.doctor.diagnosis import Finding, missing, ok, warning
+from spinbook.doctor.diagnosis import MachineFinding, missing, ok, warning
 
 _ALLOW = (
     "Install bubblewrap (sudo apt-get install bubblewrap) and allow namespaces (see the finding about them); "
@@ -15,7 +15,7 @@ _ALLOW = (
 )
 
 
-def examine_sandbox(name: str) -> Finding:
+def examine_sandbox(name: str) -> MachineFinding:
     """Ask the grader, which runs a program in each of its sandboxes."""
     try:
         from grader.sandbox.isolation import available
@@ -40,7 +40,7 @@ def examine_sandbox(name: str) -> Finding:
 _ALSO_WITHOUT = "The grader makes the same namespaces without it, if this user may (see the sandbox finding)."
 
 
-def examine_bubblewrap(name: str) -> Finding:
+def examine_bubblewrap(name: str) -> MachineFinding:
     """Run `true` in it."""
     path = shutil.which("bwrap")
     if path is None:
@@ -67,7 +67,7 @@ _KNOBS = (
 )
 
 
-def examine_namespaces(name: str) -> Finding:
+def examine_namespaces(name: str) -> MachineFinding:
     """Make a user, a network, a mount, an IPC and a process namespace, with util-linux' `unshare`."""
     if shutil.which("unshare") is None:
         return warning(

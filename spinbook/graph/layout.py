@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from spinbook.graph.model import NodeGraph, Topic
+from spinbook.graph.model import GraphTopic, NodeGraph
 
 #: More topics than this that one node has for itself alone are drawn as one box.
 _ALONE = 2
@@ -54,14 +54,14 @@ def drawings(graph: NodeGraph) -> list[Drawing]:
 
 
 @dataclass(frozen=True)
-class _Drawn:
+class _TopicBox:
     box: Box
     arrows: tuple[Arrow, ...]
 
 
-def _folded(topics: Iterable[Topic]) -> Iterator[_Drawn]:
+def _folded(topics: Iterable[GraphTopic]) -> Iterator[_TopicBox]:
     """The topics as boxes; those that a node has for itself alone as one, where they are many."""
-    alone: dict[tuple[str, bool], list[Topic]] = {}
+    alone: dict[tuple[str, bool], list[GraphTopic]] = {}
     for topic in topics:
         nodes = {end.node for end in (*topic.publishers, *topic.subscriptions)}
         if len(nodes) == 1 and not (topic.publishers and topic.subscriptions):
@@ -76,10 +76,10 @@ def _folded(topics: Iterable[Topic]) -> Iterator[_Drawn]:
         names = ", ".join(topic.name for topic in own)
         name = f"{node} {publishes}"
         box = Box("topic", name, f"{len(own)} topics", (what,), f"{len(own)} topics {what}: {names}")
-        yield _Drawn(box, (Arrow(node, name, publishes, False),))
+        yield _TopicBox(box, (Arrow(node, name, publishes, False),))
 
 
-def _drawn(topic: Topic) -> _Drawn:
+def _drawn(topic: GraphTopic) -> _TopicBox:
     small = [*topic.types]
     if topic.rate_hz is not None:
         small.append(f"{topic.rate_hz:g} Hz")
@@ -88,10 +88,10 @@ def _drawn(topic: Topic) -> _Drawn:
         for publishes, ends in ((True, topic.publishers), (False, topic.subscriptions))
         for node in dict.fromkeys(end.node for end in ends)
     ]
-    return _Drawn(Box("topic", topic.name, topic.name, tuple(small)), tuple(arrows))
+    return _TopicBox(Box("topic", topic.name, topic.name, tuple(small)), tuple(arrows))
 
 
-def _groups(graph: NodeGraph, topics: list[_Drawn]) -> list[set[str]]:
+def _groups(graph: NodeGraph, topics: list[_TopicBox]) -> list[set[str]]:
     """The names of nodes that are connected by topics, directly or by way of others."""
     group = {node.name: {node.name} for node in graph.nodes}
     for topic in topics:
@@ -103,7 +103,7 @@ def _groups(graph: NodeGraph, topics: list[_Drawn]) -> list[set[str]]:
     return list({id(each): each for each in group.values()}.values())
 
 
-def _drawing(graph: NodeGraph, topics: list[_Drawn], names: set[str]) -> Drawing:
+def _drawing(graph: NodeGraph, topics: list[_TopicBox], names: set[str]) -> Drawing:
     nodes = [Box("node", node.name, _short(node.name)) for node in graph.nodes if node.name in names]
     own = [topic for topic in topics if any(arrow.node in names for arrow in topic.arrows)]
     arrows = [arrow for topic in own for arrow in topic.arrows if arrow.node in names]
@@ -130,7 +130,7 @@ _Key = tuple[str, str]
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedBox:
     """A box: its upper left corner and size (px), and its lines as they are broken."""
 
     box: Box
@@ -148,7 +148,7 @@ class Placed:
 
 
 @dataclass(frozen=True)
-class Line:
+class PlacedArrow:
     """An arrow from the right side of a node at (x1, y1) to the left side of a topic at (x2, y2)."""
 
     arrow: Arrow
@@ -159,16 +159,16 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Layout:
+class GraphLayout:
     """A drawing with its places; all within `width` and `height` (px)."""
 
-    boxes: tuple[Placed, ...]
-    lines: tuple[Line, ...]
+    boxes: tuple[PlacedBox, ...]
+    lines: tuple[PlacedArrow, ...]
     width: float
     height: float
 
 
-def layout(drawings: Sequence[Drawing]) -> list[Layout]:
+def layout(drawings: Sequence[Drawing]) -> list[GraphLayout]:
     """Place the boxes of each drawing, in columns of the same width; the same for the same drawings."""
     sizes = {box: _size(box) for drawing in drawings for box in (*drawing.nodes, *drawing.topics)}
     widths = {
@@ -178,23 +178,23 @@ def layout(drawings: Sequence[Drawing]) -> list[Layout]:
     return [_place(drawing, sizes, widths) for drawing in drawings]
 
 
-def _place(drawing: Drawing, sizes: Mapping[Box, _Size], widths: Mapping[str, float]) -> Layout:
+def _place(drawing: Drawing, sizes: Mapping[Box, _Size], widths: Mapping[str, float]) -> GraphLayout:
     layers = _layers(drawing)
     left = {"node": 0.0, "topic": widths["node"] + _GAP_X}
     bottom = {"node": 0.0, "topic": 0.0}
-    placed: dict[_Key, Placed] = {}
+    placed: dict[_Key, PlacedBox] = {}
     for number in range(max(layers.values()) + 1):
         here = [box for box in (*drawing.nodes, *drawing.topics) if layers[box.kind, box.name] == number]
         wanted = {box: _wanted(box, drawing.arrows, placed) for box in here}
         for box in sorted(here, key=lambda box: (wanted[box], here.index(box))):
             size = sizes[box]
             y = max(bottom[box.kind], wanted[box] - size.height / 2)
-            at = Placed(box, left[box.kind], y, widths[box.kind], size.height, size.lines, size.small)
+            at = PlacedBox(box, left[box.kind], y, widths[box.kind], size.height, size.lines, size.small)
             placed[box.kind, box.name] = at
             bottom[box.kind] = y + size.height + _GAP_Y
     width = max(each.x + each.width for each in placed.values())
     height = max(each.y + each.height for each in placed.values())
-    return Layout(tuple(placed.values()), tuple(_lines(drawing.arrows, placed)), width, height)
+    return GraphLayout(tuple(placed.values()), tuple(_lines(drawing.arrows, placed)), width, height)
 
 
 def _layers(drawing: Drawing) -> Mapping[_Key, int]:
@@ -224,7 +224,7 @@ def _layers(drawing: Drawing) -> Mapping[_Key, int]:
     return layers
 
 
-def _wanted(box: Box, arrows: tuple[Arrow, ...], placed: Mapping[_Key, Placed]) -> float:
+def _wanted(box: Box, arrows: tuple[Arrow, ...], placed: Mapping[_Key, PlacedBox]) -> float:
     """The height at which a box's middle would best be: that of those it is connected with and that stand already."""
     heights = []
     for arrow in arrows:
@@ -275,7 +275,7 @@ def _cut(line: str, length: int) -> list[str]:
     return [line[start : start + length] for start in range(0, len(line), length)]
 
 
-def _lines(arrows: tuple[Arrow, ...], placed: Mapping[_Key, Placed]) -> list[Line]:
+def _lines(arrows: tuple[Arrow, ...], placed: Mapping[_Key, PlacedBox]) -> list[PlacedArrow]:
     """The arrows, each with a place of its own on the sides of its boxes, in the order that crosses least."""
 
     def height(kind: str, name: str, arrow: Arrow) -> float:
@@ -290,5 +290,5 @@ def _lines(arrows: tuple[Arrow, ...], placed: Mapping[_Key, Placed]) -> list[Lin
     for arrow in arrows:
         node, topic = placed["node", arrow.node], placed["topic", arrow.topic]
         y1, y2 = height("node", arrow.node, arrow), height("topic", arrow.topic, arrow)
-        lines.append(Line(arrow, node.x + node.width, y1, topic.x, y2))
+        lines.append(PlacedArrow(arrow, node.x + node.width, y1, topic.x, y2))
     return lines

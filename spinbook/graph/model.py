@@ -8,7 +8,7 @@ from typing import Any
 
 
 @dataclass(frozen=True, order=True)
-class End:
+class GraphEndpoint:
     """A node's publisher or subscription on a topic.
 
     `type` is "package/msg/Name". `connected` is False if there is no matching end: it has another type, its QoS does
@@ -21,12 +21,12 @@ class End:
 
 
 @dataclass(frozen=True, order=True)
-class Topic:
+class GraphTopic:
     """A topic with its ends, a node named once a side. `rate_hz` is rounded, None if it was not measured."""
 
     name: str
-    publishers: tuple[End, ...]
-    subscriptions: tuple[End, ...]
+    publishers: tuple[GraphEndpoint, ...]
+    subscriptions: tuple[GraphEndpoint, ...]
     rate_hz: float | None = None
 
     @property
@@ -36,7 +36,7 @@ class Topic:
 
 
 @dataclass(frozen=True, order=True)
-class SeenNode:
+class GraphNode:
     """A node by its full name, and the first and the last cell (their ids) at whose end it was there, if known."""
 
     name: str
@@ -51,8 +51,8 @@ class NodeGraph:
     Hidden nodes and what every node has (/rosout …) are left out.
     """
 
-    nodes: tuple[SeenNode, ...] = ()
-    topics: tuple[Topic, ...] = ()
+    nodes: tuple[GraphNode, ...] = ()
+    topics: tuple[GraphTopic, ...] = ()
 
     def to_json(self) -> str:
         """As JSON that people can read; the same for the same graph."""
@@ -68,13 +68,13 @@ class NodeGraph:
         try:
             message = json.loads(text)
             return cls(
-                tuple(SeenNode(**node) for node in message["nodes"]),
+                tuple(GraphNode(**node) for node in message["nodes"]),
                 tuple(_topic(topic) for topic in message["topics"]),
             )
         except (KeyError, TypeError, AttributeError) as error:
             raise ValueError(f"not a node graph: {error!r}") from error
 
 
-def _topic(text: dict[str, Any]) -> Topic:
-    ends = [tuple(End(**end) for end in text[side]) for side in ("publishers", "subscriptions")]
-    return Topic(text["name"], ends[0], ends[1], text["rate_hz"])
+def _topic(text: dict[str, Any]) -> GraphTopic:
+    ends = [tuple(GraphEndpoint(**end) for end in text[side]) for side in ("publishers", "subscriptions")]
+    return GraphTopic(text["name"], ends[0], ends[1], text["rate_hz"])

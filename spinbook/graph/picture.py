@@ -11,7 +11,7 @@ import hashlib
 from collections.abc import Iterable
 from html import escape
 
-from spinbook.graph.layout import NAME_LINE, SMALL_LINE, Drawing, Layout, Line, Placed, drawings, layout
+from spinbook.graph.layout import NAME_LINE, SMALL_LINE, Drawing, GraphLayout, PlacedArrow, PlacedBox, drawings, layout
 from spinbook.graph.model import NodeGraph
 
 #: Room around a drawing, and between two (px).
@@ -92,11 +92,11 @@ def _element(content: str, width: float, height: float, words: str, standalone: 
     )
 
 
-def _drawn(placed: Layout) -> str:
+def _drawn(placed: GraphLayout) -> str:
     return "".join([*map(_arrow, placed.lines), *map(_box, placed.boxes)])
 
 
-def _arrow(line: Line) -> str:
+def _arrow(line: PlacedArrow) -> str:
     x1, y1, x2, y2 = line.x1, line.y1, line.x2, line.y2
     bend = (x2 - x1) / 2
     # The head is at the topic of a publisher, at the node of a subscription.
@@ -115,7 +115,7 @@ def _arrow(line: Line) -> str:
     )
 
 
-def _box(placed: Placed) -> str:
+def _box(placed: PlacedBox) -> str:
     node = placed.box.kind == "node"
     colour, radius = (_NODE, min(placed.height / 2, 17)) if node else (_TOPIC, 3)
     shape = (

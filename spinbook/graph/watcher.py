@@ -34,7 +34,7 @@ from ros_in_python.ros2.domain import domain_id, hears_other_hosts, participants
 from ros_in_python.ros2.graph import LOOK, GraphView
 from ros_in_python.ros2.interfaces import message_class
 from ros_in_python.ros2.opening import prepare
-from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
+from spinbook.graph.model import GraphEndpoint, GraphNode, GraphTopic, NodeGraph
 
 #: A rate is measured over at least this long (s).
 ENOUGH_S = 0.8
@@ -53,7 +53,7 @@ class _Stream:
 
 
 @dataclass
-class Counted:
+class MessageCounter:
     """The messages received on a topic with this many publishers, kept apart by publisher.
 
     Each publisher numbers its messages, so that what was missed in between is counted too (RTPS 2.5, 8.3.5.4), and
@@ -118,7 +118,7 @@ class GraphWatcher(GraphView):
         super().__init__(node_name=f"_spinbook_graph_{os.getpid()}", spin_time=None, use_sim_time=False)
         self._known: tuple[Any, ...] = ()
         self._silent = 0
-        self._counting: dict[str, tuple[Subscription, Counted, float]] = {}
+        self._counting: dict[str, tuple[Subscription, MessageCounter, float]] = {}
         #: Topic -> how many publishers it had when it was counted, and its rate.
         self._rates: dict[str, tuple[int, float]] = {}
 
@@ -156,12 +156,12 @@ class GraphWatcher(GraphView):
         nodes = {node.full_name for node in self.nodes() if not node.hidden}
         topics = (self._topic(name.name) for name in self.topics() if _is_shown(name.name))
         shown = sorted(topic for topic in topics if topic.publishers or topic.subscriptions)
-        return NodeGraph(tuple(SeenNode(name) for name in sorted(nodes)), tuple(shown))
+        return NodeGraph(tuple(GraphNode(name) for name in sorted(nodes)), tuple(shown))
 
-    def _topic(self, name: str) -> Topic:
+    def _topic(self, name: str) -> GraphTopic:
         publishers, subscriptions = (_shown(ends) for ends in (self.publishers(name), self.subscriptions(name)))
         _, rate = self._rates.get(name, (0, None))
-        return Topic(name, _ends(publishers, subscriptions), _ends(subscriptions, publishers), rate)
+        return GraphTopic(name, _ends(publishers, subscriptions), _ends(subscriptions, publishers), rate)
 
     # Counting
 
@@ -185,7 +185,7 @@ class GraphWatcher(GraphView):
         heard = unheard or _shown(self.subscriptions(name))
         if not publishers or not heard or self._rates.get(name, (0, 0))[0] >= len(publishers):
             return
-        counted = Counted(len(publishers))
+        counted = MessageCounter(len(publishers))
         try:
             kind = message_class(publishers[0].topic_type)
         except CommandError:
@@ -193,7 +193,7 @@ class GraphWatcher(GraphView):
         subscription = self.node.create_subscription(kind, name, _callback(counted), _HEARS_ALL, raw=True)
         self._counting[name] = (subscription, counted, time.monotonic() + _COUNTING_S)
 
-    def _conclude(self, name: str, counted: Counted) -> None:
+    def _conclude(self, name: str, counted: MessageCounter) -> None:
         subscription, *_ = self._counting.pop(name)
         self.node.destroy_subscription(subscription)
         rate = counted.rate_hz()
@@ -206,7 +206,7 @@ class GraphWatcher(GraphView):
             self._conclude(name, counted)
 
 
-def _callback(counted: Counted) -> Any:
+def _callback(counted: MessageCounter) -> Any:
     """A callback of the form to which rclpy passes the message's information, too: rclpy looks at the parameters."""
 
     def callback(data: bytes, information: dict[str, int]) -> None:
@@ -228,13 +228,13 @@ def _node(end: TopicEndpointInfo) -> str:
     return f"{end.node_namespace.rstrip('/')}/{end.node_name}"
 
 
-def _ends(ends: list[TopicEndpointInfo], others: list[TopicEndpointInfo]) -> tuple[End, ...]:
+def _ends(ends: list[TopicEndpointInfo], others: list[TopicEndpointInfo]) -> tuple[GraphEndpoint, ...]:
     """One end a node and type, by node; it is connected if any of its ends is to any of the others'."""
     connected: dict[tuple[str, str], bool] = {}
     for end in ends:
         key = (_node(end), end.topic_type)
         connected[key] = connected.get(key, False) or any(_fit(end, other) for other in others)
-    return tuple(sorted(End(node, kind, fits) for (node, kind), fits in connected.items()))
+    return tuple(sorted(GraphEndpoint(node, kind, fits) for (node, kind), fits in connected.items()))
 
 
 def _fit(one: TopicEndpointInfo, other: TopicEndpointInfo) -> bool:

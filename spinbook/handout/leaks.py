@@ -40,7 +40,7 @@ class Secret:
 
 
 #: A line's number, and the line without spaces.
-Line = tuple[int, str]
+NumberedLine = tuple[int, str]
 
 
 def secrets(exercise: Exercise, taught: str, others: str = "") -> list[Secret]:
@@ -134,24 +134,24 @@ def bare(text: str) -> str:
     return "".join(text.split())
 
 
-def _pieces(what: str, place: str, lines: list[Line], known: str) -> list[Secret]:
+def _pieces(what: str, place: str, lines: list[NumberedLine], known: str) -> list[Secret]:
     long = [(number, line) for number, line in lines if len(line) >= _ONE_LINE]
     return [Secret(what, line, f"{place}:{number}") for number, line in long if line not in known]
 
 
-def _windows(what: str, place: str, lines: list[Line]) -> list[Secret]:
+def _windows(what: str, place: str, lines: list[NumberedLine]) -> list[Secret]:
     windows = [lines[i : i + _LINES] for i in range(max(1, len(lines) - _LINES + 1)) if lines]
     texts = [("".join(line for _, line in window), window[0][0]) for window in windows]
     return [Secret(what, text, f"{place}:{number}") for text, number in texts if len(text) >= _CHARACTERS]
 
 
-def _solved(source: str) -> Iterator[list[Line]]:
+def _solved(source: str) -> Iterator[list[NumberedLine]]:
     """Yield the lines of each block between markers, without spaces."""
     for block in hidden_blocks(source):
         yield [(number, bare(line)) for number, line in block if line.strip()]
 
 
-def _lines(text: str) -> list[Line]:
+def _lines(text: str) -> list[NumberedLine]:
     """Return the lines of a file's text that contain more than an import, without spaces."""
     lines = enumerate(text.splitlines(), start=1)
     return [

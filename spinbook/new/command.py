@@ -9,7 +9,7 @@ import click
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from spinbook.course.course import find_course
-from spinbook.new.kind import Kind
+from spinbook.new.kind import ExerciseKind
 from spinbook.new.writing import (
     BY_NAME,
     EXERCISE,
@@ -63,7 +63,7 @@ def _listed() -> str:
     return "\n".join(f"  {kind.name:<15} {kind.summary}" for kind in KINDS)
 
 
-def _kind(context: click.Context, parameter: click.Parameter, name: str | None) -> Kind | None:
+def _kind(context: click.Context, parameter: click.Parameter, name: str | None) -> ExerciseKind | None:
     if name is not None and name not in BY_NAME:
         raise click.BadParameter(f"There is no kind {name!r}. These are the kinds:\n{_listed()}")
     return BY_NAME[name] if name is not None else None
@@ -77,7 +77,9 @@ def _kind(context: click.Context, parameter: click.Parameter, name: str | None) 
 )
 @click.option("--solution", metavar="NAME", help="Write a first solution.py for an exercise, from its exercise.toml.")
 @click.option("--title", help="The title of the course or the exercise.  [default: its name, in words]")
-def new(course: Path | None, exercise: str | None, kind: Kind | None, solution: str | None, title: str | None) -> None:
+def new(
+    course: Path | None, exercise: str | None, kind: ExerciseKind | None, solution: str | None, title: str | None
+) -> None:
     """Make a small course of your own, or one more exercise, that you can build, check and grade at once.
 
     \b
@@ -108,7 +110,7 @@ def new(course: Path | None, exercise: str | None, kind: Kind | None, solution: 
     _new_exercise(exercise, kind or default_kind(), title)
 
 
-def _new_exercise(exercise: str, kind: Kind, title: str | None) -> None:
+def _new_exercise(exercise: str, kind: ExerciseKind, title: str | None) -> None:
     root = find_course(Path.cwd()).root
     name = exercise_name(exercise, root)
     title = title_of(title or words(name), root / "exercises" / name)

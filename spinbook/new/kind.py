@@ -22,7 +22,7 @@ _TITLE = re.compile(r'\w+ title="([^"]+)"')
 
 
 @dataclass(frozen=True)
-class Kind:
+class ExerciseKind:
     """One kind of exercise; `source` is its file. Its first check is the one on which the others depend."""
 
     source: Path
@@ -55,9 +55,9 @@ class Kind:
         return {_path(part, exercise): templates.get_template(part).render(names) for part in parts}
 
 
-def kinds() -> tuple[Kind, ...]:
+def kinds() -> tuple[ExerciseKind, ...]:
     """Return all kinds by their names; none in an installation without templates."""
-    return tuple(Kind(source) for source in sorted(_FOLDER.glob("*.md")))
+    return tuple(ExerciseKind(source) for source in sorted(_FOLDER.glob("*.md")))
 
 
 def _parts(source: Path) -> Iterator[tuple[str, str]]:

@@ -14,7 +14,7 @@ from pathlib import Path
 from grader.exercise.exercise import Exercise
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem
-from spinbook.new.kind import Kind, kinds
+from spinbook.new.kind import ExerciseKind, kinds
 from spinbook.new.skeleton import skeleton
 from spinbook.problem import SpinbookError
 
@@ -26,7 +26,7 @@ KINDS = kinds()
 BY_NAME = {kind.name: kind for kind in KINDS}
 
 
-def default_kind() -> Kind:
+def default_kind() -> ExerciseKind:
     """Return the kind that `spinbook new --exercise NAME` makes. Raises `SpinbookError` if there are no kinds here."""
     if not KINDS:
         raise _without_templates()
@@ -105,7 +105,7 @@ def write_course(folder: Path, title: str, package: str) -> None:
     _put(_filled(COURSE, names), folder)
 
 
-def write_exercise(course: Path, name: str, title: str, kind: Kind) -> None:
+def write_exercise(course: Path, name: str, title: str, kind: ExerciseKind) -> None:
     """Make an exercise of a kind, and its solutions, in a course. Raises `SpinbookError` if its folder exists."""
     folders = {part: course / part / name for part in ("exercises", "solutions")}
     for folder in folders.values():

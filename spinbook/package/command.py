@@ -160,7 +160,7 @@ def package(start: Path, workspace: Path | None) -> None:
 
 
 @dataclass(frozen=True)
-class Sources:
+class PackageSources:
     """What a package is written from, and the folder where its workspace goes.
 
     `interfaces` are the names of the packages that `definitions` make; `files` are launch and parameter files.
@@ -179,9 +179,9 @@ def _is_course(start: Path) -> bool:
     return any((place / FILE).is_file() for place in (folder, *folder.parents))
 
 
-def _of_course(course: Course) -> Sources:
+def _of_course(course: Course) -> PackageSources:
     interfaces = checked(course)
-    return Sources(
+    return PackageSources(
         course.root,
         course.package,
         course_modules(course),
@@ -191,12 +191,12 @@ def _of_course(course: Course) -> Sources:
     )
 
 
-def _of_notebooks(folder: Path) -> Sources:
+def _of_notebooks(folder: Path) -> PackageSources:
     read = read_notebooks(folder)
     assert read.package is not None
     modules = [read.modules[name] for name in sorted(read.modules)]
     definitions = tuple(read.definitions.values())
-    return Sources(folder, read.package, modules, definitions, sorted({item.package for item in definitions}))
+    return PackageSources(folder, read.package, modules, definitions, sorted({item.package for item in definitions}))
 
 
 def course_modules(course: Course) -> list[Module]:

@@ -27,7 +27,7 @@ from spinbook.handout.wheels import interface_wheels, package_of
 from spinbook.problem import SpinbookError
 from spinbook.site import page as names
 from spinbook.site.chapter_page import ExecutedNotebook, ExerciseCard, as_text, chapter_notebook, stills
-from spinbook.site.drawing import CanNotDrawError, Picture, draw, drawing_files, drawing_html
+from spinbook.site.drawing import DrawingError, Picture, draw, drawing_files, drawing_html
 from spinbook.site.exercise_page import exercise_markdown, public_checks
 from spinbook.site.home_page import about_markdown, home_chapters, home_drawing, home_log, home_pictures
 from spinbook.site.notebooks import branch_files, launch_notebook, openers, requirement
@@ -39,7 +39,7 @@ DOWNLOADS = "downloads"
 
 
 @dataclass
-class Contents:
+class SiteContents:
     """The site before it is built.
 
     `pages` are in reading order, the home page first. `pictures` are those that the text shows: path in the site ->
@@ -77,12 +77,12 @@ class _Drawings:
         return drawing_html(code, self.pictures.get(code), "../")
 
 
-def read_contents(course: Course) -> Contents:
+def read_contents(course: Course) -> SiteContents:
     """Read everything that the site shows. Raises SpinbookError if a chapter or an exercise can't be shown."""
     chapters = _chapters(course)
     exercises = _exercises(course, chapters)
     repository = repository_of(course.root, course.repository)
-    contents = Contents()
+    contents = SiteContents()
     links = Links(_pages_of_files(course, exercises), repository, anchors=_anchors(course))
     drawings = _drawn(course, chapters, exercises, links, contents)
     _glossary(course, contents)
@@ -158,14 +158,14 @@ def _drawn(
     chapters: list[Chapter],
     exercises: Mapping[str, Exercise],
     links: Links,
-    contents: Contents,
+    contents: SiteContents,
 ) -> _Drawings:
     drawings = _Drawings()
     for text in [cell.source for c in chapters for cell in c.cells] + [e.task for e in exercises.values()]:
         rich(text, links, "", "", drawings.note)
     try:
         drawings.pictures = draw(list(drawings.codes), course.build_folder / ".cache" / "drawings")
-    except CanNotDrawError as error:
+    except DrawingError as error:
         found = f"mermaid drawings are shown in words, because {error}."
         fix = "Everything else is fine. Fix this, then build the site again."
         contents.problems.append(Problem(course.chapters[0], None, found, fix, Severity.WARNING))
@@ -178,7 +178,7 @@ def _chapter(
     exercises: Mapping[str, Exercise],
     links: Links,
     drawings: _Drawings,
-    contents: Contents,
+    contents: SiteContents,
 ) -> Page:
     name = names.chapter_page(chapter.name)
     ran = _ran(course, chapter)
@@ -222,7 +222,7 @@ def _minutes(chapter: Chapter) -> int:
     return max(1, round(words / WORDS_PER_MINUTE))
 
 
-def _downloads(chapter: Chapter, contents: Contents) -> dict[str, str]:
+def _downloads(chapter: Chapter, contents: SiteContents) -> dict[str, str]:
     """Put the programs of a chapter's nodes into the site: cell -> file. One name may stand for several programs."""
     places: dict[str, str] = {}
     for cell in chapter.nodes:
@@ -250,7 +250,7 @@ def _graph(course: Course, chapter: Chapter) -> str:
     return node_graph_section(graph) if graph else ""
 
 
-def _exercise(exercise: Exercise, chapter: Chapter, links: Links, drawings: _Drawings, contents: Contents) -> Page:
+def _exercise(exercise: Exercise, chapter: Chapter, links: Links, drawings: _Drawings, contents: SiteContents) -> Page:
     name = names.exercise_page(exercise.name)
     folder = f"exercises/{exercise.name}"
     task = rich(exercise.task, links, folder, "exercises", drawings.html)
@@ -275,7 +275,7 @@ def _starter_of(exercise: Exercise) -> str:
     return starter(exercise.solution_file.read_text(encoding="utf-8")) if exercise.solution_file else ""
 
 
-def _glossary(course: Course, contents: Contents) -> None:
+def _glossary(course: Course, contents: SiteContents) -> None:
     if course.glossary is None:
         return
     try:
@@ -287,7 +287,7 @@ def _glossary(course: Course, contents: Contents) -> None:
     contents.origins[names.GLOSSARY] = course.glossary
 
 
-def _closing_pages(course: Course, repository: Repository, first: str, contents: Contents) -> Iterator[Page]:
+def _closing_pages(course: Course, repository: Repository, first: str, contents: SiteContents) -> Iterator[Page]:
     if course.glossary is not None:
         text = (course.root / course.glossary).read_text(encoding="utf-8")
         links = Links(_pages_of_files(course, {}), repository, contents.pictures)
@@ -308,7 +308,7 @@ def _home(
     exercises: Mapping[str, Exercise],
     repository: Repository,
     drawings: _Drawings,
-    contents: Contents,
+    contents: SiteContents,
 ) -> Page:
     runs = [(chapter, _ran(course, chapter)) for chapter in chapters]
     graphs = [node_graph_of(course, chapter) for chapter in chapters]
@@ -332,7 +332,7 @@ def _notebooks(
     chapters: list[Chapter],
     copies: Mapping[str, Mapping[str, bytes]],
     repository: Repository,
-    contents: Contents,
+    contents: SiteContents,
 ) -> None:
     """The notebooks to download and to open elsewhere, which install what they need and bring their exercises."""
     wanted = requirement(repository)
@@ -376,7 +376,7 @@ def _only_exercise(notebook: Mapping[str, Any], cell_id: str) -> dict[str, Any]:
 
 
 def _add_notebook(
-    name: str, notebook: Mapping[str, Any], wanted: str, exercises: Mapping[str, bytes], contents: Contents
+    name: str, notebook: Mapping[str, Any], wanted: str, exercises: Mapping[str, bytes], contents: SiteContents
 ) -> None:
     ready = launch_notebook(notebook, wanted, exercises)
     for cell in ready["cells"]:

@@ -55,14 +55,14 @@ class Picture:
     height: int
 
 
-class CanNotDrawError(Exception):
+class DrawingError(Exception):
     """Raised where there is no Chromium, or where mermaid can't be had; says which."""
 
 
 def draw(codes: Sequence[str], cache: Path) -> dict[str, Picture | None]:
     """The pictures of these diagrams, by their code; None for one that mermaid can't read.
 
-    What was drawn before is taken from `cache`. Raises CanNotDrawError when a new one can't be drawn.
+    What was drawn before is taken from `cache`. Raises DrawingError when a new one can't be drawn.
     """
     wanted = dict.fromkeys(codes)
     found = {code: _remembered(code, cache) for code in wanted}
@@ -114,9 +114,9 @@ def _script(cache: Path) -> Path:
             with urllib.request.urlopen(url, timeout=_DOWNLOAD_LIMIT_S) as answer:
                 data: bytes = answer.read()
         except (urllib.error.URLError, OSError) as error:
-            raise CanNotDrawError(f"mermaid {VERSION} can't be fetched from npm's registry ({error})") from None
+            raise DrawingError(f"mermaid {VERSION} can't be fetched from npm's registry ({error})") from None
         if base64.b64encode(hashlib.sha512(data).digest()).decode() != INTEGRITY.removeprefix("sha512-"):
-            raise CanNotDrawError(f"what npm's registry sent is not mermaid {VERSION}: its digest is another")
+            raise DrawingError(f"what npm's registry sent is not mermaid {VERSION}: its digest is another")
         with tarfile.open(fileobj=io.BytesIO(data)) as archive:
             member = archive.extractfile(_SCRIPT)
             assert member is not None
@@ -127,7 +127,7 @@ def _script(cache: Path) -> Path:
 def _drawn(codes: Sequence[str], script: Path) -> list[dict[str, str] | None]:
     browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
     if browser is None:
-        raise CanNotDrawError("there is no Chromium (sudo apt-get install chromium)")
+        raise DrawingError("there is no Chromium (sudo apt-get install chromium)")
     jobs = [{"code": code, "themes": {"light": _theme(_LIGHT), "dark": _theme(_DARK)}} for code in codes]
     with tempfile.TemporaryDirectory(prefix="spinbook-drawing-", ignore_cleanup_errors=True) as folder:
         page = Path(folder, "page.html")
@@ -138,10 +138,10 @@ def _drawn(codes: Sequence[str], script: Path) -> list[dict[str, str] | None]:
         try:
             ran = run_program(argv, _DRAWING_LIMIT_S)
         except (OSError, subprocess.TimeoutExpired) as error:
-            raise CanNotDrawError(f"Chromium did not draw ({error})") from None
+            raise DrawingError(f"Chromium did not draw ({error})") from None
     answer = re.search(r"DRAWN:([^<:]*):", ran.stdout)
     if answer is None:
-        raise CanNotDrawError("Chromium showed no drawing")
+        raise DrawingError("Chromium showed no drawing")
     results: list[dict[str, str] | None] = json.loads(urllib.parse.unquote(answer.group(1)))
     return results
 
@@ -262,7 +262,7 @@ _COLOURS = 256
 
 
 @dataclass(frozen=True)
-class Still:
+class StillPicture:
     """What stands for a moving picture in print, and for readers who prefer no motion. `path` is its file in the site.
 
     An SVG in an `<img>` is not told by browsers that it is printed, or that motion is not wanted: its page has to be.
@@ -272,13 +272,13 @@ class Still:
     data: bytes
 
 
-def still_of(output: Mapping[str, Any]) -> Still | None:
+def still_of(output: Mapping[str, Any]) -> StillPicture | None:
     """The still of an output that moves: one that has an SVG and a PNG of the same."""
     data = output.get("data", {})
     if not {"image/svg+xml", "image/png"} <= set(data):
         return None
     png = base64.b64decode(smaller(data["image/png"]))
-    return Still(f"{PICTURE_FOLDER}/{digest(png)[:16]}.png", png)
+    return StillPicture(f"{PICTURE_FOLDER}/{digest(png)[:16]}.png", png)
 
 
 def smaller(png: str) -> str:

@@ -30,7 +30,7 @@ _LOG_LINES = 6
 
 
 @dataclass(frozen=True)
-class Shown:
+class HomePicture:
     """A picture of the home page: the files that it needs, path -> content, and what the theme needs to know."""
 
     files: dict[str, bytes]
@@ -60,7 +60,7 @@ def home_drawing(drawings: Mapping[str, Picture | None]) -> str:
     return next((drawing_html(code, picture, "") for code, picture in drawings.items() if picture), "")
 
 
-def home_pictures(runs: list[tuple[Chapter, ExecutedNotebook]]) -> list[Shown]:
+def home_pictures(runs: list[tuple[Chapter, ExecutedNotebook]]) -> list[HomePicture]:
     """The richest plot and the last trail of a turtle that the chapters' nodes drew, where there are some."""
     pictures = [(chapter, cell, output) for chapter, ran in runs for cell, output in _pictures(chapter, ran)]
     plots = [found for found in pictures if "samples" in alternative(found[2], found[1])]
@@ -103,7 +103,7 @@ def _pictures(chapter: Chapter, ran: ExecutedNotebook) -> Iterator[tuple[Chapter
                 yield cell, output
 
 
-def _shown(chapter: Chapter, cell: ChapterCell, output: Mapping[str, Any], caption: str) -> Shown:
+def _shown(chapter: Chapter, cell: ChapterCell, output: Mapping[str, Any], caption: str) -> HomePicture:
     data = output["data"]
     if "image/svg+xml" in data:
         picture, suffix = "".join(data["image/svg+xml"]).encode(), ".svg"
@@ -124,7 +124,7 @@ def _shown(chapter: Chapter, cell: ChapterCell, output: Mapping[str, Any], capti
         "chapter": chapter.title,
         **size,
     }
-    return Shown(files, about)
+    return HomePicture(files, about)
 
 
 def built_on() -> str:

@@ -21,7 +21,7 @@ from spinbook.browser.files import FOLDER, pyodide_files, pyodide_folder
 from spinbook.course.course import Course
 from spinbook.handout.leaks import authors_code, leaks, secrets_of_all
 from spinbook.problem import SpinbookError
-from spinbook.site.contents import Contents
+from spinbook.site.contents import SiteContents
 from spinbook.site.extension import NAME
 from spinbook.site.page import FRAME_SUFFIX, HOME, SEARCH
 
@@ -58,7 +58,7 @@ def _remove_others(site: Path, wanted: set[Path]) -> None:
             file.rmdir()
 
 
-def stage(contents: Contents, folder: Path) -> None:
+def stage(contents: SiteContents, folder: Path) -> None:
     """Make `folder` hold the pages, and nothing else. Files that are as they should be keep their times."""
     wanted: dict[Path, str | bytes] = {folder / path: data for path, data in contents.pictures.items()}
     for page in contents.pages:
@@ -71,7 +71,7 @@ def stage(contents: Contents, folder: Path) -> None:
             file.unlink()
 
 
-def _table_of(contents: Contents) -> str:
+def _table_of(contents: SiteContents) -> str:
     """Sphinx learns the order of the pages from it; the theme shows it its own way."""
     pages = "\n".join(page.name for page in contents.pages if page.name != HOME)
     return f"\n```{{toctree}}\n:hidden:\n\n{pages}\n```\n"
@@ -83,7 +83,7 @@ _FIX = (
 )
 
 
-def prove_nothing_leaks(course: Course, contents: Contents) -> None:
+def prove_nothing_leaks(course: Course, contents: SiteContents) -> None:
     """Raise SpinbookError if a solution, a hidden check or a scenario of any exercise is in what is to be published.
 
     The pages are looked at before Sphinx gets them: in HTML every line of code is full of marks.
@@ -107,7 +107,7 @@ def _load(course: Course, name: str) -> Exercise:
         raise SpinbookError(error.problem) from None
 
 
-def _published(contents: Contents) -> dict[str, bytes]:
+def _published(contents: SiteContents) -> dict[str, bytes]:
     files: dict[str, str | bytes] = {f"{page.name}{page.suffix}": page.text for page in contents.pages}
     files |= {f"{page.name}.frame": page.frame(contents.openers) for page in contents.pages}
     others = _of_pyodide()
@@ -134,7 +134,7 @@ _LINES_A_CELL = 10_000
 
 
 def run_sphinx(
-    contents: Contents, source: Path, cache: Path, course: Course, on_page: Callable[[str], None]
+    contents: SiteContents, source: Path, cache: Path, course: Course, on_page: Callable[[str], None]
 ) -> tuple[Path, list[Problem]]:
     """Make the pages in `cache / "html"` from the staged folder `source`. Returns that folder, and what to fix.
 
@@ -168,7 +168,7 @@ def run_sphinx(
     return output, list(_problems(text.getvalue(), contents, source))
 
 
-def _settings(contents: Contents, course: Course) -> dict[str, Any]:
+def _settings(contents: SiteContents, course: Course) -> dict[str, Any]:
     terms = [(form, term.anchor) for term in contents.terms for form in term.forms]
     nav = [{"page": page.name, "title": page.title, "kind": page.kind} for page in contents.pages if page.name != HOME]
     return {
@@ -198,7 +198,7 @@ def _settings(contents: Contents, course: Course) -> dict[str, Any]:
     }
 
 
-def _problems(text: str, contents: Contents, source: Path) -> Iterator[Problem]:
+def _problems(text: str, contents: SiteContents, source: Path) -> Iterator[Problem]:
     seen: set[str] = set()
     for line in _ANSI.sub("", text).splitlines():
         match = _WARNING.match(line)
@@ -210,7 +210,7 @@ def _problems(text: str, contents: Contents, source: Path) -> Iterator[Problem]:
         yield Problem(file, number, found, "The page shows it as well as it can.", Severity.WARNING)
 
 
-def _place(file: str, line: str | None, contents: Contents, source: Path) -> tuple[Path, int | None]:
+def _place(file: str, line: str | None, contents: SiteContents, source: Path) -> tuple[Path, int | None]:
     """The author's file and line for a place in a staged page."""
     try:
         page = Path(file).relative_to(source.resolve()).with_suffix("").as_posix()

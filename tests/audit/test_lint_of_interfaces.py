@@ -12,7 +12,7 @@ from grader.checking.created import Created, created
 from grader.checking.proofreader import problems_of
 from grader.exercise.exercise import Qos
 from grader.exercise.loading import load
-from spinbook.new.kind import Kind
+from spinbook.new.kind import ExerciseKind
 from spinbook.new.writing import KINDS, write_exercise
 
 SOLUTION = "solutions/doubler/solution.py"
@@ -133,6 +133,6 @@ def test_lint_tells_it(small: SmallExercise) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
-def test_an_exercise_of_each_kind_agrees_with_its_interface(kind: Kind, tmp_path: Path) -> None:
+def test_an_exercise_of_each_kind_agrees_with_its_interface(kind: ExerciseKind, tmp_path: Path) -> None:
     write_exercise(tmp_path, "gripper_force", "Gripper force", kind)
     assert [str(error) for error in disagreements(load(tmp_path / "exercises" / "gripper_force"))] == []

@@ -20,7 +20,7 @@ program_imports.watch()
 from grader.exercise import load  # noqa: E402
 from grader.recording.recording import plain  # noqa: E402
 from spinbook.browser.in_page import check  # noqa: E402
-from spinbook.browser.in_page.runner import Program  # noqa: E402
+from spinbook.browser.in_page.runner import ProgramText  # noqa: E402
 
 
 def found(folder: Path, file: Path) -> dict[str, Any]:
@@ -30,7 +30,7 @@ def found(folder: Path, file: Path) -> dict[str, Any]:
         return {"hindrance": hindrance}
     exercise = load(folder).public()
     scenarios, references, _hidden = check.public_part(exercise)
-    recordings = check.record(exercise, scenarios, Program(exercise.file_name, source))
+    recordings = check.record(exercise, scenarios, ProgramText(exercise.file_name, source))
     verdicts = check.verdicts(exercise, scenarios, recordings, references)
     statuses = {verdict.name: [verdict.status, verdict.finding.text if verdict.finding else ""] for verdict in verdicts}
     return {"hindrance": "", "recordings": plain(recordings), "verdicts": statuses}

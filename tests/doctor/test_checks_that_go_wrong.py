@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from process_tree import runs
 
-from spinbook.doctor.diagnosis import Check, Finding, State, diagnose, examine
+from spinbook.doctor.diagnosis import MachineCheck, MachineFinding, State, diagnose, examine
 
 _HEAD = "import os, pathlib, signal, subprocess, sys, time\nfrom spinbook.doctor.diagnosis import missing, ok\n"
 _EXAMINE = "def examine(name):\n    {}\n"
@@ -21,10 +21,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def check(folder: Path, word: str, does: str, seconds: float = 60.0, needs: tuple[str, ...] = ()) -> Check:
+def check(folder: Path, word: str, does: str, seconds: float = 60.0, needs: tuple[str, ...] = ()) -> MachineCheck:
     """Return a check that does this."""
     (folder / f"{word}_check.py").write_text(_HEAD + _EXAMINE.format(does))
-    return Check(word, word.capitalize(), f"{word}_check:examine", seconds, needs)
+    return MachineCheck(word, word.capitalize(), f"{word}_check:examine", seconds, needs)
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,7 @@ def test_a_check_that_hangs_is_ended_with_all_that_it_started(folder: Path) -> N
 
 def test_what_libraries_print_is_not_taken_for_the_finding(folder: Path) -> None:
     does = "print('Welcome to ROS!'); os.system('echo from C'); return ok(name, 'works')"
-    assert examine(check(folder, "chatty", does)) == Finding("Chatty", State.OK, "works")
+    assert examine(check(folder, "chatty", does)) == MachineFinding("Chatty", State.OK, "works")
 
 
 def test_the_others_are_reported_in_their_order(folder: Path) -> None:
@@ -80,7 +80,7 @@ def test_what_can_only_fail_is_not_tried_so_a_cause_is_reported_once(folder: Pat
         check(folder, "effect", f"open({os.fspath(folder / 'tried')!r}, 'w')", needs=("cause",)),
     ]
     _, effect = diagnose(checks, lambda finding: None)
-    assert effect == Finding("Effect", State.MISSING, "not tried, because of: Cause", "")
+    assert effect == MachineFinding("Effect", State.MISSING, "not tried, because of: Cause", "")
     assert not (folder / "tried").exists()
 
 

@@ -10,7 +10,7 @@ import sys
 from rich.console import Console
 from running import doctor
 
-from spinbook.doctor.diagnosis import CHECKS, Finding, is_able, missing, ok, show, warning
+from spinbook.doctor.diagnosis import CHECKS, MachineFinding, is_able, missing, ok, show, warning
 
 
 def test_here_everything_that_is_needed_works() -> None:
@@ -53,7 +53,7 @@ def test_ros2_doctor_says_whether_ros_works() -> None:
     assert "All 8 checks passed" in run.stdout
 
 
-def shown(*findings: Finding) -> str:
+def shown(*findings: MachineFinding) -> str:
     console = Console(width=100, color_system=None, highlight=False)
     with console.capture() as captured:
         show(console, findings)

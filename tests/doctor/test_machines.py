@@ -188,7 +188,7 @@ def test_a_python_without_optimizations_is_a_warning_that_names_a_faster_build(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     version = "{}.{}".format(*sys.version_info[:2])
-    build = python_build.Build("/usr/bin/python", version, optimized=True, complete=True)
+    build = python_build.PythonBuild("/usr/bin/python", version, optimized=True, complete=True)
     monkeypatch.setattr(python_build, "is_optimized", lambda: False)
     monkeypatch.setenv("PATH", program(tmp_path, f"python{version}", f"echo '{json.dumps(asdict(build))}'"))
     finding = machine.examine_python("Python")

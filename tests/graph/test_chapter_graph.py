@@ -9,7 +9,7 @@ import pytest
 from course_folder import CourseFolder
 from process_mark import ProcessMark
 
-from spinbook.graph.model import End, NodeGraph
+from spinbook.graph.model import GraphEndpoint, NodeGraph
 
 _NODE = """```python title="{name}.py" seconds=60 until="{until}"
 import rclpy
@@ -111,9 +111,9 @@ def test_a_topic_has_its_ends_and_those_that_do_not_fit_are_told_apart(seen: See
     text, number = "std_msgs/msg/String", "std_msgs/msg/Float64"
 
     assert chatter.name == "/chatter"
-    assert chatter.publishers == (End("/talker", text, True),)
-    assert chatter.subscriptions == (End("/listener", text, True), End("/misfit", number, False))
-    assert unheard.publishers == (End("/talker", text, False),)
+    assert chatter.publishers == (GraphEndpoint("/talker", text, True),)
+    assert chatter.subscriptions == (GraphEndpoint("/listener", text, True), GraphEndpoint("/misfit", number, False))
+    assert unheard.publishers == (GraphEndpoint("/talker", text, False),)
     assert unheard.subscriptions == ()
 
 

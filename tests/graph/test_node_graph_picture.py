@@ -14,30 +14,30 @@ from hypothesis import strategies as st
 from playwright.sync_api import Browser
 
 from spinbook.graph.layout import broken, drawings, layout
-from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
+from spinbook.graph.model import GraphEndpoint, GraphNode, GraphTopic, NodeGraph
 from spinbook.graph.picture import node_graph_svg
 from spinbook.site.seen_graph import node_graph_html, read_node_graph
 
 JOINTS = "sensor_msgs/msg/JointState"
 
 
-def end(node: str, kind: str = JOINTS, connected: bool = True) -> End:
-    return End(node, kind, connected)
+def end(node: str, kind: str = JOINTS, connected: bool = True) -> GraphEndpoint:
+    return GraphEndpoint(node, kind, connected)
 
 
-def graph_of(*topics: Topic) -> NodeGraph:
+def graph_of(*topics: GraphTopic) -> NodeGraph:
     nodes = dict.fromkeys(each.node for topic in topics for each in (*topic.publishers, *topic.subscriptions))
-    return NodeGraph(tuple(SeenNode(name) for name in nodes), topics)
+    return NodeGraph(tuple(GraphNode(name) for name in nodes), topics)
 
 
 ARM = graph_of(
-    Topic("/joint_commands", (end("/joint_command_publisher"),), (end("/joint_state_monitor"),), 10.0),
-    Topic("/joint_velocities", (end("/joint_velocity", connected=False),), ()),
-    Topic("/joint_states", (), (end("/joint_velocity", connected=False), end("/a/long/name/space/of_a_node"))),
+    GraphTopic("/joint_commands", (end("/joint_command_publisher"),), (end("/joint_state_monitor"),), 10.0),
+    GraphTopic("/joint_velocities", (end("/joint_velocity", connected=False),), ()),
+    GraphTopic("/joint_states", (), (end("/joint_velocity", connected=False), end("/a/long/name/space/of_a_node"))),
 )
 TURTLE = graph_of(
-    Topic("/turtle1/cmd_vel", (end("/turtle_circle"),), (end("/turtlesim"),), 10.0),
-    *(Topic(f"/turtle1/{name}", (end("/turtlesim", connected=False),), ()) for name in ("a", "b", "c")),
+    GraphTopic("/turtle1/cmd_vel", (end("/turtle_circle"),), (end("/turtlesim"),), 10.0),
+    *(GraphTopic(f"/turtle1/{name}", (end("/turtlesim", connected=False),), ()) for name in ("a", "b", "c")),
 )
 
 
@@ -59,7 +59,7 @@ def test_it_is_reported_in_words() -> None:
 
 def test_each_connected_part_is_a_picture_of_its_own() -> None:
     assert node_graph_html(ARM).count("<svg ") == 2
-    assert node_graph_html(NodeGraph((*ARM.nodes, SeenNode("/alone")), ARM.topics)).count("<svg ") == 3
+    assert node_graph_html(NodeGraph((*ARM.nodes, GraphNode("/alone")), ARM.topics)).count("<svg ") == 3
 
 
 def test_what_a_node_has_for_itself_alone_is_one_box_where_it_is_much() -> None:
@@ -75,7 +75,7 @@ def test_an_end_that_is_not_connected_is_dashed() -> None:
 
 
 def test_names_are_written_as_they_are() -> None:
-    ET.fromstring(node_graph_svg(graph_of(Topic("/<b>&", (end("/'\"<i>"),), ()))))
+    ET.fromstring(node_graph_svg(graph_of(GraphTopic("/<b>&", (end("/'\"<i>"),), ()))))
 
 
 def test_there_is_no_script_no_style_and_nothing_from_outside_in_a_page() -> None:
@@ -91,8 +91,10 @@ _topics = st.lists(st.tuples(_ends, _ends), min_size=1, max_size=7)
 
 @given(_topics)
 @settings(max_examples=60, deadline=None)
-def test_boxes_never_overlap_and_all_is_within_the_picture(topics: list[tuple[list[End], list[End]]]) -> None:
-    graph = graph_of(*(Topic(f"/t{n}", tuple(p), tuple(s)) for n, (p, s) in enumerate(topics) if p or s))
+def test_boxes_never_overlap_and_all_is_within_the_picture(
+    topics: list[tuple[list[GraphEndpoint], list[GraphEndpoint]]],
+) -> None:
+    graph = graph_of(*(GraphTopic(f"/t{n}", tuple(p), tuple(s)) for n, (p, s) in enumerate(topics) if p or s))
     shown = drawings(graph)
 
     assert sorted(box.name for drawing in shown for box in drawing.nodes) == sorted(node.name for node in graph.nodes)

@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from spinbook.graph.watcher import Counted, rounded
+from spinbook.graph.watcher import MessageCounter, rounded
 
 _MS = 1_000_000
 
@@ -19,7 +19,7 @@ def counted(*streams: tuple[int, float, int], lost: float = 0.0, jitter_ms: floa
         for first, period, count in streams
         for n in range(count)
     ]
-    rate = Counted(len(streams))
+    rate = MessageCounter(len(streams))
     for when, number in sorted(sent):
         if chance.random() >= lost:
             rate.heard(number, when)

@@ -19,7 +19,7 @@ from grader.submission import read
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool
 from spinbook.new.command import new
-from spinbook.new.kind import Kind
+from spinbook.new.kind import ExerciseKind
 from spinbook.new.writing import BY_NAME, KINDS, write_course, write_exercise
 from spinbook.problem import SpinbookError
 
@@ -116,7 +116,7 @@ def test_a_class_of_six_gets_its_grades_side_by_side(grading: Grading) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
-def test_an_exercise_of_each_kind_is_about_its_name_and_short(kind: Kind) -> None:
+def test_an_exercise_of_each_kind_is_about_its_name_and_short(kind: ExerciseKind) -> None:
     files = kind.files("gripper_force", "A gentle grip")
     text = "".join(files.values())
     assert f'"{kind.source.stem}"' not in text

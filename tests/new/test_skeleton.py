@@ -15,7 +15,7 @@ from rclpy.node import Node
 from grader.exercise import Exercise, load, starter
 from grader.exercise.exercise import Topic
 from spinbook.new.command import new
-from spinbook.new.kind import Kind
+from spinbook.new.kind import ExerciseKind
 from spinbook.new.skeleton import skeleton
 from spinbook.new.writing import BY_NAME, KINDS, write_exercise
 from spinbook.problem import SpinbookError
@@ -24,7 +24,7 @@ ONE_PROGRAM = [pytest.param(kind, id=kind.name) for kind in KINDS if kind.name !
 
 
 @pytest.fixture
-def exercise(kind: Kind, tmp_path: Path) -> Exercise:
+def exercise(kind: ExerciseKind, tmp_path: Path) -> Exercise:
     write_exercise(tmp_path, "gripper_force", "Gripper force", kind)
     return load(tmp_path / "exercises" / "gripper_force")
 

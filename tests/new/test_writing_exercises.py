@@ -13,7 +13,7 @@ from grader.exercise import load, starter
 from grader.grading import Options, grading_of
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool
-from spinbook.new.kind import Kind
+from spinbook.new.kind import ExerciseKind
 from spinbook.new.writing import KINDS
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -26,13 +26,13 @@ def flat(text: str) -> str:
     return "\n".join(line.strip() for line in textwrap.dedent(text).strip().splitlines())
 
 
-def files_of(kind: Kind) -> str:
+def files_of(kind: ExerciseKind) -> str:
     """Return everything in the files of an exercise of this kind."""
     return "\n".join(flat(text) for text in kind.files("gripper_force", "Gripper force").values())
 
 
 @pytest.mark.parametrize("kind", OF_KIND)
-def test_every_example_of_a_kind_stands_in_its_exercise_which_is_graded(kind: Kind) -> None:
+def test_every_example_of_a_kind_stands_in_its_exercise_which_is_graded(kind: ExerciseKind) -> None:
     page = (DOCS / "writing-exercises" / "kinds.md").read_text()
     section = page.partition(f"\n## `{kind.name}`\n")[2].partition("\n## ")[0]
     examples = FENCE.findall(section)

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 from setup_stage import REAL_PYTHON, ROOT, Checkout
 
-from spinbook.doctor.python_build import Build, faster_build, this_build
+from spinbook.doctor.python_build import PythonBuild, faster_build, this_build
 
-SLOW = Build("/home/me/.pyenv/bin/python3", "3.11", optimized=False, complete=True)
-FAST = Build("/usr/bin/python3.11", "3.11", optimized=True, complete=True)
+SLOW = PythonBuild("/home/me/.pyenv/bin/python3", "3.11", optimized=False, complete=True)
+FAST = PythonBuild("/usr/bin/python3.11", "3.11", optimized=True, complete=True)
 
 
 def python_in(folder: Path, text: str) -> str:
@@ -26,7 +26,7 @@ def python_in(folder: Path, text: str) -> str:
     return os.fspath(folder)
 
 
-def described(folder: Path, build: Build) -> str:
+def described(folder: Path, build: PythonBuild) -> str:
     return python_in(folder, f"echo '{json.dumps(asdict(build))}'")
 
 
@@ -51,7 +51,7 @@ def test_another_version_is_not_taken(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("other", [replace(FAST, optimized=False), replace(FAST, complete=False)])
-def test_one_that_is_no_better_or_lacks_venv_or_headers_is_passed_over(tmp_path: Path, other: Build) -> None:
+def test_one_that_is_no_better_or_lacks_venv_or_headers_is_passed_over(tmp_path: Path, other: PythonBuild) -> None:
     assert faster_build(SLOW, described(tmp_path / "other", other)) is None
 
 
@@ -68,7 +68,7 @@ def test_a_python_describes_itself_before_anything_is_installed() -> None:
     program = ROOT / "spinbook" / "doctor" / "python_build.py"
     answer = subprocess.run([REAL_PYTHON, "-I", program, "--describe"], capture_output=True, text=True, check=True)
     # This environment was made from it, so all that is needed for one is there.
-    assert Build(**json.loads(answer.stdout)) == replace(this_build(), complete=True)
+    assert PythonBuild(**json.loads(answer.stdout)) == replace(this_build(), complete=True)
 
 
 # What set-up does with it

@@ -18,7 +18,7 @@ from grader.recording.recording import Recording, from_plain, likewise
 from grader.scenario.scenario import Message, Scenario
 from grader.scenario.store import from_plain as scenario_from_plain
 from spinbook.browser.in_page import runner
-from spinbook.browser.in_page.runner import Program
+from spinbook.browser.in_page.runner import ProgramText
 
 _ARCHIVE = Path("/check.zip")
 _FOLDER = Path("/exercises")
@@ -40,7 +40,7 @@ def check(name: str, source: str) -> str:
     scenarios, references, hidden = public_part(exercise)
     if exercise.programs or any(scenario.companions for scenario in scenarios):
         return json.dumps({"problem": _SEVERAL})
-    recordings = record(exercise, scenarios, Program(exercise.file_name, source))
+    recordings = record(exercise, scenarios, ProgramText(exercise.file_name, source))
     return json.dumps(shown(verdicts(exercise, scenarios, recordings, references), recordings, hidden))
 
 
@@ -100,7 +100,7 @@ def _scenario(entries: dict[str, Any], folder: Path) -> Scenario:
     return Scenario(**{**entries, "messages": tuple(Message(**message) for message in entries["messages"])})
 
 
-def record(exercise: Exercise, scenarios: list[Scenario], program: Program) -> dict[str, Recording]:
+def record(exercise: Exercise, scenarios: list[Scenario], program: ProgramText) -> dict[str, Recording]:
     """Run the program through each scenario; the first decides whether it works at all, as in the grader."""
     first, *others = scenarios
     found = {first.name: runner.run(exercise, first, program)}

@@ -20,7 +20,7 @@ from spinbook.browser.in_page import program_imports, threads
 PROGRAM = 1
 
 
-class Over(BaseException):
+class RunFinished(BaseException):
     """Raised in the program when its run has ended. Programs can't catch it by mistake."""
 
 

@@ -16,7 +16,7 @@ REPORTED = 100
 LOG = "/rosout"
 
 
-class Kept:
+class LocalMessages:
     """Messages and requests of the current moment, by the end points that sent them."""
 
     def __init__(self) -> None:

@@ -14,7 +14,7 @@ from ros_in_python.launch.processes import ProcessToStart
 _planned: list[dict[str, Any]] = []
 
 
-class _Planned:
+class _LaunchRecorder:
     """Replaces `ProcessGroup`: notes what is to be started."""
 
     def run(self, steps: Sequence[ProcessToStart | str]) -> int:
@@ -41,7 +41,7 @@ def plan(line: str) -> str:
     from spinbook.browser.in_page.cells import run_command
 
     # Processes of the page replace those of the system.
-    setattr(command, "ProcessGroup", _Planned)  # noqa: B010 - for the type checker, it is another module's import
+    setattr(command, "ProcessGroup", _LaunchRecorder)  # noqa: B010 - for the type checker, it is another module's import
     setattr(processes, "find", _as_it_is)  # noqa: B010
     _planned.clear()
     status = run_command(line)

@@ -8,7 +8,7 @@ from rcl_python import participant
 from rcl_python.graph import PUBLISHER, SUBSCRIPTION, EndpointInfo, Graph, NodeInfo
 from rmw_lockstep.qos import compatible
 from spinbook.graph.layout import drawings
-from spinbook.graph.model import End, NodeGraph, SeenNode, Topic
+from spinbook.graph.model import GraphEndpoint, GraphNode, GraphTopic, NodeGraph
 from spinbook.graph.picture import in_words, node_graph_svgs
 
 #: Every node has these.
@@ -41,23 +41,23 @@ def node_graph(graph: Graph) -> NodeGraph:
     shown = {key: name for key, name in nodes.items() if not _is_hidden(name)}
     ends = [end for end in graph.ends(0, PUBLISHER, SUBSCRIPTION) if end.node in shown and _is_shown(end.topic)]
     topics = [_topic(name, ends, shown) for name in sorted({end.topic for end in ends})]
-    return NodeGraph(tuple(SeenNode(name) for name in sorted(set(shown.values()))), tuple(topics))
+    return NodeGraph(tuple(GraphNode(name) for name in sorted(set(shown.values()))), tuple(topics))
 
 
-def _topic(name: str, ends: list[EndpointInfo], nodes: dict[str, str]) -> Topic:
+def _topic(name: str, ends: list[EndpointInfo], nodes: dict[str, str]) -> GraphTopic:
     publishers, subscriptions = (
         [end for end in ends if end.topic == name and end.kind == kind] for kind in (PUBLISHER, SUBSCRIPTION)
     )
-    return Topic(name, _ends(publishers, subscriptions, nodes), _ends(subscriptions, publishers, nodes))
+    return GraphTopic(name, _ends(publishers, subscriptions, nodes), _ends(subscriptions, publishers, nodes))
 
 
-def _ends(ends: list[EndpointInfo], others: list[EndpointInfo], nodes: dict[str, str]) -> tuple[End, ...]:
+def _ends(ends: list[EndpointInfo], others: list[EndpointInfo], nodes: dict[str, str]) -> tuple[GraphEndpoint, ...]:
     """Return one end for each node and type; connected if any of its ends is."""
     connected: dict[tuple[str, str], bool] = {}
     for end in ends:
         key = nodes[end.node], end.type
         connected[key] = connected.get(key, False) or any(_fit(end, other) for other in others)
-    return tuple(sorted(End(node, kind, fits) for (node, kind), fits in connected.items()))
+    return tuple(sorted(GraphEndpoint(node, kind, fits) for (node, kind), fits in connected.items()))
 
 
 def _fit(one: EndpointInfo, other: EndpointInfo) -> bool:

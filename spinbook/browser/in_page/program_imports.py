@@ -23,8 +23,8 @@ _is_programs_turn = False
 
 def watch() -> None:
     """Remember every module of ROS that is imported from now on. Call this before the first one is imported."""
-    if not any(isinstance(finder, _Finder) for finder in sys.meta_path):
-        sys.meta_path.insert(0, _Finder())
+    if not any(isinstance(finder, _RememberingFinder) for finder in sys.meta_path):
+        sys.meta_path.insert(0, _RememberingFinder())
 
 
 def begin_program() -> None:
@@ -71,7 +71,7 @@ def _imported(name: str) -> None:
         _own[name] = None
 
 
-class _Finder(preloaded.Finder):
+class _RememberingFinder(preloaded.Finder):
     """Also finds modules that are imported for the first time, and remembers them."""
 
     def find_spec(

@@ -21,8 +21,8 @@ from rmw_lockstep.qos import AUTOMATIC, INFINITE, KEEP_LAST, Qos
 from rmw_lockstep.type_hash import NO_HASH
 from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.busy_threads import BusyThreads
-from spinbook.browser.in_page.hub import PROGRAM, Over, PageHub, Turns
-from spinbook.browser.in_page.kept import REPORTED, Kept
+from spinbook.browser.in_page.hub import PROGRAM, PageHub, RunFinished, Turns
+from spinbook.browser.in_page.kept import REPORTED, LocalMessages
 from spinbook.browser.in_page.scheduler import Scheduler
 
 _HEADER = frames.HEADER.size
@@ -40,7 +40,7 @@ class ProgramLink:
         self._activity = self._number = 0
         self._busy = BusyThreads()
         self._ends: dict[str, str] = {}
-        self._kept = Kept()
+        self._kept = LocalMessages()
         self.scheduler = Scheduler(self)
 
     # --- out
@@ -127,21 +127,21 @@ class ProgramLink:
             self._turns.let_hub_go_on()
 
     def heed(self) -> None:
-        """Do, in the main thread, what the hub wants: end, or handle a signal. Raises `Over`."""
+        """Do, in the main thread, what the hub wants: end, or handle a signal. Raises `RunFinished`."""
         if self._turns.has_ended:
             return  # what cleans up behind it may wait
         if self._turns.is_over:
-            raise Over
+            raise RunFinished
         if self._turns.signal:
             name, self._turns.signal = self._turns.signal, ""
             interrupt(name)
 
     def abort(self, text: str) -> None:
-        """End the program as C code ends one, with these last words. Raises `Over`."""
+        """End the program as C code ends one, with these last words. Raises `RunFinished`."""
         print(text, file=sys.stderr)
         self._turns.aborted = self._turns.is_over = True
         self.scheduler.leave_to_main()
-        raise Over
+        raise RunFinished
 
     @property
     def is_wanted(self) -> bool:
@@ -191,7 +191,7 @@ class ProgramLink:
             self._turns.wait_for_first()
             if not self._turns.is_over:
                 main()
-        except Over:
+        except RunFinished:
             pass
         finally:
             self._turns.end()

@@ -13,7 +13,7 @@ from rcl_python import cdr, participant
 from rcl_python.link import Frame
 
 
-class ServiceReplyReader:
+class PageReplyReader:
     """The answers of one service; `answer` is their class."""
 
     def __init__(self, node: Any, service: str, answer: Any) -> None:
@@ -31,3 +31,7 @@ class ServiceReplyReader:
         while self._heard:
             sent, data = self._heard.popleft()
             yield sent, cdr.deserialize(data, self._answer)
+
+
+#: The name by which the recorder imports it.
+ServiceReplyReader = PageReplyReader

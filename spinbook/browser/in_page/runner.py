@@ -29,12 +29,12 @@ from grader.scenario.command_line import arguments
 from grader.scenario.scenario import Scenario
 from rcl_python import abort, logs
 from spinbook.browser.in_page import program_imports, threads
-from spinbook.browser.in_page.hub import Over, PageHub, Turns
+from spinbook.browser.in_page.hub import PageHub, RunFinished, Turns
 from spinbook.browser.in_page.program_link import ProgramLink, join
 
 
 @dataclass(frozen=True)
-class Program:
+class ProgramText:
     """What a student wrote: the file's name and its text."""
 
     file: str
@@ -42,7 +42,7 @@ class Program:
 
 
 @dataclass(frozen=True)
-class Ended:
+class ProgramEnd:
     """How a program ended."""
 
     code: int | None
@@ -51,14 +51,14 @@ class Ended:
 
 
 @dataclass(frozen=True)
-class Printed:
+class ProgramOutput:
     """What a program wrote."""
 
     text: str
     dropped: int = 0
 
 
-class PageStudent:
+class PageProgram:
     """The program as the grader's runner sees it: see grader/runner/program.py."""
 
     pid = 0
@@ -71,18 +71,18 @@ class PageStudent:
         """Its process ids: none, as it runs in this process."""
         return ()
 
-    def output(self) -> Printed:
+    def output(self) -> ProgramOutput:
         """Return what it has printed."""
-        return Printed(self._log.getvalue())
+        return ProgramOutput(self._log.getvalue())
 
-    def poll(self) -> Ended | None:
+    def poll(self) -> ProgramEnd | None:
         """How it ended, if it has."""
         return self._end() if self._turns.has_ended else None
 
-    def _end(self) -> Ended:
-        return Ended(None, signal.SIGABRT) if self._turns.aborted else Ended(self.code)
+    def _end(self) -> ProgramEnd:
+        return ProgramEnd(None, signal.SIGABRT) if self._turns.aborted else ProgramEnd(self.code)
 
-    def wait(self, timeout_s: float) -> Ended | None:
+    def wait(self, timeout_s: float) -> ProgramEnd | None:
         """Return the same as `poll`: nothing happens meanwhile."""
         return self.poll()
 
@@ -98,7 +98,7 @@ class PageStudent:
         """Return whether it has hit a limit: there are none."""
         return False
 
-    def kill(self) -> Ended:
+    def kill(self) -> ProgramEnd:
         """Stop it."""
         if not self._turns.has_ended:
             self._turns.is_over = True
@@ -106,11 +106,11 @@ class PageStudent:
         return self._end()
 
 
-def run(exercise: Exercise, scenario: Scenario, program: Program) -> Recording:
-    """ScenarioRun the program. Every fault of it is in the recording. Raises for faults of ours."""
+def run(exercise: Exercise, scenario: Scenario, program: ProgramText) -> Recording:
+    """Run the program. Every fault of it is in the recording. Raises for faults of ours."""
     gc.collect()  # what the program before has left behind must not leave this one's graph
     turns, log = Turns(), io.StringIO()
-    hub, student = PageHub(turns), PageStudent(turns, log)
+    hub, running = PageHub(turns), PageProgram(turns, log)
     link = join(hub, turns)
     task = Task(exercise, scenario, program.file, program.source)
     found: list[Recording | BaseException] = []
@@ -120,15 +120,15 @@ def run(exercise: Exercise, scenario: Scenario, program: Program) -> Recording:
 
     def grade() -> None:
         try:
-            found.append(ScenarioRun(task, student, hub).run(time.monotonic()))
+            found.append(ScenarioRun(task, running, hub).run(time.monotonic()))
         except BaseException as fault:
             found.append(fault)
-            student.kill()
+            running.kill()
         over.release()
 
     threads.raw_start(grade)
     with _as_main(program, scenario, log, link):
-        link.run(lambda: _main(program, student, log))
+        link.run(lambda: _main(program, running, log))
     over.acquire()
     program_imports.show_all()
     if isinstance(found[0], BaseException):
@@ -136,22 +136,22 @@ def run(exercise: Exercise, scenario: Scenario, program: Program) -> Recording:
     return found[0]
 
 
-def _main(program: Program, student: PageStudent, log: io.StringIO) -> None:
-    """ScenarioRun the program as Python runs a script, up to its exit status."""
+def _main(program: ProgramText, running: PageProgram, log: io.StringIO) -> None:
+    """Run the program as Python runs a script, up to its exit status."""
     program_imports.begin_program()
     try:
         try:
             exec(compile(program.source, program.file, "exec"), sys.modules["__main__"].__dict__)
         finally:
             threads.wait_for_all()
-    except Over:
+    except RunFinished:
         raise
     except SystemExit as error:
-        student.code = _status(error.code, log)
+        running.code = _status(error.code, log)
     except BaseException as error:
         traceback.print_exception(type(error), error, _without_runner(error.__traceback__), file=log)
-        student.code = 130 if isinstance(error, KeyboardInterrupt) else 1
-    if student.code:
+        running.code = 130 if isinstance(error, KeyboardInterrupt) else 1
+    if running.code:
         gc.collect()  # nodes that only the traceback held leave the graph before the end, as in a process that ends
 
 
@@ -179,7 +179,7 @@ def _forget_rclpy_s() -> None:
 
 
 @contextmanager
-def _as_main(program: Program, scenario: Scenario, log: io.StringIO, link: ProgramLink) -> Iterator[None]:
+def _as_main(program: ProgramText, scenario: Scenario, log: io.StringIO, link: ProgramLink) -> Iterator[None]:
     """Let the program be `__main__`, started as the grader starts it; keep what it prints; clean up behind it."""
     before = sys.modules["__main__"], sys.argv, logs.write, abort.end, dict(os.environ)
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
