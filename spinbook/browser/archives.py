@@ -66,7 +66,7 @@ def ros_archive() -> bytes:
     root = Path(spinbook.__file__).parent
     for part in _SPINBOOK:
         files |= _part(root / part, f"spinbook/{part}")
-    files["spinbook/kernel/reply_reader.py"] = (root / "browser" / "in_page" / "replies.py").read_bytes()
+    files["spinbook/kernel/reply_reader.py"] = (root / "browser" / "in_page" / "reply_reader.py").read_bytes()
     files["numpy.py"] = (root / "browser" / "numpy_fallback" / "numpy.py").read_bytes()
     files |= _used_outside_checks(root.parent / "grader")
     files |= dict(_python_files(root.parent / "grader" / "recording", "grader/recording"))

@@ -12,7 +12,7 @@ from interface_compiler.near import current, make_current, use, use_near
 from spinbook.chapter.fence import interface_path, is_someone_elses
 from spinbook.kernel.process import CellFailed
 from spinbook.kernel.session import Session
-from spinbook.package.write import write_interface_packages, written_definitions
+from spinbook.package.workspace import write_interface_packages, written_definitions
 
 
 def begin(session: Session) -> None:

@@ -19,7 +19,7 @@ from spinbook.kernel.process import STOP_GRACE, CellFailed, KeptProcess, Status
 from spinbook.kernel.showing import DisplayLimit, in_short, joins, show_for, show_rest
 from spinbook.kernel.timeline_cell import TimelineProcess
 from spinbook.package.files import Module
-from spinbook.package.write import add_file, add_module
+from spinbook.package.workspace import add_file, add_module
 
 
 @dataclass

@@ -13,7 +13,7 @@ from spinbook.chapter.own_packages import created_package
 from spinbook.kernel.process import CellFailed
 from spinbook.kernel.session import Session
 from spinbook.kernel.showing import DisplayLimit
-from spinbook.package.write import write_package, written_definitions
+from spinbook.package.workspace import write_package, written_definitions
 
 #: How long a build may take (s).
 COLCON_SECONDS = 120.0

@@ -10,7 +10,7 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from spinbook.course.course import find_course
 from spinbook.new.kind import ExerciseKind
-from spinbook.new.writing import (
+from spinbook.new.templates import (
     BY_NAME,
     EXERCISE,
     KINDS,

@@ -21,7 +21,7 @@ from spinbook.chapters import read_all
 from spinbook.course.course import FILE, Course, Package, find_course
 from spinbook.interfaces.compiling import checked
 from spinbook.package.files import Module
-from spinbook.package.write import write_interface_packages, write_package
+from spinbook.package.workspace import write_interface_packages, write_package
 from spinbook.problem import SpinbookError
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.classify import CellKind
-from spinbook.site.drawing import smaller, still_of
+from spinbook.site.drawings import smaller, still_of
 from spinbook.site.page import Repository, exercise_page
 
 

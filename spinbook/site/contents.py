@@ -27,13 +27,13 @@ from spinbook.handout.wheels import interface_wheels, package_of
 from spinbook.problem import SpinbookError
 from spinbook.site import page as names
 from spinbook.site.chapter_page import ExecutedNotebook, ExerciseCard, as_text, chapter_notebook, stills
-from spinbook.site.drawing import DrawingError, Picture, draw, drawing_files, drawing_html
+from spinbook.site.drawings import DrawingError, Picture, draw, drawing_files, drawing_html
 from spinbook.site.exercise_page import exercise_markdown, public_checks
+from spinbook.site.graph_section import node_graph_excerpt, node_graph_of, node_graph_section
 from spinbook.site.home_page import about_markdown, home_chapters, home_drawing, home_log, home_pictures
 from spinbook.site.notebooks import branch_files, launch_notebook, openers, requirement
 from spinbook.site.page import Page, Repository, address_files, repository_of
 from spinbook.site.prose import Links, Term, rich, terms_of
-from spinbook.site.seen_graph import node_graph_excerpt, node_graph_of, node_graph_section
 
 DOWNLOADS = "downloads"
 

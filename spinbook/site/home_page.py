@@ -22,7 +22,7 @@ from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.classify import CellKind
 from spinbook.course.course import Course
 from spinbook.site.chapter_page import ExecutedNotebook, alternative, is_picture
-from spinbook.site.drawing import PICTURE_FOLDER, Picture, drawing_html, smaller, still_of
+from spinbook.site.drawings import PICTURE_FOLDER, Picture, drawing_html, smaller, still_of
 from spinbook.site.log_lexer import LogLexer
 from spinbook.site.page import Repository, chapter_page, exercise_page
 

@@ -13,7 +13,7 @@ from grader.checking.proofreader import problems_of
 from grader.exercise.exercise import Qos
 from grader.exercise.loading import load
 from spinbook.new.kind import ExerciseKind
-from spinbook.new.writing import KINDS, write_exercise
+from spinbook.new.templates import KINDS, write_exercise
 
 SOLUTION = "solutions/doubler/solution.py"
 TOML = "exercises/doubler/exercise.toml"

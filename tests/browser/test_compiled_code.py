@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from spinbook.browser.in_page import compiled
+from spinbook.browser.in_page import code_cache
 
 MODULE = "made_for_a_page"
 SOURCE = "import pathlib\n\n\ndef half(number):\n    return number / 2\n"
@@ -52,11 +52,11 @@ def without_a_compiler(patch: pytest.MonkeyPatch) -> None:
 def test_what_one_process_has_compiled_the_next_one_does_not_compile(
     archive: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    compiled.keep()
+    code_cache.keep()
     imported_anew()
-    code = compiled.kept()
+    code = code_cache.kept()
 
-    compiled.use(memoryview(code))
+    code_cache.use(memoryview(code))
     with monkeypatch.context() as patch:
         without_a_compiler(patch)
         module = imported_anew()
@@ -66,20 +66,20 @@ def test_what_one_process_has_compiled_the_next_one_does_not_compile(
 
 
 def test_a_file_that_has_changed_is_compiled_again(archive: Path) -> None:
-    compiled.keep()
+    code_cache.keep()
     imported_anew()
-    code = compiled.kept()
+    code = code_cache.kept()
     write(archive, SOURCE.replace("/ 2", "/ 4"))
 
-    compiled.use(code)
+    code_cache.use(code)
 
     assert imported_anew().half(3) == 0.75
 
 
 def test_a_file_that_no_process_has_imported_yet_is_compiled(archive: Path) -> None:
-    compiled.keep()
-    code = compiled.kept()
+    code_cache.keep()
+    code = code_cache.kept()
 
-    compiled.use(code)
+    code_cache.use(code)
 
     assert imported_anew().half(3) == 1.5

@@ -16,7 +16,7 @@ from playwright.sync_api import Browser
 from spinbook.graph.layout import broken, drawings, layout
 from spinbook.graph.model import GraphEndpoint, GraphNode, GraphTopic, NodeGraph
 from spinbook.graph.picture import node_graph_svg
-from spinbook.site.seen_graph import node_graph_html, read_node_graph
+from spinbook.site.graph_section import node_graph_html, read_node_graph
 
 JOINTS = "sensor_msgs/msg/JointState"
 

@@ -20,7 +20,7 @@ from grader.submission.reading import of_source
 from grader.workers import WorkerPool
 from spinbook.new.command import new
 from spinbook.new.kind import ExerciseKind
-from spinbook.new.writing import BY_NAME, KINDS, write_course, write_exercise
+from spinbook.new.templates import BY_NAME, KINDS, write_course, write_exercise
 from spinbook.problem import SpinbookError
 
 

@@ -17,7 +17,7 @@ from grader.exercise.exercise import Topic
 from spinbook.new.command import new
 from spinbook.new.kind import ExerciseKind
 from spinbook.new.skeleton import skeleton
-from spinbook.new.writing import BY_NAME, KINDS, write_exercise
+from spinbook.new.templates import BY_NAME, KINDS, write_exercise
 from spinbook.problem import SpinbookError
 
 ONE_PROGRAM = [pytest.param(kind, id=kind.name) for kind in KINDS if kind.name != "several-nodes"]

@@ -14,7 +14,7 @@ from grader.grading import Options, grading_of
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool
 from spinbook.new.kind import ExerciseKind
-from spinbook.new.writing import KINDS
+from spinbook.new.templates import KINDS
 
 DOCS = Path(__file__).parents[2] / "docs"
 FENCE = re.compile(r"^```(?:python|toml)\n(.*?)^```", re.MULTILINE | re.DOTALL)

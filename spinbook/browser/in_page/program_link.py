@@ -22,7 +22,7 @@ from rmw_lockstep.type_hash import NO_HASH
 from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.busy_threads import BusyThreads
 from spinbook.browser.in_page.hub import PROGRAM, PageHub, RunFinished, Turns
-from spinbook.browser.in_page.kept import REPORTED, LocalMessages
+from spinbook.browser.in_page.local_messages import REPORTED, LocalMessages
 from spinbook.browser.in_page.scheduler import Scheduler
 
 _HEADER = frames.HEADER.size

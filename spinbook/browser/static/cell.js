@@ -1,5 +1,5 @@
 // A cell of the page: its code, its output, and what it is.
-import { editing } from "./editing.js";
+import { createEditor } from "./editor.js";
 import { button, element } from "./elements.js";
 
 const LINES = 500;
@@ -26,7 +26,7 @@ class Cell {
     // A chapter may show a changed version of a program again: each keeps its own edits.
     const before = [...cells.values()].filter((cell) => cell.name === this.name).length;
     const own = before ? `${this.name}-${before + 1}` : this.name;
-    this.editor = editing(this.code, `${location.pathname}#${own}`, this.file || "this cell", language);
+    this.editor = createEditor(this.code, `${location.pathname}#${own}`, this.file || "this cell", language);
     this.reset = button("Reset", `Reset ${this.name}`, () => this.restore());
     this.reset.hidden = !this.editor.changed;
     this.editor.onchange = () => (this.reset.hidden = false);

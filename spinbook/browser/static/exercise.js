@@ -1,6 +1,6 @@
 // The editor of an exercise's page, and Check: the public checks, in this page.
 import { download as load } from "./download.js";
-import { editing } from "./editing.js";
+import { createEditor } from "./editor.js";
 import { announce, button, element, failure, hindrance, style } from "./elements.js";
 import { Process } from "./processes.js";
 
@@ -71,7 +71,7 @@ export function open(section) {
   style();
   const name = location.pathname.split("/").pop().replace(/\.html$/, "");
   const file = document.querySelector(".facts code").textContent;
-  const editor = editing(section.querySelector("pre"), location.pathname, file, "python");
+  const editor = createEditor(section.querySelector("pre"), location.pathname, file, "python");
   const state = element("p", { className: "run-state" });
   state.setAttribute("role", "status");
   const result = element("div", { className: "check-result" });

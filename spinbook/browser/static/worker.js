@@ -67,7 +67,7 @@ async function start(identity, known) {
   });
   const py = await Promise.race([loading, lacking]);
   await archive(py, "ros.zip", "ROS 2");
-  const compiled = py.pyimport("spinbook.browser.in_page.compiled");
+  const compiled = py.pyimport("spinbook.browser.in_page.code_cache");
   if (known) compiled.use(py.toPy(known));
   else compiled.keep();
   const process = py.pyimport("spinbook.browser.in_page.process");
@@ -107,7 +107,7 @@ const does = {
     const { py } = await ready;
     await shares(py);
     await put(py, files);
-    return JSON.parse(await py.pyimport("spinbook.browser.in_page.launching").plan.callPromising(source));
+    return JSON.parse(await py.pyimport("spinbook.browser.in_page.launch_plan").plan.callPromising(source));
   },
   timeline: async ({ names }) => {
     const { py } = await ready;

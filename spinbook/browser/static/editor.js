@@ -21,7 +21,7 @@ function store(key, text) {
 }
 
 // Turns the code in `place`, a <pre>, into a field. Tab indents; Escape, then Tab, leaves it. Python keeps its colours.
-export function editing(place, key, name, language = "") {
+export function createEditor(place, key, name, language = "") {
   // A field of its own: the page gives the <pre> another role if it scrolls.
   const code = document.createElement("span");
   code.className = "editor";
