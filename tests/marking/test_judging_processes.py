@@ -58,7 +58,7 @@ def write(folder: Path, checks: str) -> None:
 
 
 def recording(log: str, scenario: str = "first") -> dict[str, Recording]:
-    return {scenario: Recording(scenario, (), (), (), (), "none", True, Ending("completed", ""), log=log)}
+    return {scenario: Recording(scenario, (), (), (), (), True, Ending("completed", ""), log=log)}
 
 
 def job_of(exercise: Exercise, log: str = "right") -> JudgeJob:
