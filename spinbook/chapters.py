@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from spinbook.chapter.labels import Label
 from spinbook.chapter.read import ReadResult, Surroundings, labels_of, modules_of, read_chapter, title_of
 from spinbook.course.course import Course
-from spinbook.interfaces.compiling import collect
+from spinbook.interfaces.definitions import collect
 
 
 def surroundings(course: Course) -> Surroundings:

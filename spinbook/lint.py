@@ -17,7 +17,7 @@ from spinbook.chapter.read import ReadResult
 from spinbook.chapters import read_all
 from spinbook.course.course import Course, find_course
 from spinbook.course.obstacles import ranked
-from spinbook.interfaces.compiling import checked, compile_course
+from spinbook.interfaces.definitions import checked, compile_course
 from spinbook.problem import SpinbookError
 
 #: Up to this many problems need no count; with more, a count follows at the end.

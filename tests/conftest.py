@@ -25,7 +25,7 @@ from xdist.remote import Producer
 from grader.exercise import load
 from grader.workers import WorkerPool
 from spinbook.course.course import find_course
-from spinbook.interfaces.compiling import compile_course
+from spinbook.interfaces.definitions import compile_course
 
 # What is collected and imported stays to the end: looking for garbage in it would be a fifth of the time for it, in
 # each of pytest-xdist's processes.

@@ -33,7 +33,7 @@ from grader.submission.reading import Submission, of_source, read
 from grader.workers import WorkerPool
 from groundwork.files import write_if_changed
 from spinbook.course.course import find_course
-from spinbook.interfaces.compiling import compile_course
+from spinbook.interfaces.definitions import compile_course
 
 HERE = Path(__file__).parent
 COURSE = HERE.parents[1]

@@ -17,7 +17,7 @@ from spinbook.build.execution import DEADLINE_S, ExecutionResult, NotebookJob, N
 from spinbook.build.notebooks import BuildResult, build_notebooks
 from spinbook.course.course import FILE, Course, find_course
 from spinbook.course.obstacles import ranked
-from spinbook.interfaces.compiling import compile_course
+from spinbook.interfaces.definitions import compile_course
 from spinbook.problem import SpinbookError
 
 #: Nodes wait more than they compute: two notebooks per core keep a machine busy and responsive.

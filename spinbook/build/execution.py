@@ -20,8 +20,8 @@ import grader
 from groundwork.files import write_if_changed
 from interface_compiler import activation
 from spinbook.build.digest import code_digest, digest, folders_digest, versions
+from spinbook.kernel.cell_output import NEVER_APPEARED, in_short
 from spinbook.kernel.process import KeptProcess
-from spinbook.kernel.showing import NEVER_APPEARED, in_short
 
 _ANSI = re.compile(r"\x1b\[[0-9;]*m")
 #: A traceback's line in a module that a node cell wrote, or in a snippet's cell.

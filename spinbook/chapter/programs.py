@@ -9,8 +9,8 @@ from pathlib import Path
 
 from groundwork.problem import Problem, Severity
 from spinbook.chapter.classify import CellKind, ClassifiedFence, node_name
+from spinbook.chapter.complete_program import CompleteProgram, join
 from spinbook.chapter.imports import MissingPackage, missing_imports
-from spinbook.chapter.joining import CompleteProgram, join
 from spinbook.chapter.node_classes import needs_arguments
 from spinbook.chapter.python_code import PythonCode, inspect
 

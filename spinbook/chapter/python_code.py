@@ -21,7 +21,7 @@ from spinbook.chapter.node_classes import (
     never_initialized,
     used_by_init,
 )
-from spinbook.chapter.starting import (
+from spinbook.chapter.program_start import (
     at_top,
     calls_main,
     leaves,

@@ -26,7 +26,7 @@ from spinbook.course.course import Course, find_course
 from spinbook.handout.leaks import Secret, authors_code, located, secrets_of_all
 from spinbook.handout.student_copy import exercise_files, for_students
 from spinbook.handout.wheels import interface_wheels, requirement, spinbook_wheel
-from spinbook.interfaces.compiling import compile_course
+from spinbook.interfaces.definitions import compile_course
 from spinbook.problem import SpinbookError
 from spinbook.update.handout import base_files
 

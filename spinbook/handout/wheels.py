@@ -21,7 +21,7 @@ from interface_compiler.checks import dependencies
 from interface_compiler.wheel import record, wheel, wheel_platform, zipped
 from spinbook.build.digest import digest, files_digest
 from spinbook.course.course import Course
-from spinbook.interfaces.compiling import FOLDER, collect, compile_course
+from spinbook.interfaces.definitions import FOLDER, collect, compile_course
 from spinbook.problem import SpinbookError
 
 # A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Recording installed projects").

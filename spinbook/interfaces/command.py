@@ -12,7 +12,7 @@ from interface_compiler import prefixes, shipped
 from interface_compiler.definition import CompileError
 from interface_compiler.wheel import install, is_current, needed, wheel
 from spinbook.course.course import find_course
-from spinbook.interfaces.compiling import FOLDER, collect, compile_course
+from spinbook.interfaces.definitions import FOLDER, collect, compile_course
 from spinbook.problem import SpinbookError
 
 _course = click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")

@@ -22,9 +22,9 @@ from grader.submission.code import Code, as_text, code_of_notebook
 from grader.submission.notebook import RECORD, Notebook, NotebookCell, read_notebook
 from grader.submission.problems import Undecided, Unreadable
 from grader.submission.python_code import definitions
+from spinbook.kernel.cell_output import DisplayLimit
 from spinbook.kernel.process import CellFailed, KeptProcess
 from spinbook.kernel.session import Session
-from spinbook.kernel.showing import DisplayLimit
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ from IPython.core.magic import Magics, cell_magic, line_magic, magics_class, no_
 
 from spinbook.course.course import Package
 from spinbook.kernel import environment, interface_cell, picture_cells, terminal_cells, timeline_cell
+from spinbook.kernel.cell_output import DisplayLimit
 from spinbook.kernel.process import CellFailed
 from spinbook.kernel.session import COMMAND_SECONDS, GRAPH_SECONDS, LOG_SECONDS, NODE_SECONDS, NodeStart, Session
-from spinbook.kernel.showing import DisplayLimit
 
 _OWN_OPTION = re.compile(r"""\s*--(seconds|until)\s+("[^"]*"|'[^']*'|\S+)\s*""")
 

@@ -16,8 +16,8 @@ from spinbook.graph.layout import drawings
 from spinbook.graph.model import NodeGraph
 from spinbook.graph.picture import in_words, node_graph_svg
 from spinbook.kernel.environment import EXECUTING
-from spinbook.kernel.plot.drawing import as_png, draw, moving_plot
-from spinbook.kernel.plot.drawing import in_words as plot_in_words
+from spinbook.kernel.plot.picture import as_png, draw, moving_plot
+from spinbook.kernel.plot.picture import in_words as plot_in_words
 from spinbook.kernel.plot.recording import PlotRecording, RecordingTime
 from spinbook.kernel.process import CellFailed, KeptProcess
 

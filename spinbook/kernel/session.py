@@ -9,14 +9,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from spinbook.chapter.joining import join
+from spinbook.chapter.complete_program import join
 from spinbook.chapter.launch_files import is_package_file
 from spinbook.chapter.python_code import CodeError
 from spinbook.course.course import Package
 from spinbook.kernel import environment
+from spinbook.kernel.cell_output import DisplayLimit, in_short, joins, show_for, show_rest
 from spinbook.kernel.environment import Domain
 from spinbook.kernel.process import STOP_GRACE, CellFailed, KeptProcess, Status
-from spinbook.kernel.showing import DisplayLimit, in_short, joins, show_for, show_rest
 from spinbook.kernel.timeline_cell import TimelineProcess
 from spinbook.package.files import Module
 from spinbook.package.workspace import add_file, add_module

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from interface_compiler import toolchain
 from spinbook.chapter.own_packages import created_package
+from spinbook.kernel.cell_output import DisplayLimit
 from spinbook.kernel.process import CellFailed
 from spinbook.kernel.session import Session
-from spinbook.kernel.showing import DisplayLimit
 from spinbook.package.workspace import write_package, written_definitions
 
 #: How long a build may take (s).

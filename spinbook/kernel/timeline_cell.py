@@ -9,7 +9,7 @@ from pathlib import Path
 
 from IPython.display import display
 
-from spinbook.kernel.plot.drawing import as_png
+from spinbook.kernel.plot.picture import as_png
 from spinbook.kernel.process import CellFailed, KeptProcess
 from spinbook.kernel.timeline import RecordedEvents, in_words, lanes
 from spinbook.kernel.timeline_picture import moving_timeline, span_of, still_timeline

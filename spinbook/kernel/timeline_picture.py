@@ -13,7 +13,7 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from ros_in_python.animation import Cycle, coord, on_paper
-from spinbook.kernel.plot.drawing import Scale
+from spinbook.kernel.plot.picture import Scale
 from spinbook.kernel.timeline import Lane, Mark, Span, in_words
 
 if TYPE_CHECKING:

@@ -14,12 +14,12 @@ import click
 from groundwork.problem import Problem
 from interface_compiler.definition import Definition
 from spinbook.chapter.chapter import ChapterCell
+from spinbook.chapter.complete_program import join
 from spinbook.chapter.fence import interface_path
-from spinbook.chapter.joining import join
 from spinbook.chapter.python_code import CodeError
 from spinbook.chapters import read_all
 from spinbook.course.course import FILE, Course, Package, find_course
-from spinbook.interfaces.compiling import checked
+from spinbook.interfaces.definitions import checked
 from spinbook.package.files import Module
 from spinbook.package.workspace import write_interface_packages, write_package
 from spinbook.problem import SpinbookError

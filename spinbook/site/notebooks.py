@@ -17,7 +17,7 @@ from spinbook.build.execution import NotebookJob, execute
 from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course
 from spinbook.course.obstacles import ranked
-from spinbook.interfaces.compiling import compile_course
+from spinbook.interfaces.definitions import compile_course
 from spinbook.problem import SpinbookError
 from spinbook.site.page import Repository
 

@@ -36,13 +36,13 @@ def _checked(folder: Path, code: str) -> dict[str, str]:
         return {"problem": f"The exercise is at fault, not your code.\n{error}"}
     except HostFault as error:
         return {"problem": f"The machine or the grader is at fault, not your code: {error}"}
-    from spinbook.submit.shown import as_html, as_text
+    from spinbook.submit.self_check_view import as_html, as_text
 
     return {"text/html": as_html(grade, exercise), "text/plain": as_text(grade, exercise)}
 
 
 def _load_drawing() -> None:
-    import spinbook.submit.shown  # noqa: F401
+    import spinbook.submit.self_check_view  # noqa: F401
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import click
 from groundwork.problem import Problem
 from spinbook.problem import SpinbookError
 from spinbook.update.handout import BASE, read_handout, refuse_another_course
-from spinbook.update.merging import MergeReport
+from spinbook.update.merge import MergeReport
 from spinbook.update.plan import UpdatePlan, carry_out, plan
 
 #: Files that say what to install.

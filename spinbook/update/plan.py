@@ -14,7 +14,7 @@ from typing import Any
 
 from groundwork.files import write_if_changed
 from spinbook.update.handout import BASE, Files, is_remembered
-from spinbook.update.merging import Cell, MergeReport, content, merged, merged_without_base
+from spinbook.update.merge import Cell, MergeReport, content, merged, merged_without_base
 
 
 class NoNotebook(Exception):

@@ -30,7 +30,7 @@ from grader.submission import Submission, read
 from grader.workers import WorkerPool
 from spinbook.course.course import find_course
 from spinbook.handout.student_copy import exercise_files
-from spinbook.interfaces.compiling import compile_course
+from spinbook.interfaces.definitions import compile_course
 
 ROOT = Path(__file__).resolve().parents[2]
 CHECK_FILES = Path(__file__).with_name("check_files.py")

@@ -26,7 +26,7 @@ from small_course import served  # noqa: E402
 from grader.exercise import load  # noqa: E402
 from spinbook.browser.files import public_parts, run_files  # noqa: E402
 from spinbook.course.course import find_course  # noqa: E402
-from spinbook.interfaces.compiling import compile_course  # noqa: E402
+from spinbook.interfaces.definitions import compile_course  # noqa: E402
 
 _START = """async () => {
   const { Process } = await import("./run/processes.js");

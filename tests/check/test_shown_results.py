@@ -14,7 +14,7 @@ from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool
-from spinbook.submit.shown import as_html, as_text
+from spinbook.submit.self_check_view import as_html, as_text
 
 
 @pytest.fixture(scope="module")

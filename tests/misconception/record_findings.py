@@ -24,7 +24,7 @@ from grader.grading.grading import Grading
 from grader.submission.reading import of_source
 from grader.workers import WorkerPool
 from spinbook.course.course import find_course
-from spinbook.interfaces.compiling import compile_course
+from spinbook.interfaces.definitions import compile_course
 
 ROOT = Path(__file__).parents[2]
 

@@ -14,7 +14,7 @@ from browser import opened
 from playwright.sync_api import Browser
 
 from ros_in_python.animation import BEFORE_S
-from spinbook.kernel.plot.drawing import MOST_CURVES, Scale, around, moving_plot
+from spinbook.kernel.plot.picture import MOST_CURVES, Scale, around, moving_plot
 from spinbook.kernel.plot.recording import PlotRecording, RecordingTime
 
 JOINTS = ["left_elbow", "right_elbow", "<b>&"]

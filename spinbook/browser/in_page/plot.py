@@ -16,7 +16,7 @@ def plot(paths: Sequence[str], seconds: float, title: str) -> str:
 
     Return the picture as JSON: `picture`, `words` and `problem`, "" if there is none.
     """
-    from spinbook.kernel.plot.drawing import in_words, plot_svg
+    from spinbook.kernel.plot.picture import in_words, plot_svg
     from spinbook.kernel.plot.recording import PlotRecording
 
     recording = PlotRecording()

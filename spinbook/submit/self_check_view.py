@@ -79,7 +79,7 @@ def as_html(grade: Grade, exercise: Exercise) -> str:
         lstrip_blocks=True,
     )
     plot = feedback_plot(grade, exercise)
-    return environment.get_template("shown.html").render(
+    return environment.get_template("self_check_view.html").render(
         title=exercise.title,
         total=terminal.points_so_far(grade),
         full=grade.full_marks,

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from update_notebooks import Cell, cell, cells_of, notebook, ran, texts
 
-from spinbook.update.merging import content, merged
+from spinbook.update.merge import content, merged
 from spinbook.update.plan import NoNotebook, merged_notebook
 
 TITLE = cell("# A chapter", "title", "markdown")

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ros_in_python.ros2.domain import participants, participates
+from spinbook.kernel.cell_output import Countdown, DisplayLimit
 from spinbook.kernel.process import KeptProcess
-from spinbook.kernel.showing import Countdown, DisplayLimit
 
 
 @dataclass
