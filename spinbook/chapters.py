@@ -1,4 +1,4 @@
-"""Reads the chapters of a course, each knowing what the others define."""
+"""Reads the chapters of a course; each can use what the others define."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from spinbook.interfaces.definitions import collect
 
 
 def surroundings(course: Course) -> Surroundings:
-    """What any chapter of the course may refer to: modules of every chapter are found by their fences' titles."""
+    """Return what any chapter of the course may refer to; modules are found by the titles of fences."""
     modules: set[str] = set()
     for file in course.chapters:
         modules |= modules_of(course.root, file)

@@ -125,7 +125,7 @@ class Verbs(click.Group):
 
 
 def _load(name: str, verb: Verb) -> click.Command:
-    """A verb's command. Raises UsageError if a module of an extra is missing."""
+    """Return a verb's command. Raises UsageError if a module of an extra is missing."""
     module, _, attribute = verb.command.partition(":")
     try:
         command = getattr(importlib.import_module(module), attribute)

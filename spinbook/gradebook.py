@@ -53,7 +53,7 @@ def gradebook(results: Path, start: Path) -> None:
 
 
 def exercises_in_order(course: Course) -> tuple[str, ...]:
-    """The course's exercises in the order in which its chapters have them, then those that no chapter has."""
+    """Return the course's exercises in the order in which its chapters have them, then those that no chapter has."""
     chapters = [reading.chapter for reading in read_all(course) if reading.chapter]
     cells = [cell for chapter in chapters for cell in chapter.cells]
     named = [cell.name for cell in cells if cell.kind is CellKind.EXERCISE and cell.name]

@@ -62,7 +62,7 @@ def lint(start: Path, strict: bool, show_static: bool, as_json: bool) -> None:
 
 
 def _interfaces(course: Course) -> tuple[Problem, ...]:
-    """What is wrong in the course's messages, services and actions. Those that exercises use are compiled."""
+    """Return what is wrong in the course's messages, services and actions. Those that exercises use are compiled."""
     try:
         collected = checked(course)
         if any(_mentions(file, collected.packages) for file in _exercise_files(course)):
@@ -82,13 +82,13 @@ def _exercise_files(course: Course) -> list[Path]:
 
 
 def _exercises(course: Course) -> tuple[Problem, ...]:
-    """What is wrong in the course's exercises and their solutions."""
+    """Return what is wrong in the course's exercises and their solutions."""
     problems = [problem for file in _exercise_files(course) for problem in problems_of(file.parent)]
     return tuple(replace(problem, file=_near(problem.file)) for problem in problems)
 
 
 def _near(file: Path) -> Path:
-    """The path as seen from where the author is, if the file is below."""
+    """Return the path as seen from where the author is, if the file is below."""
     return file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file
 
 

@@ -75,8 +75,7 @@ def build(
 
 
 def _compile_interfaces(console: Console, course: Course) -> bool:
-    """Compile the course's messages, services and actions, and report what is wrong in them. Returns whether there are
-    none."""
+    """Compile the course's interfaces and report what is wrong in them. Return whether nothing is."""
     try:
         compiled = compile_course(course)
     except SpinbookError as error:
@@ -99,12 +98,12 @@ def _is_chosen(item: BuildResult, chapters: tuple[str, ...]) -> bool:
 
 
 def _paths(chapter: Path) -> set[str]:
-    """The names by which a user in the course's folder or in a chapter's folder may call a chapter."""
+    """Return the names by which a user in the course's folder or in a chapter's folder may call a chapter."""
     return {chapter.as_posix(), chapter.name, f"./{chapter.as_posix()}", chapter.with_suffix("").as_posix()}
 
 
 def _without_match(built: list[BuildResult], chapters: tuple[str, ...]) -> list[Problem]:
-    """The names that do not belong to any chapter."""
+    """Return the names that do not belong to any chapter."""
     known = [item.name for item in built]
     problems = []
     for name in chapters:
@@ -133,7 +132,7 @@ def _report_built(console: Console, built: list[BuildResult]) -> None:
 def _execute(
     console: Console, course: Course, built: list[BuildResult], at_once: int, deadline_s: float, again: bool
 ) -> bool:
-    """Run notebooks with a progress bar. True if one failed."""
+    """Run notebooks with a progress bar. Return whether one failed."""
     jobs = [NotebookJob(item.chapter, item.notebook, course.build_folder, deadline_s) for item in built]
     columns = (
         TextColumn("{task.description}"),

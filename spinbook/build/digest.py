@@ -14,7 +14,7 @@ import spinbook
 
 
 def digest(*parts: str | bytes) -> str:
-    """A digest of these parts, in this order, that depends on where each part ends."""
+    """Return a digest of these parts, in this order, that depends on where each part ends."""
     total = hashlib.sha256()
     for part in parts:
         data = part.encode() if isinstance(part, str) else part
@@ -24,8 +24,8 @@ def digest(*parts: str | bytes) -> str:
 
 
 def files_digest(files: Iterable[Path], root: Path) -> str:
-    """A digest of files' names below `root` and of their contents; a missing file counts as missing. It does not depend
-    on where `root` is, so that a course that has been moved need not be made again.
+    """Return a digest of the names and contents of files below `root`; a missing file changes it, too. It does not
+    depend on where `root` is, so a course that was moved need not be built again.
     """
     return digest(*(part for file in sorted(files) for part in (os.path.relpath(file, root), _bytes(file))))
 
@@ -38,7 +38,7 @@ def _bytes(file: Path) -> bytes:
 
 
 def folders_digest(root: Path, *parts: str) -> str:
-    """A digest of these files of `root` and of all files in these folders, without those that Python compiled."""
+    """Return a digest of these files of `root` and all files in these folders, without Python's compiled ones."""
     return files_digest((file for part in parts for file in _files(root / part) if file.suffix != ".pyc"), root)
 
 
@@ -48,13 +48,13 @@ def _files(path: Path) -> Iterable[Path]:
 
 @functools.cache
 def code_digest(*folders: str) -> str:
-    """A digest of Spinbook's own code in these folders: what it makes may change with it."""
+    """Return a digest of Spinbook's own code in these folders: its output may change with it."""
     return folders_digest(Path(spinbook.__file__).parent, *folders)
 
 
 @functools.cache
 def versions() -> str:
-    """The versions on which a notebook's outputs depend."""
+    """Return the versions on which a notebook's outputs depend."""
     names = ("ros-rclpy", "matplotlib", "ipykernel", "nbclient")
     found = [f"{name}={_version(name)}" for name in names]
     return " ".join([f"python={platform.python_version()}", *found])

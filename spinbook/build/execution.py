@@ -45,9 +45,9 @@ class CellFailure:
 
 
 def find_failures(chapter: Path, ran: dict[str, Any], ended: dict[str, Any]) -> list[CellFailure]:
-    """The failures of one run. If the run was interrupted in a cell, the outputs of that cell in `ran` say so. `ended`
-    is what the run's process reported about its end: {"finished": …}, {"timed_out": INDEX}, {"died": INDEX} or
-    {"crashed": words}; `ran` the notebook with the outputs that were written.
+    """Return the failures of one run. If the run was interrupted in a cell, the outputs of that cell in `ran` say so.
+    `ended` is what the run's process reported about its end: {"finished": …}, {"timed_out": INDEX}, {"died": INDEX} or
+    {"crashed": words}; `ran` is the notebook with the outputs that were written.
     """
     cells = ran["cells"]
     failures = list(_failed_cells(chapter, cells))
@@ -284,7 +284,7 @@ def _follow(
 
 
 def _key(notebook: dict[str, Any], job: NotebookJob) -> str:
-    """What the outputs depend on: the code, not the prose around it, and the files that `%check` uses."""
+    """Return what the outputs depend on: the code, not the prose around it, and the files that `%check` uses."""
     code = [(c["id"], c["source"], c["metadata"].get("tags")) for c in notebook["cells"] if c["cell_type"] == "code"]
     judged_by = ""
     if any(source.startswith("%check ") for _, source, _ in code):
@@ -322,7 +322,7 @@ def _with_outputs(notebook: dict[str, Any], outputs: dict[str, Any]) -> str:
 
 
 def _tidy(cell: dict[str, Any], job: NotebookJob) -> dict[str, Any]:
-    """A cell's outputs, without the folders of the machine that made them."""
+    """Return a cell's outputs, without the folders of the machine that made them."""
     text = json.dumps(cell["outputs"])
     for folder, name in ((job.folder, "."), (Path(sys.prefix), ".venv")):
         text = text.replace(json.dumps(f"{folder}/")[1:-1], f"{name}/")

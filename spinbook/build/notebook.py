@@ -50,7 +50,7 @@ class Location:
     file: Path | None = None
 
     def target(self, target: str, is_image: bool) -> str | None:
-        """Where a link or an image leads to from a notebook; None: nowhere else than it says."""
+        """Return the target that a link or an image needs in a notebook; None leaves it as it is."""
         if is_elsewhere(target):
             return None
         file = locate(self.root, self.folder, target)
@@ -77,7 +77,7 @@ class Location:
 
 
 def portable(prose: str, location: Location) -> str:
-    """The prose with alerts and admonitions as quotations, plain fences, and links that lead somewhere.
+    """Return the prose with alerts and admonitions as quotations, plain fences, and links that lead somewhere.
 
     Links to files of the course point into its repository, those to other chapters to their notebooks; pictures are
     collected in `location`.
@@ -96,7 +96,7 @@ def _joined(folder: str, path: str) -> str:
 
 
 def _plain(lines: list[str]) -> list[str]:
-    """Lines without what only book tools understand."""
+    """Return the lines without syntax that only book tools understand."""
     edits: list[tuple[int, int, list[str]]] = []
     done = 0
     for token in parser().parse("\n".join(lines)):
@@ -112,7 +112,7 @@ def _plain(lines: list[str]) -> list[str]:
 
 
 def _edit(token: Token, lines: Sequence[str]) -> tuple[int, int, list[str]] | None:
-    """(first line, line behind, new lines) for a token that needs other words."""
+    """Return (first line, line after the last, new lines) for a token that has to be rewritten."""
     start, end = token.map or (0, 0)
     if token.type == "fence":
         opening = _opening(token, lines[start])
@@ -130,7 +130,7 @@ def _edit(token: Token, lines: Sequence[str]) -> tuple[int, int, list[str]] | No
 
 
 def _opening(token: Token, line: str) -> list[str]:
-    """An opening fence without attributes, its file name in a line above it."""
+    """Return an opening fence without attributes, its file name on the line above it."""
     if directive(token.info)[0] or not token.info.strip():
         name = directive(token.info)[0]
         return [line.replace(token.info, name)] if name else [line]
@@ -143,7 +143,7 @@ def _opening(token: Token, line: str) -> list[str]:
 
 
 def _quotation(token: Token, lines: list[str], first: str) -> list[str]:
-    """An admonition as a quotation with its title in bold. `first` is before its first line, such as `- ` or `> `."""
+    """Return an admonition as a quotation with a bold title. `first` is the prefix of its first line, such as `- `."""
     rest = _below(first)
     ends = len(lines) > 1 and _is_end(lines[-1], first)
     name, argument = container_name(token.info)
@@ -158,12 +158,12 @@ def _quotation(token: Token, lines: list[str], first: str) -> list[str]:
 
 
 def _below(first: str) -> str:
-    """What is before the lines below one that begins with a list's marker or a quotation's: `- > ` gives `  > `."""
+    """Return the prefix of the lines that follow a line with this prefix: `- > ` gives `  > `."""
     return re.sub(r"[^>\s]", " ", first)
 
 
 def _without(before: str, line: str) -> str:
-    """A line without what is before it; of an empty line, that is without the spaces at its end."""
+    """Return a line without this prefix; an empty line may lack the prefix's last spaces."""
     return line.removeprefix(before) if line.startswith(before) else line.removeprefix(before.rstrip())
 
 
@@ -178,7 +178,7 @@ _SETUP = """\
 
 
 def notebook_json(chapter: Chapter, course: Course) -> str:
-    """The notebook as text: valid nbformat 4.5, keys sorted, newline at the end. Raises nbformat's ValidationError."""
+    """Return the notebook as JSON: nbformat 4.5, keys sorted, newline at the end. Raises nbformat's ValidationError."""
     notebook = nbformat.from_dict(_notebook(chapter, course))
     nbformat.validate(notebook)
     return json.dumps(notebook, ensure_ascii=False, indent=1, sort_keys=True) + "\n"
@@ -243,7 +243,7 @@ def _runnable(cell: ChapterCell) -> dict[str, Any]:
 
 
 def _how(cell: ChapterCell) -> str:
-    """The options that say how a node's code is started and made whole."""
+    """Return the options that say how a node's code is started and completed."""
     words = [f"--class {name}" for name in cell.spin_classes]
     words += ["--main"] if cell.runs_main else []
     words += ["--keep"] if cell.keeps else []
@@ -254,7 +254,7 @@ def _how(cell: ChapterCell) -> str:
 
 
 def _bounds(cell: ChapterCell) -> str:
-    """The options that say how long a cell shows or runs."""
+    """Return the options that say how long a cell shows or runs."""
     seconds = f" --seconds {cell.seconds:g}" if cell.seconds else ""
     return seconds + (f" --until {shlex.quote(cell.until)}" if cell.until else "")
 
@@ -270,7 +270,7 @@ def _shell_line(command: Command, cell: ChapterCell) -> str:
 
 
 def _in_one_line(command: Command) -> str:
-    """A command as a magic's line: YAML that a terminal would take over several lines becomes YAML in one."""
+    """Return a command as a magic's line: YAML over several lines becomes YAML in one line."""
     if "\n" not in command.text:
         return command.text
     return shlex.join(_flowing(word) if "\n" in word else word for word in command.words)
@@ -298,7 +298,7 @@ def _exercise(cell: ChapterCell, course: Course) -> Iterator[dict[str, Any]]:
 
 
 def _one_level_down(task: str) -> str:
-    """A task's headings, one level below the chapter's section in which it is."""
+    """Return a task's headings, one level below the chapter's section in which it is."""
     lines = task.split("\n")
     for token in parser().parse(task):
         if token.type == "heading_open" and token.map and token.markup.startswith("#") and len(token.markup) < 6:

@@ -104,7 +104,7 @@ def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings, i
 
 
 def _key(own: str, chapter: Path, uses: Sequence[str], course: Course, known: Surroundings) -> str:
-    """What a chapter's notebook depends on: the chapter, all chapters' surroundings, the files that it shows.
+    """Return what a chapter's notebook depends on: the chapter, all chapters' surroundings, the files that it shows.
 
     Titles and labels of other chapters count only for a chapter that may refer to them.
     """

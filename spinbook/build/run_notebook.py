@@ -1,9 +1,9 @@
 """Runs one notebook in a process of its own: `python -m spinbook.build.run_notebook NOTEBOOK OUT DEADLINE FOLDER`.
 
-Prints one JSON object a line: {"cells": N} at first, {"done": K} after each cell, and at the end {"finished": true},
-{"timed_out": INDEX} where the deadline (s) passed in that cell, or {"died": INDEX} where the kernel ended in it.
-What had run by then is written to OUT all the same, and the node graph that was seen to OUT's name with .graph.json.
-FOLDER is for the sockets of the kernel; the caller removes it, as this process may be killed. Its path has to be short.
+Prints one JSON object per line: {"cells": N} first, {"done": K} after each cell, and at the end {"finished": true},
+{"timed_out": INDEX} where the deadline (s) passed in that cell, or {"died": INDEX} where the kernel ended in it. What
+had run by then is written to OUT all the same, and the node graph that was seen to OUT's name with .graph.json. FOLDER
+is for the sockets of the kernel; the caller removes it, as this process may be killed. Its path has to be short.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from spinbook.kernel.environment import DOMAIN_NOTE, EXECUTING, for_domain
 
 
 class History:
-    """Everything that was there at the end of some cell."""
+    """The nodes and topics that existed at the end of any cell."""
 
     def __init__(self) -> None:
         self._nodes: dict[str, tuple[str, str]] = {}
@@ -40,7 +40,7 @@ class History:
         self._rates: dict[str, float] = {}
 
     def add(self, cell: str, graph: NodeGraph) -> None:
-        """What was seen at the end of a cell."""
+        """Add the graph that was seen at the end of a cell."""
         for node in graph.nodes:
             first, _ = self._nodes.get(node.name, (cell, cell))
             self._nodes[node.name] = (first, cell)
@@ -51,9 +51,9 @@ class History:
                 self._rates[topic.name] = topic.rate_hz
 
     def graph(self) -> NodeGraph:
-        """All of it, nodes in the order in which they came.
+        """Return the graph of the whole run, with nodes in the order in which they appeared.
 
-        Ends that were connected at some time are, and a topic's rate is the last one counted.
+        An end counts as connected if it ever was; a topic's rate is the last one counted.
         """
         nodes = (GraphNode(name, first, last) for name, (first, last) in self._nodes.items())
         topics = (
@@ -74,7 +74,7 @@ def _ends(ends: dict[tuple[str, str], bool]) -> tuple[GraphEndpoint, ...]:
 
 #: Cells during which messages may be counted: no command and no snippet looks at the graph meanwhile.
 COUNTED_CELLS = ("%%node", "%plot")
-#: An observer that has not answered for so long (s) is given up: the notebook matters more than its picture.
+#: An observer that does not answer within this time (s) is abandoned: the notebook matters more than its picture.
 _TIME_LIMIT_S = 60.0
 _PR_SET_PDEATHSIG = 1
 
@@ -100,12 +100,12 @@ class GraphWatch:
         )
 
     async def cell_begins(self, source: str) -> None:
-        """A cell is about to run."""
+        """Prepare for a cell that is about to run."""
         if self._domain and source.startswith(COUNTED_CELLS):
             self._send("count")
 
     async def cell_ends(self, cell: str) -> None:
-        """The cell with this id has run: what is there now belongs to it."""
+        """Record the graph after the cell with this id."""
         if not self._follow() or self._observer is None or self._observer.stdout is None:
             return
         try:
@@ -116,7 +116,7 @@ class GraphWatch:
             await self.close()
 
     def _follow(self) -> bool:
-        """Let the domain be observed in which the notebook's nodes talk; whether they talk in any yet."""
+        """Point the observer at the notebook's domain. Return whether that domain is known yet."""
         with contextlib.suppress(OSError):
             domain = self._note.read_text(encoding="utf-8")
             if domain != self._domain:
@@ -152,10 +152,10 @@ _FAREWELL_S = 5.0
 
 
 class ThisPython(KernelSpecManager):
-    """Every kernel is this Python's own, whatever kernels the machine's users have installed."""
+    """Offers this Python's own kernel, whatever kernels the machine's users have installed."""
 
     def get_kernel_spec(self, kernel_name: str) -> KernelSpec:
-        """The command of an IPython kernel, without user's settings."""
+        """Return the command of an IPython kernel, without the user's settings."""
         argv = [sys.executable, "-m", "ipykernel_launcher", "-f", "{connection_file}", "--quiet"]
         return KernelSpec(argv=argv, display_name="Python 3", language="python")
 

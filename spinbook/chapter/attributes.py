@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from html import unescape
 
-#: The four styles in which admonitions are shown, and their names in book tools.
+#: The styles in which admonitions are shown; below, the names that book tools have for them.
 STYLES = ("note", "tip", "important", "warning", "caution")
 _STYLE = {
     **{style: style for style in STYLES},
@@ -29,7 +29,7 @@ _HOLDING = frozenset({"Admonition", "details", "Details", "hint", "highlight", "
 
 
 class _PairedTags:
-    """Every capitalised tag of MDX, and the few others that are known, come in pairs."""
+    """The names of tags that come in pairs: every capitalised one of MDX, and a few others."""
 
     def __contains__(self, name: str) -> bool:
         return name[:1].isupper() or name in _TABS or name in _HOLDING or name in _STYLE
@@ -46,25 +46,25 @@ _QUOTED = re.compile(r"\"((?:[^\"\\]|\\.){12,})\"|'((?:[^'\\]|\\.){12,})'")
 
 
 def exercise(html: str) -> str:
-    """The exercise that a comment asks for; "" for any other piece of HTML."""
+    """Return the exercise that a comment asks for; "" for any other piece of HTML."""
     match = _EXERCISE.match(html.strip())
     return match[1] if match else ""
 
 
 def snippet(line: str) -> str:
-    """The file that a line `--8<-- "file"` includes; "" for any other line."""
+    """Return the file that a line `--8<-- "file"` includes; "" for any other line."""
     match = _SNIPPET.match(line)
     return match[1] if match else ""
 
 
 def not_included(code: str) -> str:
-    """The first file of code's lines `--8<-- "file"` that were not replaced by its text; "" where there are none."""
+    """Return the first file whose line `--8<-- "file"` was not replaced by its text; "" if there is none."""
     names = (snippet(line) for line in code.split("\n")) if "8<--" in code else ()
     return next((name for name in names if name), "")
 
 
 def options(lines: list[str]) -> tuple[dict[str, str], int]:
-    """A directive's options, and how many lines they take: `:key: value` lines, or YAML between two lines of `---`."""
+    """Return a directive's options (`:key: value` lines, or YAML between two `---`), and how many lines they take."""
     found: dict[str, str] = {}
     if lines and lines[0].strip() == "---" and "---" in (rest := [line.strip() for line in lines[1:]]):
         end = rest.index("---")
@@ -80,12 +80,12 @@ def options(lines: list[str]) -> tuple[dict[str, str], int]:
 
 
 def pairs(text: str) -> dict[str, str]:
-    """The attributes of a tag: `label="Python"`, `title={"Note"}`, `style=info`."""
+    """Return the attributes of a tag: `label="Python"`, `title={"Note"}`, `style=info`."""
     return {key: double or single or plain for key, double, single, plain in _PAIR.findall(text)}
 
 
 def image(path: str, given: dict[str, str]) -> str:
-    """An image as HTML if it has a width, otherwise as Markdown."""
+    """Return an image as HTML if it has a width, otherwise as Markdown."""
     alt = given.get("alt") or given.get("caption") or ""
     if "width" in given:
         width = given["width"].removesuffix("px")
@@ -94,7 +94,7 @@ def image(path: str, given: dict[str, str]) -> str:
 
 
 def container_name(info: str) -> tuple[str, str]:
-    """(name, rest) behind `:::`, in the forms of Docusaurus, VitePress, MyST and Quarto."""
+    """Return (name, rest) after `:::`, in the forms of Docusaurus, VitePress, MyST and Quarto."""
     info = info.strip().rstrip(":").strip()
     if info.startswith("{"):
         inside, _, rest = info[1:].partition("}")
@@ -110,7 +110,7 @@ def container_name(info: str) -> tuple[str, str]:
 
 
 def container(name: str, argument: str, colon: bool = False) -> tuple[str | None, str, str]:
-    """(kind, style, title) of what a name such as `warning`, `tab-item` or `details` holds; kind None: unknown."""
+    """Return (kind, style, title) for a name such as `warning` or `tab-item`; the kind of an unknown one is None."""
     name = name.lower()
     if name in {"tab-item", "tab"}:
         return "tab", "", argument
@@ -125,7 +125,7 @@ def container(name: str, argument: str, colon: bool = False) -> tuple[str | None
 
 
 def admonition(info: str) -> tuple[str, str]:
-    """(style, title) behind `!!!`: `note "Title"`, `warning inline end`."""
+    """Return (style, title) after `!!!`: `note "Title"`, `warning inline end`."""
     words, quote, title = info.strip().partition('"')
     name = words.strip().split(" ")[0].lower()
     style = _STYLE.get(name, "note")
@@ -135,13 +135,13 @@ def admonition(info: str) -> tuple[str, str]:
 
 
 def kramdown_style(text: str) -> str:
-    """The style that kramdown's `{: .warning }` names; "" where it names none."""
+    """Return the style that kramdown's `{: .warning }` names; "" if it names none."""
     names = [word[1:].removesuffix("-title") for word in text.split() if word.startswith(".")]
     return next((_STYLE[name] for name in names if name in _STYLE), "")
 
 
 def paired(name: str, given: dict[str, str], words: str) -> tuple[str, str, str]:
-    """(kind, style, title) of what an opening tag of this name holds."""
+    """Return (kind, style, title) for an opening tag of this name."""
     if name in {"TabItem", "Tab", "tab", "TabPanel"}:
         positional = words.strip().strip("\"'") if "=" not in words else ""
         # jekyll-tabs names the group first: `tab group title`.
@@ -160,12 +160,12 @@ def paired(name: str, given: dict[str, str], words: str) -> tuple[str, str, str]
 
 
 def in_words(name: str) -> str:
-    """`LearningGoals` as "Learning goals"."""
+    """Return `LearningGoals` as "Learning goals"."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).capitalize()
 
 
 def words_of(name: str, properties: str) -> list[str]:
-    """The sentences among a component's properties, as a quotation; nothing if it has none."""
+    """Return the sentences among a component's properties, as a quotation; nothing if it has none."""
     found = [(double or single).replace('\\"', '"') for double, single in _QUOTED.findall(properties)]
     title = pairs(properties).get("title", "")
     found = [text for text in found if " " in text and text != title]
@@ -173,7 +173,7 @@ def words_of(name: str, properties: str) -> list[str]:
 
 
 def as_html(tag: str) -> str:
-    """An MDX tag as HTML: properties that are a path keep it, those that are code are left out."""
+    """Return an MDX tag as HTML: a property keeps its path; code in properties is left out."""
     return _PROPERTY.sub(lambda match: _property(match[1], match[2]), tag).replace(" className=", " class=")
 
 
@@ -185,5 +185,5 @@ def _property(name: str, code: str) -> str:
 
 
 def plain(html: str) -> str:
-    """The words of a piece of HTML."""
+    """Return the text of a piece of HTML."""
     return unescape(re.sub(r"<[^>]*>", "", html)).strip()

@@ -11,7 +11,7 @@ from spinbook.chapter.fence import Fence, make_fence
 
 
 class BlockKind(Enum):
-    """What a block is. Those from ADMONITION on hold blocks."""
+    """The kind of a block. The kinds from ADMONITION on hold other blocks."""
 
     TEXT = "text"
     HEADING = "heading"
@@ -29,7 +29,7 @@ class BlockKind(Enum):
 
 @dataclass(frozen=True)
 class SourceLine:
-    """A line of the chapter, without the indentation of what holds it. `number` counts from 1 in the chapter."""
+    """A line of the chapter, without the indentation of its container. `number` counts from 1 in the chapter."""
 
     text: str
     number: int
@@ -53,7 +53,7 @@ class Block:
     offset: int = 0
     """How far the text of a list's item is indented."""
     label: str = ""
-    """By what MyST's references call it, or, where it is dropped, what follows."""
+    """The name that MyST's references use for it or, if it is dropped, for what follows."""
 
     @property
     def line(self) -> int:
@@ -61,14 +61,14 @@ class Block:
         return self.lines[0].number if self.lines else 1
 
     def walk(self) -> Iterator[Block]:
-        """This block and all blocks in it, in order."""
+        """Yield this block and all blocks in it, in order."""
         yield self
         for child in self.children:
             yield from child.walk()
 
 
 def unquoted(line: SourceLine) -> SourceLine:
-    """A line of a quotation without its mark."""
+    """Return a line of a quotation without its `>`."""
     text = line.text.lstrip()
     if not text.startswith(">"):
         return SourceLine(text, line.number)
@@ -76,7 +76,7 @@ def unquoted(line: SourceLine) -> SourceLine:
 
 
 def as_fence(fence: Fence, lines: tuple[SourceLine, ...]) -> tuple[SourceLine, ...]:
-    """The lines of a plain fence instead of these."""
+    """Return the lines of a plain fence that replace these."""
     number = lines[0].number
     title = f' title="{fence.title}"' if fence.title else ""
     code = [SourceLine(text, number) for text in fence.code.rstrip("\n").split("\n")]
@@ -85,7 +85,7 @@ def as_fence(fence: Fence, lines: tuple[SourceLine, ...]) -> tuple[SourceLine, .
 
 
 def merged_callouts(found: list[Block]) -> list[Block]:
-    """Kramdown's `{: .note }` before or behind a paragraph or quotation makes it an admonition."""
+    """Make an admonition of each paragraph or quotation with kramdown's `{: .note }` before or after it."""
     out: list[Block] = []
     style = ""
     for block in found:
@@ -108,7 +108,7 @@ def _called_out(block: Block, style: str) -> Block:
 
 
 def paired(found: list[Block]) -> tuple[Block, ...]:
-    """Opening and closing tags become one block that holds what is between them."""
+    """Join an opening tag and its closing tag to one block that holds what is between them."""
     stack: list[tuple[Block | None, list[Block]]] = [(None, [])]
     for block in found:
         if block.kind is BlockKind.DROPPED and block.style == "open" and block.title in attributes.PAIRED:

@@ -1,6 +1,6 @@
-"""A chapter as a tree of blocks: text, fences, and what holds other blocks, whatever book tool it was written for.
+"""A chapter as a tree of blocks: text, fences and containers of blocks, whatever book tool it was written for.
 
-Each level of the tree is read by itself, with the indentation of what holds it taken off; lines keep their numbers.
+Each level of the tree is parsed on its own, without its container's indentation; lines keep their numbers.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from spinbook.chapter.flavours import parser
 Include = Callable[[str], str | None]
 _DEEPEST = 12
 
-#: Tokens that hold blocks in plain Markdown. Such text stays as it is unless one of those blocks is something else.
+#: Containers of plain Markdown. They stay as they are unless a block inside is not plain Markdown.
 _HOLDERS = frozenset({"blockquote_open", "bullet_list_open", "ordered_list_open"})
 _MARKDOWN = _HOLDERS | {"heading_open"}
 
 
 @dataclass(frozen=True)
 class _Directive:
-    """A directive of MyST: all its `lines`, and its `body` behind the options, which take `skipped` lines."""
+    """A directive of MyST: all its `lines`, and its `body` after the options, which take `skipped` lines."""
 
     name: str
     argument: str
@@ -43,7 +43,7 @@ class _Directive:
         return "".join(f"{line.text}\n" for line in self.body)
 
     def between(self, opening: str, closing: str) -> tuple[SourceLine, ...]:
-        """The body between two other lines."""
+        """Return the body between two other lines."""
         return (SourceLine(opening, self.lines[0].number), *self.body, SourceLine(closing, self.lines[-1].number))
 
 
@@ -84,7 +84,7 @@ class _Reader:
         return read(token, lines) if read else [Block(BlockKind.TEXT, lines)]
 
     def _is_block(self, token: Token) -> bool:
-        """Whether it is a fence, an exercise or something of a book tool: then what it is in has to be read, too."""
+        """Return whether it is a fence, an exercise or a book tool's block, so that its container must be read, too."""
         if token.type == "html_block":
             return bool(attributes.exercise(token.content))
         return token.type not in _MARKDOWN and hasattr(self, f"_{token.type}")
@@ -124,7 +124,7 @@ class _Reader:
     def _directive(
         self, name: str, argument: str, lines: tuple[SourceLine, ...], body: list[SourceLine], closed: bool
     ) -> list[Block]:
-        """A directive of MyST. The first of its blocks has the label that its options give it."""
+        """Return the blocks of a MyST directive; the first one gets the label from its options."""
         options, skipped = attributes.options([line.text for line in body])
         while skipped < len(body) and not body[skipped].text.strip():
             skipped += 1
@@ -177,7 +177,7 @@ class _Reader:
         return [Block(BlockKind.TEXT, directive.lines, new=directive.between("$$", "$$"))]
 
     def _holding(self, directive: _Directive) -> list[Block]:
-        """An admonition, a tab and the like, or a directive that is not known."""
+        """Return an admonition, a tab or another container; an unknown directive becomes a fence."""
         kind, style, title = attributes.container(directive.name, directive.argument)
         if kind is None:
             return [Block(BlockKind.FENCE, directive.lines, fence=make_fence(directive.name, directive.code, 1))]
@@ -309,7 +309,7 @@ class _Reader:
 
 
 def read_blocks(text: str, include: Include) -> tuple[Block, ...]:
-    """The blocks of a chapter's text."""
+    """Return the blocks of a chapter's text."""
     lines = [SourceLine(content, number) for number, content in enumerate(text.split("\n"), start=1)]
     return _Reader(include).blocks(lines)
 
@@ -328,13 +328,13 @@ _DIRECTIVES: dict[str, Callable[[_Reader, _Directive], list[Block]]] = {
 
 
 def _inside(tokens: Sequence[Token], index: int) -> Iterator[Token]:
-    """The tokens between an opening one and its closing one."""
+    """Return the tokens between an opening token and its closing token."""
     level = tokens[index].level
     return itertools.takewhile(lambda token: token.level > level, itertools.islice(tokens, index + 1, None))
 
 
 def _offset(text: str, marker: int) -> int:
-    """How far an item's text is indented, by CommonMark's rule: up to four spaces may follow the marker."""
+    """Return how far an item's text is indented, by CommonMark's rule: up to four spaces may follow the marker."""
     start = len(text) - len(text.lstrip()) + marker
     spaces = len(text[start:]) - len(text[start:].lstrip(" "))
     return start + (spaces if 1 <= spaces <= 4 else 1)
@@ -355,5 +355,5 @@ def _is_closed(token: Token, lines: tuple[SourceLine, ...]) -> bool:
 
 
 def _words(token: Token, lines: tuple[SourceLine, ...]) -> tuple[SourceLine, ...]:
-    """What an MDX component without content shows: the words among its properties."""
+    """Return what an MDX component without content shows: the words among its properties."""
     return tuple(SourceLine(text, lines[0].number) for text in attributes.words_of(token.tag, token.info))

@@ -18,13 +18,12 @@ class ChapterCell:
     """One cell of a chapter. `line` is the chapter's line on which its source begins, counted from 1.
 
     `name` is a node's name (its file without .py), an exercise's, or an interface's, such as
-    `my_interfaces/msg/Pose.msg`. `seconds` bounds how long it shows or runs
-    (None: the runtime's default), `until` is a text in its log that ends that time early. `raises` says that failing
-    is the lesson. `spin_classes` are the classes to spin where a node's code only defines them, `runs_main` says that
-    its `main` has to be called. `before` is the code above a node's that makes it whole, taken from the nodes and parts
-    that `after` names; a part is code that later nodes use, and with `runs_in_kernel` a snippet as well. `keeps` says
-    that a node is only saved, because it reads words from its command line. `executables` are what `ros2 run` calls a
-    node: (package, executable).
+    `my_interfaces/msg/Pose.msg`. `seconds` bounds how long it shows or runs (None: the runtime's default), `until` is a
+    text in its log that ends that time early. `raises` says that failing is the lesson. `spin_classes` are the classes
+    to spin where a node's code only defines them, `runs_main` says that its `main` has to be called. `before` is the
+    code that completes a node, taken from the nodes and parts that `after` names; a part is code that later nodes use,
+    and with `runs_in_kernel` a snippet as well. `keeps` says that a node is only saved, because it reads command-line
+    arguments. `executables` are what `ros2 run` calls a node: (package, executable).
     """
 
     kind: CellKind
@@ -100,7 +99,7 @@ _LONGEST_ID = 64
 
 
 def make_cells(pieces: Iterable[Piece], classified: dict[int, ClassifiedFence]) -> tuple[ChapterCell, ...]:
-    """The cells of a chapter. `classified` are its fences by their line."""
+    """Return the cells of a chapter. `classified` are its fences by their line."""
     ids = _Ids()
     cells: list[ChapterCell] = []
     lines: list[Piece] = []
@@ -120,7 +119,8 @@ def make_cells(pieces: Iterable[Piece], classified: dict[int, ClassifiedFence]) 
 
 
 def _prose(pieces: list[Piece], ids: _Ids) -> Iterator[ChapterCell]:
-    """A piece of prose without the empty lines around it, which begins with the section's heading if it has one."""
+    """Yield a piece of prose without the empty lines around it, which begins with the section's heading if it has
+    one."""
     lines = [piece.line for piece in pieces if piece.line is not None]
     while lines and not lines[0].text.strip():
         lines.pop(0)

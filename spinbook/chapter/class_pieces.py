@@ -1,4 +1,4 @@
-"""A class that is shown method by method: its beginning, its methods, and how they come together."""
+"""A class that is shown method by method: its beginning, its methods, and how they are joined."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _INDENT = " " * 4
 
 
 def names_begun(code: str) -> frozenset[str]:
-    """The classes and functions of code that ends where a block begins, such as `class Talker(Node):`; else nothing."""
+    """Return the classes and functions of code that ends where a block begins, as `class Talker(Node):` does."""
     lines = [line for line in code.split("\n") if line.strip() and not line.lstrip().startswith("#")]
     if not lines or not lines[-1].split("#")[0].rstrip().endswith(":"):
         return frozenset()
@@ -23,7 +23,7 @@ def names_begun(code: str) -> frozenset[str]:
 
 
 def methods_alone(tree: ast.Module) -> frozenset[str]:
-    """The methods of code that holds nothing else: they belong to a class which is not in it."""
+    """Return the methods of code that holds nothing else: they belong to a class which is not in it."""
     found = set()
     for item in tree.body:
         if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef) and [a.arg for a in item.args.args[:1]] == ["self"]:
@@ -34,7 +34,7 @@ def methods_alone(tree: ast.Module) -> frozenset[str]:
 
 
 def uses_super_outside(tree: ast.Module) -> bool:
-    """Whether code that is in no class calls `super()`."""
+    """Return whether code that is in no class calls `super()`."""
     outside = (item for item in tree.body if not isinstance(item, ast.ClassDef))
     calls = (item for statement in outside for item in ast.walk(statement) if isinstance(item, ast.Call))
     return any(isinstance(call.func, ast.Name) and call.func.id == "super" and not call.args for call in calls)
@@ -42,7 +42,7 @@ def uses_super_outside(tree: ast.Module) -> bool:
 
 @functools.lru_cache(maxsize=256)
 def assembled(pieces: tuple[str, ...]) -> tuple[tuple[tuple[int, ...], str], ...]:
-    """(numbers of the pieces, their code): a class and the methods that the next pieces show are one."""
+    """Return (numbers of the pieces, their code), with each class joined to its methods in the next pieces."""
     found: list[tuple[tuple[int, ...], str]] = []
     at = 0
     while at < len(pieces):
@@ -53,7 +53,7 @@ def assembled(pieces: tuple[str, ...]) -> tuple[tuple[tuple[int, ...], str], ...
 
 
 def _class_from(start: int, pieces: Sequence[str]) -> tuple[tuple[int, ...], str]:
-    """The class that begins at the end of a piece, as far as the pieces behind it go on with it."""
+    """Return the class that begins at the end of a piece, with the next pieces that continue it."""
     text, end = pieces[start], start
     if _last_at_margin(text).startswith("class "):
         grown = text
@@ -72,7 +72,7 @@ def _last_at_margin(code: str) -> str:
 
 
 def _as_body(code: str) -> str:
-    """A piece as it is written in a class: indented methods, or what goes on inside one; "" for anything else."""
+    """Return a piece indented as in a class: methods, or the rest of one; "" for anything else."""
     first = next((line for line in code.split("\n") if line.strip() and not line.lstrip().startswith("#")), "")
     if first[:1].isspace():
         dedented = textwrap.dedent(code)

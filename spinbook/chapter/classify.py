@@ -84,11 +84,11 @@ class CellKind(str, Enum):
 
 @dataclass(frozen=True)
 class ClassifiedFence:
-    """A fence and what it is. `why` says why a static one is not run; `sign` says it in a few words to readers.
+    """A fence and its kind. `why` says why a static one is not run; `sign` tells readers in a few words.
 
-    `name` is a node's, a part's or an interface's. `before` is the code that is put above a node's so that it is
-    whole, `after` names the nodes and parts from which that code comes, `runs_in_kernel` says that a part also runs as
-    a snippet. `executables` are a node's names for `ros2 run`: (package, executable).
+    `name` is a node's, a part's or an interface's. `before` is the code that completes a node, `after` names the nodes
+    and parts from which that code comes, `runs_in_kernel` says that a part also runs as a snippet. `executables` are a
+    node's names for `ros2 run`: (package, executable).
     """
 
     fence: Fence
@@ -112,7 +112,7 @@ class ClassifiedFence:
 
     @property
     def keeps(self) -> bool:
-        """Whether the code is only saved, for a command to start: it reads words from its command line."""
+        """Whether the code is only saved, for a command to start: it reads command-line arguments."""
         return self.kind is CellKind.NODE and self.code is not None and self.code.words_read > 0
 
     @property
@@ -130,7 +130,7 @@ class ClassifiedFence:
 
 
 def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[ClassifiedFence, list[Problem]]:
-    """Say what a fence is by itself. Python that can run is a snippet here, or a node if it is a program.
+    """Classify a fence by itself. Python that can run is a snippet here, or a node if it is a program.
 
     `interface_package` is the package of an interface whose title does not name one.
     """
@@ -158,7 +158,7 @@ def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[C
 
 
 def _interface(fence: Fence, path: str, own: str) -> ClassifiedFence:
-    """A definition that is compiled, or one of an installed package, which is shown."""
+    """Return a definition that is compiled, or one of an installed package, which is shown."""
     package = path.partition("/")[0]
     if is_someone_elses(package, own):
         return ClassifiedFence(fence, CellKind.STATIC, f"it shows an interface of {package}, which is installed")
@@ -172,7 +172,7 @@ def _unnamed(fence: Fence, meant: str, file: Path) -> Problem:
 
 
 def _package_file(fence: Fence) -> ClassifiedFence | None:
-    """A launch or parameter file that the package gets; None for a launch file that `ros2 launch` can't run here."""
+    """Return a launch or parameter file of the package; None for one that `ros2 launch` can't run here."""
     if fence.is_python:
         try:
             if unsupported_in_launch_file(fence.code):
@@ -183,7 +183,7 @@ def _package_file(fence: Fence) -> ClassifiedFence | None:
 
 
 def with_language(fence: Fence) -> Fence:
-    """A fence without a language, with the one that its content surely is."""
+    """Return the fence; one without a language gets the one that its content clearly is."""
     if fence.language not in {"", "text", "plaintext"} or fence.attributes:
         return fence
     if looks_like_shell(fence.code):
@@ -196,7 +196,7 @@ def with_language(fence: Fence) -> Fence:
 
 
 def _unknown_attributes(fence: Fence, file: Path) -> list[Problem]:
-    """Attributes that look like misspellings of ours; those of other book tools are ignored."""
+    """Return attributes that look like misspellings of ours; those of other book tools are ignored."""
     unknown = [a for a in fence.attributes if a not in ATTRIBUTES and difflib.get_close_matches(a, ATTRIBUTES, 1, 0.75)]
     if not unknown or not (fence.is_python or fence.is_shell):
         return []
@@ -273,7 +273,7 @@ def _magics_in_node(fence: Fence, file: Path) -> list[Problem]:
 
 
 def _refused(fence: Fence, code: PythonCode) -> str:
-    """Why Python that could run is not run here, if so."""
+    """Return why Python that could run is not run here, if so."""
     started = {**code.programs, **programs_in_magics(fence.code)}
     if never := sorted(set(started) & NEVER_RUN):
         return f"it runs `{never[0]}`"
@@ -301,7 +301,7 @@ def _why_static(fence: Fence, code: PythonCode) -> str:
 
 
 def node_name(item: ClassifiedFence, text: str, file: Path) -> tuple[str, bool, list[Problem]]:
-    """(a node's file without .py, whether the author named it, problems). `text` is the file that the text names."""
+    """Return (a node's file without .py, whether the author named it, problems). The text names the file `text`."""
     code = item.code
     given = item.fence.title if item.fence.title and item.fence.title.endswith(".py") else text
     if given:

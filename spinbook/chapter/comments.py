@@ -1,4 +1,4 @@
-"""Takes HTML comments, in which authors write notes, out of Markdown; what markdown-it finds to be code stays."""
+"""Removes HTML comments, in which authors write notes, from Markdown; text that markdown-it parses as code stays."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Span = tuple[int, int]
 def without_comments(markdown: str, *, keep_lines: bool = False) -> str:
     """Return `markdown` without comments; a comment that never ends continues to the end of the text.
 
-    A line that held nothing else is left out, or, with `keep_lines`, left empty, so that lines keep their numbers.
+    A line with nothing else is removed or, with `keep_lines`, left empty, so that lines keep their numbers.
     """
     if _BEGIN not in markdown:
         return markdown
@@ -45,7 +45,7 @@ def _comments(markdown: str, code: list[Span]) -> Iterator[Span]:
 
 
 def _without(line: str, start: int, cuts: list[Span]) -> tuple[str, bool]:
-    """Return what of a line is left, and whether a comment reaches into it."""
+    """Return what is left of a line, and whether a comment was in it."""
     end = start + len(line)
     here = [(max(a, start) - start, min(b, end) - start) for a, b in cuts if a <= end and b > start]
     left, at = "", 0
@@ -56,7 +56,7 @@ def _without(line: str, start: int, cuts: list[Span]) -> tuple[str, bool]:
 
 
 def _numbered(markdown: str) -> Iterator[tuple[int, str]]:
-    """Yield each line with the place in the text at which it begins."""
+    """Yield each line with its offset in the text."""
     lines = markdown.split("\n")
     starts = accumulate((len(line) + 1 for line in lines), initial=0)
     return zip(starts, lines, strict=False)

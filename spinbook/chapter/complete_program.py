@@ -1,6 +1,6 @@
-"""Completes a piece of a program with the imports that tutorials leave out, and with what earlier pieces define. The
-same code is used when a chapter is read (is the piece then complete?) and when its cell runs (with the current code of
-the cells above).
+"""Completes a piece of a program with imports that tutorials leave out and with what earlier pieces define. The same
+code is used when a chapter is read (is the piece then complete?) and when its cell runs (with the current code of the
+cells above).
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class _CodePiece:
     blocks: bool
 
     def text(self, number: int) -> str:
-        """The lines of a statement."""
+        """Return the lines of a statement."""
         statement = self.statements[number]
         decorators = getattr(statement, "decorator_list", [])
         first = min([statement.lineno, *(item.lineno for item in decorators)])
@@ -85,7 +85,7 @@ class _CodePiece:
 
 
 def join(code: str, pieces: Sequence[str]) -> CompleteProgram:
-    """Put above `code` what it needs of earlier `pieces`, in their order, and the usual imports.
+    """Complete `code` with what it needs of earlier `pieces`, in their order, and with the usual imports.
 
     Raises CodeError if `code` is not Python.
     """
@@ -125,7 +125,7 @@ def join(code: str, pieces: Sequence[str]) -> CompleteProgram:
 
 
 def _amended(code: str, pieces: Sequence[str]) -> tuple[str, str]:
-    """(class, its base) of a class in `code` that only adds methods to that of an earlier piece; else ("", "")."""
+    """Return (class, its base) of a class in `code` that only adds methods to an earlier one; otherwise ("", "")."""
     facts = inspect(code)
     for item in ast.parse(code).body if facts.lacking or facts.nameless else ():
         if not isinstance(item, ast.ClassDef) or item.name not in facts.node_classes:
@@ -140,7 +140,7 @@ def _amended(code: str, pieces: Sequence[str]) -> tuple[str, str]:
 
 
 def _above(imports: Iterable[str], taken: Mapping[int, set[int]], pieces: Sequence[str]) -> str:
-    """The imports and statements that come above the code, imports first."""
+    """Return the imports and statements that come above the code, imports first."""
     first, then = list(imports), list[str]()
     for number in sorted(taken):
         piece = _piece(pieces[number])
@@ -152,7 +152,7 @@ def _above(imports: Iterable[str], taken: Mapping[int, set[int]], pieces: Sequen
 
 
 def _binding(name: str, pieces: Sequence[str]) -> tuple[int, set[int]] | None:
-    """The last piece that binds a name, and the statements of it that are needed."""
+    """Return the last piece that binds a name, and which of its statements are needed."""
     for number in range(len(pieces) - 1, -1, -1):
         piece = _piece(pieces[number])
         if name not in piece.bound:
@@ -178,7 +178,7 @@ def _is_import(found: tuple[int, set[int]], pieces: Sequence[str], name: str) ->
 
 
 def _is_plain(statement: ast.stmt) -> bool:
-    """Whether a statement only gives a name to a value, and calls nothing that has an effect."""
+    """Return whether a statement only gives a name to a value, and calls nothing that has an effect."""
     if not isinstance(statement, ast.Assign | ast.AnnAssign) or statement.value is None:
         return False
     calls = [item for item in ast.walk(statement.value) if isinstance(item, ast.Call)]
@@ -191,7 +191,7 @@ def _is_guard(statement: ast.stmt) -> bool:
 
 @functools.lru_cache(maxsize=512)
 def _piece(source: str) -> _CodePiece:
-    """What a piece binds; nothing, if it is not valid Python by itself."""
+    """Return what a piece binds; nothing, if it is not valid Python by itself."""
     try:
         facts = inspect(source)
         statements = tuple(ast.parse(source).body)
@@ -235,7 +235,7 @@ def _needs_of(text: str) -> Iterable[str]:
 
 @functools.cache
 def usual_import(name: str) -> str:
-    """The import that binds a name which ROS 2's tutorials use without a word; "" for any other."""
+    """Return the import of a name that ROS 2's tutorials use without importing it; "" for any other name."""
     if name in _MODULES:
         return f"import {name}"
     if name in _ALIASES:
@@ -249,7 +249,9 @@ def usual_import(name: str) -> str:
 
 @functools.cache
 def _interfaces() -> Mapping[str, str]:
-    """Message, service or action -> the module that has it, of the packages that are here."""
+    """Return a mapping of each message, service and action to the module that has it, for the packages that are
+    installed.
+    """
     found: dict[str, str] = {}
     there = prefixes.packages(prefixes.installed())
     for package in sorted(set(_PREFERRED) & set(there), key=_PREFERRED.index):

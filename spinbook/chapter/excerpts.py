@@ -1,4 +1,4 @@
-"""Which fences of a chapter repeat a piece of a whole program that it shows: they explain, and need not run."""
+"""Finds the fences that repeat part of a whole program in the chapter: they explain it and need not run."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from spinbook.chapter.python_code import CodeError, inspect
 
 
 def excerpts(fences: Sequence[Fence]) -> dict[int, str]:
-    """Line of a fence whose lines are consecutive in a longer program -> whether that program is "above" or "below"."""
+    """Map the line of each fence that is part of a longer program to where that program is, "above" or "below"."""
     python = [fence for fence in fences if fence.is_python]
     code = {fence.line: _lines(fence.code) for fence in python}
     programs = {fence.line: code[fence.line] for fence in python if _is_whole(fence.code)}
@@ -24,7 +24,7 @@ def excerpts(fences: Sequence[Fence]) -> dict[int, str]:
 
 
 def is_excerpt(item: ClassifiedFence, place: str) -> bool:
-    """Whether a fence that repeats a piece of a program `place` ("above", "below", "") only explains it."""
+    """Return whether a fence only explains the program that it is part of, which is `place` ("above", "below", "")."""
     if not place:
         return False
     if item.kind is CellKind.NODE:
@@ -33,7 +33,7 @@ def is_excerpt(item: ClassifiedFence, place: str) -> bool:
 
 
 def _lines(code: str) -> str:
-    """The lines of code, without the space around them, empty lines and comments."""
+    """Return the lines of code, without the space around them, empty lines and comments."""
     lines = (line.strip() for line in code.split("\n"))
     return "\n" + "".join(f"{line}\n" for line in lines if line and not line.startswith("#"))
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from interface_compiler import prefixes, shipped
 from interface_compiler.definition import KINDS
 
-# The info string is the text behind the opening backticks: a language, then attributes such as
+# The info string is the text after the opening backticks: a language, then attributes such as
 # `title="joint_publisher.py"` (the form Docusaurus and others use) or bare words. MyST's `{code-cell} python` with its
 # `:option:` lines is read as the same thing.
 
@@ -35,7 +35,8 @@ SHELL = frozenset({"bash", "sh", "shell", "zsh", "console", "shell-session", "te
 class Fence:
     """One fenced block. `line` is the line of the opening fence, counted from 1; the code starts below it.
 
-    `code` ends with a newline unless it is empty. `skipped` lines of options stand between the opening and the code.
+    `code` ends with a newline unless it is empty. There are `skipped` lines of options between the opening and the
+    code.
     """
 
     language: str
@@ -61,16 +62,16 @@ class Fence:
 
     @property
     def first_code_line(self) -> int:
-        """The chapter's line on which the code's first line stands."""
+        """The chapter's line on which the code begins."""
         return self.line + 1 + self.skipped
 
     def has(self, flag: str) -> bool:
-        """Whether a bare attribute such as `raises` is set."""
+        """Return whether a bare attribute such as `raises` is set."""
         return self.attributes.get(flag, "false").lower() not in {"false", "no", "0"}
 
 
 def directive(info: str) -> tuple[str, str]:
-    """(name, argument) of MyST's `{name} argument`; ("", "") for a fence that is none, such as Pandoc's `{.python}`."""
+    """Return (name, argument) of MyST's `{name} argument`; ("", "") if it is not one, such as Pandoc's `{.python}`."""
     match = _DIRECTIVE.match(info.strip())
     if match is None or match[1].lower() in PYTHON | SHELL or info.strip().startswith("{code-cell}"):
         return "", ""
@@ -115,7 +116,7 @@ def parse_info(info: str) -> tuple[str, dict[str, str]]:
 
 
 def make_fence(info: str, content: str, line: int) -> Fence:
-    """A fence from what Markdown says of it; a MyST code cell's option lines become attributes.
+    """Make a fence of its info string and content; the option lines of a MyST code cell become attributes.
 
     `raises-exception` among a code cell's tags is `raises`.
     """
@@ -138,14 +139,14 @@ _TITLE = re.compile(r"(?:(?P<package>\w+)/)?(?P<kind>msg|srv|action)/(?P<name>[\
 
 
 def interface_package(package: str) -> str:
-    """The package of the interfaces that chapters define, where the nodes' package is `package`."""
+    """Return the package of the interfaces that chapters define, given the nodes' package."""
     return f"{package}_interfaces"
 
 
 def interface_path(title: str, package: str) -> str | None:
-    """The path `PACKAGE/msg/NAME.msg` that a title stands for, or None if it is something else's.
+    """Return the path `PACKAGE/msg/NAME.msg` that a title stands for, or None if the title is not an interface's.
 
-    `package` is the one of a title that names none.
+    `package` is used if the title does not name one.
 
     >>> interface_path("msg/JointLimits.msg", "my_robot_interfaces")
     'my_robot_interfaces/msg/JointLimits.msg'
@@ -157,7 +158,7 @@ def interface_path(title: str, package: str) -> str | None:
 
 
 def interface_title(title: str) -> str | None:
-    """The title that somebody surely meant who wrote `Limits.msg` or `my-msgs/msg/Limits.msg`; None for others.
+    """Return the title that `Limits.msg` or `my-msgs/msg/Limits.msg` was clearly meant to be; None for others.
 
     >>> interface_title("joint-limits.msg")
     'msg/JointLimits.msg'
@@ -173,8 +174,8 @@ def interface_title(title: str) -> str | None:
 
 
 def is_someone_elses(package: str, own: str) -> bool:
-    """Whether a package is installed and does not belong to a course: a chapter only shows its interfaces. `own` is
-    this course's package."""
+    """Return whether a package is installed and does not belong to a course: a chapter only shows its interfaces. `own`
+    is this course's package."""
     if package == own:
         return False
     if package in (*shipped.standard(), *shipped.optional()):

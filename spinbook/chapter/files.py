@@ -16,19 +16,19 @@ _CHAPTER_ENDINGS = (".md", ".mdx", "/index.md", "/README.md", "/index.mdx", "/re
 
 
 def is_elsewhere(target: str) -> bool:
-    """Whether a link leads out of the course, or stays on its page."""
+    """Return whether a link leads out of the course, or stays on its page."""
     return target.startswith("#") or bool(_ELSEWHERE.match(target)) or target.startswith("attachment:")
 
 
 def split(target: str) -> tuple[str, str]:
-    """(path, anchor with its `#`) of a link; percent-encoded signs are decoded, a query is left out."""
+    """Return (path, anchor with its `#`) of a link; percent-encoded characters are decoded, a query is left out."""
     path, mark, anchor = target.partition("#")
     return unquote(path.partition("?")[0]), mark + anchor
 
 
 @functools.lru_cache(maxsize=8192)
 def locate(root: Path, folder: str, target: str) -> Path | None:
-    """The file or folder, relative to `root`, that a link in a chapter of `folder` means; None: there is none."""
+    """Return the file or folder, relative to `root`, that a link in `folder` leads to; None if there is none."""
     path, _ = split(target)
     if not path:
         return None
@@ -50,7 +50,7 @@ def locate(root: Path, folder: str, target: str) -> Path | None:
 
 
 def _beside(root: Path, folder: str, path: str) -> Path | None:
-    """MkDocs and Docusaurus link to pages: seen from the page, its own name is one more folder."""
+    """Find a target written as MkDocs and Docusaurus link to pages, where the page's own name is one more folder."""
     if not path.startswith("../"):
         return None
     full = posixpath.normpath(posixpath.join(folder, path[3:]))
@@ -68,13 +68,13 @@ def _file(root: Path, full: str) -> Path | None:
 
 
 def _upwards(folder: str) -> list[str]:
-    """A folder and those above it, down from the root last."""
+    """Return a folder and those above it, the root last."""
     parts = [part for part in folder.split("/") if part not in {"", "."}]
     return ["/".join(parts[:count]) for count in range(len(parts), -1, -1)]
 
 
 def read_included(root: Path, folder: str, name: str, included: list[Path]) -> str | None:
-    """The text of a file that a chapter includes, which is added to `included`; None if it is not in the course."""
+    """Return the text of an included file, and add the file to `included`; None if it is not in the course."""
     name, _, section = name.partition(":")
     places = [folder, *_upwards(folder)]
     for place in places:
@@ -90,7 +90,7 @@ def read_included(root: Path, folder: str, name: str, included: list[Path]) -> s
 
 
 def _section(text: str, section: str) -> str:
-    """The lines `FIRST:LAST` of a file, or those between `--8<-- [start:NAME]` and `[end:NAME]`."""
+    """Return the lines `FIRST:LAST` of a file, or those between `--8<-- [start:NAME]` and `[end:NAME]`."""
     lines = text.split("\n")
     first, _, last = section.partition(":")
     if first.isdigit() or last.isdigit():

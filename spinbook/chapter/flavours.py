@@ -28,7 +28,7 @@ Rule = Callable[[StateBlock, int, int, bool], bool]
 #: What such a line may end: a paragraph, a quotation, a list.
 _ALT: RuleOptionsType = {"alt": ["paragraph", "reference", "blockquote", "list"]}
 _FENCE = ("```", "~~~")
-#: What a line of its own may say to a book tool: the kind of its token, and how it is written.
+#: Lines that only book tools understand: the kind of token, and how such a line is written.
 _LINES = (
     ("liquid", re.compile(r"\{%-?\s*(?P<name>\w+)\s*(?P<info>.*?)\s*-?%\}$")),
     ("kramdown", re.compile(r"\{:\s*(?P<info>.*?)\s*\}$")),
@@ -46,7 +46,7 @@ _TAG = re.compile(r"<(/?)([A-Z][\w.]*|details|summary)\b")
 
 @functools.cache
 def parser() -> MarkdownIt:
-    """The parser of blocks. Text in a line is left as it is: `inline` tokens have no children."""
+    """Return the parser of blocks. It does not parse text within a line: `inline` tokens have no children."""
     md = MarkdownIt("commonmark").enable("table")
     md.core.ruler.enableOnly(["normalize", "block"])
     md.use(admon_plugin)
@@ -77,14 +77,14 @@ def _push(
 
 
 def _line(state: StateBlock, start: int, end: int, silent: bool) -> bool:
-    """A line of its own that says something to a book tool."""
+    """Parse a line that only book tools understand."""
     text = _text(state, start)
     if not text or _is_code(state, start):
         return False
     kind, name, info = _parse(text)
     if not kind:
         return False
-    # Prose may begin with such words; only a paragraph's first line says it to the tool.
+    # Prose may begin with such words, so they count only on a paragraph's first line.
     if silent:
         return kind != "dropped"
     stop = start + 1
@@ -97,7 +97,7 @@ def _line(state: StateBlock, start: int, end: int, silent: bool) -> bool:
 
 
 def _parse(text: str) -> tuple[str, str, str]:
-    """(kind, name, rest) of such a line; ("", "", "") for any other."""
+    """Return (kind, name, rest) of a line for book tools; ("", "", "") for any other."""
     for kind, pattern in _LINES:
         if match := pattern.match(text):
             parts = match.groupdict()
@@ -112,7 +112,7 @@ def _complete(text: str) -> bool:
 
 
 def _tab(state: StateBlock, start: int, end: int, silent: bool) -> bool:
-    """`=== "Title"`, and what is indented by four below it."""
+    """Parse `=== "Title"` and the lines below it that are indented by four."""
     text = _text(state, start)
     if not text.startswith("=== ") or _is_code(state, start):
         return False
@@ -129,7 +129,7 @@ def _tab(state: StateBlock, start: int, end: int, silent: bool) -> bool:
 
 
 def _tag(state: StateBlock, start: int, end: int, silent: bool) -> bool:
-    """An opening or closing tag of MDX, or of `<details>`, which may go on over several lines."""
+    """Parse an opening or closing tag of MDX, or of `<details>`, over one or more lines."""
     if state.src[state.bMarks[start] + state.tShift[start] : state.bMarks[start] + state.tShift[start] + 1] != "<":
         return False
     text = _text(state, start)
@@ -154,7 +154,7 @@ def _tag(state: StateBlock, start: int, end: int, silent: bool) -> bool:
 
 
 def _jsx(state: StateBlock, start: int, end: int, silent: bool) -> bool:
-    """A tag of HTML with properties as MDX writes them: `<img src={require('./a.png').default} style={{…}} />`."""
+    """Parse an HTML tag with properties as in MDX: `<img src={require('./a.png').default} style={{…}} />`."""
     text = _text(state, start)
     if not re.match(r"<[a-z]", text) or _is_code(state, start):
         return False
@@ -174,7 +174,7 @@ def _same_line(text: str, name: str) -> bool:
 
 
 def _tag_end(text: str) -> int:
-    """The index behind a tag's `>`, braces and quotation marks respected; -1 if it does not end."""
+    """Return the index after a tag's `>`, outside braces and quotation marks; -1 if it does not end."""
     depth, quote = 0, ""
     for match in _IN_TAG.finditer(text):
         index, letter = match.start(), match[0]
@@ -190,7 +190,7 @@ def _tag_end(text: str) -> int:
 
 
 def _html_before_fence(md: MarkdownIt) -> Rule:
-    """CommonMark's HTML block, cut where a fence begins inside it: no tool but CommonMark swallows that."""
+    """Return CommonMark's rule for HTML blocks, changed so that a fence ends the block, as in other tools."""
     html_block = next(rule.fn for rule in md.block.ruler.__rules__ if rule.name == "html_block")
 
     def cut(state: StateBlock, start: int, end: int, silent: bool) -> bool:

@@ -23,7 +23,7 @@ _DISTRIBUTIONS = {
     "sklearn": "scikit-learn",
     "serial": "pyserial",
 }
-#: Packages that exist, though they are not installed here: none is a misspelling of another.
+#: Packages that exist but may not be installed here, so that none is taken for a misspelling of another.
 _REAL = frozenset(
     [
         "nav2_msgs",
@@ -48,7 +48,7 @@ _REAL = frozenset(
 
 @dataclass(frozen=True)
 class MissingPackage:
-    """Something that is missing here. `package` is the package to install."""
+    """A package that is missing here. `package` is the one to install."""
 
     package: str
     found: str
@@ -59,7 +59,7 @@ class MissingPackage:
 def missing_imports(
     code: PythonCode, own: Mapping[str, frozenset[str]], own_interfaces: Collection[str] = ()
 ) -> list[MissingPackage]:
-    """What a program imports and this environment does not have.
+    """Return what a program imports and this environment lacks.
 
     `own` are the chapter's and the course's packages, each with its modules; under "" the modules of both.
     `own_interfaces` are those that the course defines, such as `my_interfaces/msg/Pose`.
@@ -113,7 +113,7 @@ def _not_installed(top: str, line: int) -> MissingPackage:
 
 
 def remedy(package: str) -> str:
-    """How to get a package of interfaces that is not here."""
+    """Return how to get a package of interfaces that is not here."""
     unknown = "It is a package of ROS interfaces: install it, or show its .msg, .srv and .action files in the chapter."
     return shipped.how_to_add(package) or unknown
 
@@ -130,7 +130,7 @@ def _no_module(module: str, names: list[str], line: int) -> MissingPackage:
 
 
 def _places_of(names: set[str], package: str) -> list[str]:
-    """The modules that have interfaces of these names, those of `package` first."""
+    """Return the modules that have interfaces of these names, those of `package` first."""
     found = (place for place, known in _all_interfaces().items() if known & names)
     return sorted(found, key=lambda place: (place.partition(".")[0] != package, place))
 
@@ -161,7 +161,7 @@ def _spec_of(module: str) -> object | None:
 
 @functools.cache
 def _folders(top: str) -> tuple[Path, ...]:
-    """The folders of an installed package; none where its modules can't be told from its files."""
+    """Return the folders of an installed package; none if its modules can't be determined from its files."""
     if top in sys.stdlib_module_names:
         return ()
     return tuple(Path(folder) for folder in getattr(_spec_of(top), "submodule_search_locations", None) or ())
@@ -175,7 +175,7 @@ def _modules_in(top: str) -> frozenset[str]:
 
 @functools.cache
 def _has_module(top: str, rest: str) -> bool:
-    """Whether a package has a module. Only packages of ROS: others may make modules while they are imported."""
+    """Return whether a ROS package has a module; True for other packages, which may make modules on import."""
     if not _folders(top) or (top != "rclpy" and top not in ros_packages()):
         return True
     return rest.partition(".")[0] in _modules_in(top)
@@ -196,13 +196,13 @@ def _similar(module: str) -> str:
 
 @functools.cache
 def ros_packages() -> frozenset[str]:
-    """The ROS packages of this environment."""
+    """Return the ROS packages of this environment."""
     return frozenset(prefixes.packages(prefixes.installed()))
 
 
 @functools.cache
 def interfaces_of(module: str) -> frozenset[str]:
-    """The names that `sensor_msgs.msg` and the like have, from the interface files; empty for any other module."""
+    """Return the names in a module such as `sensor_msgs.msg`, from the interface files; empty for any other module."""
     match = re.fullmatch(r"(\w+)\.(msg|srv|action)", module)
     if not match:
         return frozenset()
@@ -212,14 +212,14 @@ def interfaces_of(module: str) -> frozenset[str]:
 
 
 def own_names(module: str, own_interfaces: Collection[str]) -> frozenset[str]:
-    """The names of a module such as `my_interfaces.msg` that the course defines itself."""
+    """Return the names of a module such as `my_interfaces.msg` that the course defines itself."""
     beginning = module.replace(".", "/") + "/"
     return frozenset(name.removeprefix(beginning) for name in own_interfaces if name.startswith(beginning))
 
 
 @functools.cache
 def _all_interfaces() -> Mapping[str, frozenset[str]]:
-    """Module of interfaces -> its names, of all packages that are here."""
+    """Map each module of interfaces to its names, for all installed packages."""
     found: dict[str, set[str]] = {}
     for package in ros_packages():
         for interface in interface_files.interfaces_of(package) or []:

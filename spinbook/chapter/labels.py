@@ -1,7 +1,7 @@
-"""MyST's cross references: what a chapter's labels name, and `{ref}`, `{doc}`, `{numref}`, `[](label)` as plain links.
+"""MyST's cross-references: what a chapter's labels name, and `{ref}`, `{doc}`, `{numref}`, `[](label)` as plain links.
 
 A reference becomes a link to the file of a chapter and a heading in it, by the id that JupyterLab gives the heading.
-The site has other ids: see `Heading.slug`.
+The site uses other ids: see `Heading.slug`.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from spinbook.chapter.files import is_elsewhere, locate
 from spinbook.chapter.links import places_of, rule_of
 
 _ROLES = frozenset({"ref", "doc", "numref", "any", "std:ref", "std:doc", "std:numref"})
-#: What a role says of its target: `words <target>`.
+#: The content of a role: `words <target>`.
 _TITLED = re.compile(r"(.*?)\s*<([^<>]+)>$", re.DOTALL)
-#: Where a number would be that only Sphinx knows.
+#: The place of a number that only Sphinx knows.
 _NUMBER = re.compile(r"\s*(?:%s|\{number\}|\{name\})\s*")
 _LABEL = re.compile(r"[\w:-]+")
-#: What may stand in a fragment as it is.
+#: Characters that a fragment may contain unquoted.
 _SAFE = "/?:@!$&'*+,;=-._~"
 
 
@@ -55,7 +55,7 @@ class Label:
 
 
 def words_of(heading: Block) -> str:
-    """A heading's words, as Markdown."""
+    """Return a heading's words, as Markdown."""
     return _first_words("\n".join(line.text for line in heading.lines))
 
 
@@ -67,7 +67,7 @@ def _first_words(markdown: str) -> str:
 
 
 def headings(blocks: Iterable[Block]) -> Iterator[Heading]:
-    """The headings of a chapter, in order. JupyterLab finds the first of equal ones."""
+    """Yield the headings of a chapter, in order. JupyterLab finds the first of equal ones."""
     seen: set[str] = set()
     for block in _all(blocks):
         if block.kind is BlockKind.HEADING:
@@ -79,7 +79,7 @@ def headings(blocks: Iterable[Block]) -> Iterator[Heading]:
 
 
 def labels(blocks: Sequence[Block], file: Path) -> dict[str, Label]:
-    """The labels of a chapter: those before a heading name it, others the part of the chapter in which they are."""
+    """Return a chapter's labels: a label before a heading names it, any other label the section around it."""
     coming = headings(blocks)
     found: dict[str, Label] = {}
     waiting: list[str] = []
@@ -114,7 +114,7 @@ def _plain_parser() -> MarkdownIt:
 
 @functools.lru_cache(maxsize=4096)
 def _text(markdown: str) -> str:
-    """Markdown's words without its marks."""
+    """Return the text of Markdown without its markup."""
     (inline,) = _plain_parser().parseInline(markdown)
     return "".join(" " if "break" in child.type else child.content for child in inline.children or [])
 
@@ -131,7 +131,7 @@ class _LabelReference:
 
 
 def may_refer(text: str, known: Collection[str]) -> bool:
-    """Whether a chapter's text can have references, when these labels are known: a quick look, before it is parsed."""
+    """Return whether a text may have references to these labels: a quick test before parsing."""
     return "}`" in text or "[](" in text or ("](" in text and bool(known))
 
 
@@ -149,7 +149,7 @@ class References:
     sections: Mapping[str, Heading]
 
     def resolved(self, text: str) -> str:
-        """`text` with links in place of its references. No line is added or lost."""
+        """Return `text` with links in place of its references. No line is added or lost."""
         if not may_refer(text, self.known):
             return text
         lines = text.split("\n")
@@ -163,7 +163,7 @@ class References:
         return "\n".join(lines)
 
     def problems(self, blocks: Iterable[Block]) -> Iterator[Problem]:
-        """Each name that is unknown, where it is used first."""
+        """Yield a problem for each unknown name, where it is first used."""
         reported: set[str] = set()
         for block in _all(blocks):
             lines = block.new or block.lines
@@ -179,7 +179,7 @@ class References:
                         yield self._problem(item, unknown, lines[min(row, len(lines) - 1)].number)
 
     def is_label(self, target: str) -> bool:
-        """Whether the target of a link is a label and no file, known or not."""
+        """Return whether the target of a link is a label, known or not, rather than a file."""
         folder = self.file.parent.as_posix()
         looks_so = _normal(unquote(target)) in self.known or (bool(self.known) and bool(_LABEL.fullmatch(target)))
         return looks_so and locate(self.root, folder, target) is None
@@ -194,7 +194,7 @@ class References:
         return Problem(self.file, line, found, fix, Severity.WARNING, group="labels that no chapter has")
 
     def _new(self, item: _LabelReference) -> tuple[str | None, str]:
-        """(what takes a reference's place, the name that is unknown); None leaves it as it is."""
+        """Return (the replacement of a reference, the unknown name in it); None leaves the reference as it is."""
         if item.role.endswith("doc"):
             return self._document(item.words, item.target)
         name = unquote(item.target.removeprefix("#"))
@@ -207,7 +207,7 @@ class References:
         return self._other_link(item)
 
     def _other_link(self, item: _LabelReference) -> tuple[str | None, str]:
-        """A link to a label that no chapter has, or one without words to a heading or a chapter."""
+        """Replace a link to a label that no chapter has, or a link without words to a heading or a chapter."""
         heading = self.sections.get(item.target.removeprefix("#")) if item.target.startswith("#") else None
         if heading and not item.words:
             return self._link(Label(self.file, heading.anchor, heading.words), ""), ""
@@ -265,7 +265,7 @@ def _role(state: StateInline, start: int, before: int) -> _LabelReference | None
 
 
 def _link(state: StateInline, start: int, before: int) -> _LabelReference | None:
-    """A link whose target is written behind its words; for `[words][name]` it is elsewhere."""
+    """Return a link with its target after its words; that of `[words][name]` is elsewhere."""
     opening = next(token for token in state.tokens[before:] if token.type == "link_open")
     end, pos = state.pos, state.pos
     label_end = state.md.helpers.parseLinkLabel(state, start, False)
@@ -277,7 +277,7 @@ def _link(state: StateInline, start: int, before: int) -> _LabelReference | None
 
 
 def _references(text: str) -> Iterator[tuple[int, str, list[_LabelReference]]]:
-    """(first line, content, references) of each part of a text that is read as one, such as a paragraph."""
+    """Yield (first line, content, references) for each part of a text that is parsed as a unit, such as a paragraph."""
     md = _parser()
     env: dict[str, Any] = {}
     for token in md.parse(text, env):
@@ -303,7 +303,7 @@ def _put(
     item: _LabelReference,
     new: str,
 ) -> None:
-    """Put a reference's link into its lines; of one that goes on in the next line, into that in which text remains."""
+    """Put a reference's link into its lines; a reference over two lines goes into the line that still has text."""
     first, last = (content.count("\n", 0, offset) for offset in (item.start, item.end))
     spots = places[first : last + 1]
     if any(spot is None for spot in spots) or not spots:

@@ -17,20 +17,20 @@ from spinbook.chapter.terminal import Command, CommandKind
 
 @dataclass(frozen=True)
 class LaunchedNode:
-    """One `Node(package=…, executable=…)` of a launch file; `words` are what its process is given."""
+    """One `Node(package=…, executable=…)` of a launch file; `words` are its process's arguments."""
 
     package: str
     executable: str
     words: tuple[str, ...]
 
     def command(self, line: int) -> Command:
-        """`ros2 run` with this node's name, parameters and remappings."""
+        """Return `ros2 run` with this node's name, parameters and remappings."""
         words = ("ros2", "run", self.package, self.executable, *self.words)
         return Command(CommandKind.ROS2, shlex.join(words), words, line)
 
 
 def launched_nodes(code: str) -> list[LaunchedNode]:
-    """The nodes that a launch file starts, in order; none if one of them is not given by literals."""
+    """Return the nodes that a launch file starts, in order; none if the arguments of one are not literals."""
     nodes = [_node(call) for call in _calls(code)]
     return [node for node in nodes if node is not None] if all(nodes) else []
 
@@ -92,7 +92,7 @@ _PATH = re.compile(r"launch/[\w-]+[._]launch\.(py|yaml|yml|xml)|config/[\w-]+\.y
 
 
 def is_package_file(title: str) -> bool:
-    """Whether a title is the path of a launch or parameter file within a package.
+    """Return whether a title is the path of a launch or parameter file within a package.
 
     >>> is_package_file("launch/humanoid.launch.py"), is_package_file("joint_publisher.py")
     (True, False)
@@ -101,7 +101,7 @@ def is_package_file(title: str) -> bool:
 
 
 def unsupported_in_launch_file(code: str) -> str:
-    """What a Python launch file imports from ROS 2's launch that is not supported here; "" if all of it is.
+    """Return what a Python launch file imports from ROS 2's launch that is not supported here; "" if all of it is.
 
     Raises SyntaxError.
     """

@@ -1,7 +1,7 @@
-"""Puts a chapter's blocks in sequence: cells move to the left margin, the rest becomes Markdown that every tool reads.
+"""Puts a chapter's blocks in sequence: cells move to the left margin, the rest becomes Markdown for every tool.
 
-Admonitions become MyST's `:::{note}`, tabs and folded text `<details>`, and whatever holds a cell is cut around it.
-Text that needs no change stays as it is, to the byte.
+Admonitions become MyST's `:::{note}`, tabs and folded text `<details>`, and a container with a cell is split around the
+cell. Text that needs no change stays as it is, to the byte.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ class Piece:
 
 @dataclass(frozen=True)
 class ChapterLayout:
-    """How blocks are laid out. `runs` says which fences become cells, `sign` what is below one that does not."""
+    """How blocks are laid out. `runs` says which fences become cells, `sign` gives the note below one that does not."""
 
     runs: Callable[[Block], bool]
     sign: Callable[[Block], str]
 
     def pieces(self, blocks: Sequence[Block]) -> list[Piece]:
-        """The chapter's pieces, in order."""
+        """Return the chapter's pieces, in order."""
         out: list[Piece] = []
         for block in blocks:
             if block.kind is BlockKind.HEADING:
@@ -154,7 +154,7 @@ class ChapterLayout:
 
 
 def _item(pieces: list[Piece], marker: str, item: Block) -> list[Piece]:
-    """An item's lines below its marker, up to its first cell; what follows a cell is at the margin."""
+    """Indent an item's lines below its marker, up to its first cell; what follows a cell goes to the margin."""
     out: list[Piece] = []
     first, in_item = True, True
     for piece in pieces:
@@ -189,7 +189,7 @@ def _height(block: Block) -> int:
 
 
 def _spaced(pieces: list[Piece], block: Block) -> list[Piece]:
-    """With an empty line before and behind: what is put instead of a tag must not run into its neighbours."""
+    """Add an empty line before and after, so that what replaces a tag does not run into its neighbours."""
     if not pieces:
         return []
     before = [] if pieces[0].is_blank else _lines([SourceLine("", block.line)])
@@ -198,7 +198,7 @@ def _spaced(pieces: list[Piece], block: Block) -> list[Piece]:
 
 
 def _wrapped(pieces: list[Piece], opening: Sequence[str], closing: Sequence[str], block: Block) -> list[Piece]:
-    """The lines between an opening and a closing, again around each cell."""
+    """Put the opening and closing lines around the pieces, and again around the parts between cells."""
     out: list[Piece] = []
     lines: list[Piece] = []
 

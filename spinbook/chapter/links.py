@@ -1,6 +1,6 @@
-"""Finds and replaces the targets of links and images in Markdown, where markdown-it finds them: never in code.
+"""Finds and replaces the targets of links and images in Markdown as markdown-it parses them: never in code.
 
-markdown-it parses; its rules for links, images and HTML are watched for the place of each target in the text.
+markdown-it parses; wrappers around its rules for links, images and HTML record where each target is in the text.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def _watched(rule: Any, is_image: bool) -> Any:
 
 
 def _destination(state: StateInline, label: int, is_image: bool) -> _LinkTarget | None:
-    """The place of `target` in `[text](target "title")`; None for a reference, whose target is elsewhere."""
+    """Return the place of `target` in `[text](target "title")`; None for a reference, whose target is elsewhere."""
     # Links in links are not allowed, but images are: the end of the label must be searched again.
     pos = state.pos
     label_end = state.md.helpers.parseLinkLabel(state, label, not is_image)
@@ -77,7 +77,7 @@ def _destination(state: StateInline, label: int, is_image: bool) -> _LinkTarget 
 
 
 def _attribute_list(state: StateInline) -> None:
-    """Kramdown's and MkDocs' `{:style="…"}` behind a link or an image says how it looks: it is left out."""
+    """Remove kramdown's and MkDocs' `{:style="…"}` after a link or an image, which only styles it."""
     rest = state.src[state.pos :]
     if rest.startswith("{") and "}" in rest and (rest[1] in ":.#" or "=" in rest.partition("}")[0]):
         end = state.pos + rest.index("}") + 1
@@ -97,7 +97,7 @@ def _watched_html(rule: Any) -> Any:
 
 
 def linked(text: str, target: Target) -> str:
-    """`text` with the targets of its links and images replaced. No line is added or lost."""
+    """Return `text` with the targets of its links and images replaced. No line is added or lost."""
     if not any(mark in text for mark in ("](", "]:", "<")):
         return text
     md = _parser()
@@ -121,7 +121,7 @@ def linked(text: str, target: Target) -> str:
 def _replace(
     lines: list[str], at: list[int], first: int, content: str, found: list[_LinkTarget], target: Target
 ) -> None:
-    """Put new targets into the lines of one inline token. `at` is how far each line has been read."""
+    """Put new targets into the lines of an inline token. `at` is how far each line has been read."""
     places = list(places_of(lines, at, first, content))
     for item in sorted(found, key=lambda item: -item.start):
         new = _new(content, item, target)
@@ -138,7 +138,7 @@ def _replace(
 def places_of(lines: list[str], at: list[int], first: int, content: str) -> Iterator[tuple[int, int] | None]:
     """Yield where each line of an inline token's content is: (number of the line, column).
 
-    `first` is the token's first line. `at` is how far each line has been read: it is changed.
+    `first` is the token's first line. `at` is how far each line has been read; it is updated.
     """
     for row, part in enumerate(content.split("\n")):
         number = first + row
@@ -173,7 +173,7 @@ def _references(lines: list[str], references: dict[str, Any], target: Target) ->
 
 
 def in_html(html: str, target: Target) -> str:
-    """A piece of HTML with the targets of its images and links replaced."""
+    """Return a piece of HTML with the targets of its images and links replaced."""
     tags = _Tags()
     tags.feed(html)
     for tag, raw, value in tags.found:

@@ -1,4 +1,4 @@
-"""What the code of a Node class shows: whether it can be created, and which attributes of `self` nothing sets."""
+"""Facts about a Node class from its code: whether it can be created, and which attributes of `self` are never set."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ NODE_CLASSES = frozenset({"Node", "LifecycleNode"})
 
 
 def last_name(expression: ast.expr) -> str:
-    """The last part of a dotted name: `Node` of `rclpy.node.Node`."""
+    """Return the last part of a dotted name: `Node` of `rclpy.node.Node`."""
     if isinstance(expression, ast.Attribute):
         return expression.attr
     return expression.id if isinstance(expression, ast.Name) else ""
 
 
 def can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], everything: Sequence[ast.AST]) -> bool:
-    """Whether a Node class can be created without a main: nothing else creates it, and it needs no arguments."""
+    """Return whether a Node class can be created without a main: nothing else creates it, and it needs no arguments."""
     own = classes[name]
     inside = set(ast.walk(own))
     used = any(isinstance(i, ast.Name) and i.id == name and i not in inside for i in everything)
@@ -29,7 +29,7 @@ def can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], everything: 
 
 
 def needs_arguments(own: ast.ClassDef) -> bool:
-    """Whether a class can't be made without arguments."""
+    """Return whether a class can't be created without arguments."""
     init = next((i for i in own.body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
     if init is None:
         return False
@@ -39,7 +39,7 @@ def needs_arguments(own: ast.ClassDef) -> bool:
 
 
 def gives_no_name(own: ast.ClassDef) -> bool:
-    """Whether a class leaves the making to rclpy's Node, which wants a name."""
+    """Return whether a class uses the constructor of rclpy's Node, which needs a name."""
     has_init = any(isinstance(i, ast.FunctionDef) and i.name == "__init__" for i in own.body)
     return not has_init and [last_name(base) for base in own.bases] in (["Node"], ["LifecycleNode"])
 
@@ -47,7 +47,7 @@ def gives_no_name(own: ast.ClassDef) -> bool:
 def attributes_lacking(
     everything: Sequence[ast.AST], names: list[str], classes: Mapping[str, ast.ClassDef]
 ) -> dict[str, int]:
-    """The attributes of `self` that these classes read and nothing in the code or in rclpy's Node defines."""
+    """Return the attributes of `self` that these classes read but neither the code nor rclpy's Node defines -> line."""
     known = node_attributes() if names else frozenset()
     if not known:
         return {}
@@ -65,7 +65,7 @@ def attributes_lacking(
 
 
 def _bound(own: ast.ClassDef) -> set[str]:
-    """The names of a class's methods and inner classes, and of all variables in it."""
+    """Return the names of a class's methods and inner classes, and of all variables in it."""
     bound = {item.name for item in own.body if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)}
     for item in ast.walk(own):
         if isinstance(item, ast.Assign | ast.AnnAssign):
@@ -81,7 +81,7 @@ def _read_of_self(own: ast.ClassDef) -> Iterator[tuple[str, int]]:
 
 
 def used_by_init(lacking: Mapping[str, int], names: list[str], classes: Mapping[str, ast.ClassDef]) -> str:
-    """The first of the lacking attributes that a class uses in its `__init__`, or in what that calls; "" if none."""
+    """Return the first missing attribute that a class uses in `__init__` or in a method called there; "" if none."""
     for name in names:
         methods = {item.name: item for item in classes[name].body if isinstance(item, ast.FunctionDef)}
         used: set[str] = set()
@@ -93,7 +93,7 @@ def used_by_init(lacking: Mapping[str, int], names: list[str], classes: Mapping[
 
 
 def _called_from(start: str, methods: Mapping[str, ast.FunctionDef]) -> list[str]:
-    """A method, and those of the class that it calls at the level of its own statements, directly or not."""
+    """Return a method and the class's methods that its top-level statements call, directly or indirectly."""
     found = [start] if start in methods else []
     for name in found:
         for item in methods[name].body:
@@ -106,7 +106,7 @@ def _called_from(start: str, methods: Mapping[str, ast.FunctionDef]) -> list[str
 
 
 def never_initialized(names: Sequence[str], classes: Mapping[str, ast.ClassDef]) -> dict[str, int]:
-    """The Node classes whose own `__init__` does not call Node's: nothing of such a node works -> line."""
+    """Return the Node classes whose `__init__` does not call Node's, so that nothing in them works -> line."""
     found: dict[str, int] = {}
     for name in names:
         bases = [last_name(base) for base in classes[name].bases]
@@ -120,7 +120,7 @@ def never_initialized(names: Sequence[str], classes: Mapping[str, ast.ClassDef])
 
 @functools.cache
 def node_attributes() -> frozenset[str]:
-    """The attributes of every rclpy Node, read from rclpy's source; empty if there is no rclpy."""
+    """Return the attributes of every rclpy Node, read from rclpy's source; empty if there is no rclpy."""
     try:
         spec = importlib.util.find_spec("rclpy")
     except (ImportError, ValueError):

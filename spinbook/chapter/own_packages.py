@@ -1,6 +1,6 @@
 """The ROS packages that a chapter makes: their names, files and executables.
 
-It is read from `ros2 pkg create`, from the `setup.py` shown, and from files' paths and the sentences that name them.
+They are read from `ros2 pkg create`, a `setup.py` in the chapter, file paths, and the sentences that name files.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ class OwnPackages:
     names: frozenset[str] = frozenset()
     executables: dict[tuple[str, str], str] = field(default_factory=dict)
     compiled: frozenset[str] = frozenset()
-    """Those that `ros2 pkg create` makes for C++."""
+    """The packages that `ros2 pkg create` makes for C++."""
 
 
 def own_packages(fences: Iterable[Fence]) -> OwnPackages:
-    """The packages that these fences make or show."""
+    """Return the packages that these fences make or show."""
     names: set[str] = set()
     compiled: set[str] = set()
     executables: dict[tuple[str, str], str] = {}
@@ -63,7 +63,7 @@ def own_packages(fences: Iterable[Fence]) -> OwnPackages:
 
 
 def created_package(words: Sequence[str]) -> tuple[str, str]:
-    """(name, build type) of `ros2 pkg create …`; the name is "" where there is none."""
+    """Return (name, build type) of `ros2 pkg create …`; the name is "" if there is none."""
     name, build_type, skip = "", "ament_cmake", ""
     for word in words[3:]:
         if word.startswith("--"):
@@ -76,7 +76,7 @@ def created_package(words: Sequence[str]) -> tuple[str, str]:
         elif not name:
             name = word
     if not name and "--dependencies" in words:
-        # Written behind the dependencies, the name is the last word.
+        # After the dependencies, the name is the last word.
         name = words[-1]
     return name, build_type
 
@@ -102,7 +102,7 @@ def _entries(code: str) -> tuple[dict[tuple[str, str], str], set[str]]:
 
 
 def _package_of(path: str) -> str:
-    """The package in a path such as src/my_robot/my_robot/talker.py."""
+    """Return the package in a path such as src/my_robot/my_robot/talker.py."""
     parts = [part for part in path.split("/")[:-1] if part not in {"", ".", "..", "~"}]
     if "src" in parts and parts.index("src") + 1 < len(parts):
         name = parts[parts.index("src") + 1]
@@ -112,7 +112,7 @@ def _package_of(path: str) -> str:
 
 
 def named_files(blocks: Iterable[Block]) -> dict[int, str]:
-    """Line of a fence -> the Python file that its first comment, or the text just before it, says that it is."""
+    """Map the line of a fence to its Python file, as named in its first comment or in the text just before it."""
     found: dict[int, str] = {}
     words: list[str] = []
     for block in (inner for top in blocks for inner in top.walk()):

@@ -1,4 +1,4 @@
-"""How a program starts and goes on, which others it starts, and what it wants: read from its syntax tree."""
+"""How a program starts and runs, which other programs it starts, and what it needs: read from its syntax tree."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 
 from spinbook.chapter.node_classes import last_name
 
-#: Functions that start a program, whatever they are imported as.
+#: Functions that start a program, under whatever name they are imported.
 _STARTING = frozenset(
     ["system", "popen", "Popen", "check_call", "check_output", "getoutput", "getstatusoutput", "startfile"]
 ) | {
@@ -16,7 +16,7 @@ _STARTING = frozenset(
     "create_subprocess_shell",
 }
 _STARTING_FAMILIES = ("exec", "spawn", "posix_spawn")
-#: Functions of `subprocess` whose names others have as well.
+#: Functions of `subprocess` with names that other modules use, too.
 _OF_SUBPROCESS = frozenset({"run", "call"})
 
 
@@ -29,7 +29,7 @@ _READS_COMMAND_LINE = frozenset({"parse_args", "parse_known_args"})
 
 
 def programs_started(everything: Sequence[ast.AST]) -> dict[str, int]:
-    """The words of the commands that code starts, programs among them -> line. Names are followed to their values."""
+    """Return the words of the commands that code runs -> line. Variables are followed to their values."""
     found: dict[str, int] = {}
     calls = [item for item in everything if isinstance(item, ast.Call)]
     of_subprocess = _names_of("subprocess", everything)
@@ -43,7 +43,7 @@ def programs_started(everything: Sequence[ast.AST]) -> dict[str, int]:
 
 
 def words_read(everything: Sequence[ast.AST]) -> int:
-    """How many words a program takes from its command line without looking whether they are there."""
+    """Return how many command-line arguments a program reads without checking that they exist."""
     if any(_looks_first(item) for item in everything):
         return 0
     indexes = (item.slice for item in everything if isinstance(item, ast.Subscript) and _is_argv(item.value))
@@ -52,19 +52,19 @@ def words_read(everything: Sequence[ast.AST]) -> int:
 
 
 def calls_main(statement: ast.stmt) -> bool:
-    """Whether a statement is `main()`."""
+    """Return whether a statement calls `main()`."""
     value = statement.value if isinstance(statement, ast.Expr) else None
     return isinstance(value, ast.Call) and isinstance(value.func, ast.Name) and value.func.id == "main"
 
 
 def starts_ros(call: ast.Call) -> bool:
-    """Whether a call is that of `rclpy.init` or `rclpy.create_node`."""
+    """Return whether a call is one of `rclpy.init` or `rclpy.create_node`."""
     dotted = ast.unparse(call.func)
     return dotted in {"rclpy.init", "rclpy.create_node"}
 
 
 def at_top(tree: ast.Module) -> list[ast.stmt]:
-    """The statements that run at once, those in `try`, `with` and `if` among them."""
+    """Return the statements that run when the code does, with those in `try`, `with` and `if`."""
     found: list[ast.stmt] = []
     todo = list(tree.body)
     while todo:
@@ -76,7 +76,7 @@ def at_top(tree: ast.Module) -> list[ast.stmt]:
 
 
 def loops_forever(statement: ast.stmt) -> bool:
-    """`while True`, `while rclpy.ok()`, and servers that never return."""
+    """Return whether a statement is `while True`, `while rclpy.ok()`, or a server that never returns."""
     if isinstance(statement, ast.While):
         test = statement.test
         endless = isinstance(test, ast.Constant) and bool(test.value)
@@ -87,14 +87,15 @@ def loops_forever(statement: ast.stmt) -> bool:
 
 
 def wants_ros(tree: ast.Module) -> bool:
-    """Whether code outside classes makes a node, spins one or shuts ROS down, and so needs `rclpy.init` before it."""
+    """Return whether code outside classes makes a node, spins one or shuts ROS down, and so needs `rclpy.init` before
+    it."""
     outside = (item for item in tree.body if not isinstance(item, ast.ClassDef))
     calls = (item for statement in outside for item in ast.walk(statement) if isinstance(item, ast.Call))
     return any(_is_ros(call.func) for call in calls)
 
 
 def leaves(tree: ast.Module) -> str:
-    """How the top level of code would end a notebook's kernel, or take its command line for its own; "" if not."""
+    """Return how the code's top level would end a notebook's kernel or read its command line; "" if it would not."""
     for statement in tree.body:
         if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.If):
             continue
@@ -124,7 +125,7 @@ def _is_of_os(function: ast.expr) -> bool:
 
 
 def _names_of(module: str, everything: Sequence[ast.AST]) -> frozenset[str]:
-    """What code calls a module, and what it imports from it."""
+    """Return the names that code uses for a module, and those that it imports from it."""
     found = {module}
     for item in everything:
         if isinstance(item, ast.Import):
@@ -135,7 +136,7 @@ def _names_of(module: str, everything: Sequence[ast.AST]) -> frozenset[str]:
 
 
 def _command_words(call: ast.Call, everything: Sequence[ast.AST]) -> Iterator[str]:
-    """The words in a call's arguments, and in what is given to the names among them."""
+    """Yield the words in a call's arguments, and in the values of the variables among them."""
     inside = [item for value in [*call.args, *(k.value for k in call.keywords)] for item in ast.walk(value)]
     names = {item.id for item in inside if isinstance(item, ast.Name)}
     for item in everything:
@@ -146,7 +147,7 @@ def _command_words(call: ast.Call, everything: Sequence[ast.AST]) -> Iterator[st
     texts = [item.value for item in inside if isinstance(item, ast.Constant) and isinstance(item.value, str)]
     before = ""
     for word in (part for text in texts for part in re.split(r"[\s;&|`()]+", text)):
-        # `ros2 service` is no `service`.
+        # The word in `ros2 service` is not the program `service`.
         if before != "ros2":
             yield word
         before = word
@@ -157,7 +158,7 @@ def _is_argv(value: ast.expr) -> bool:
 
 
 def _looks_first(item: ast.AST) -> bool:
-    """Whether code counts the words, or is ready for too few."""
+    """Return whether code counts its arguments, or catches that there are too few."""
     if isinstance(item, ast.Call):
         return last_name(item.func) == "len" and bool(item.args) and _is_argv(item.args[0])
     return isinstance(item, ast.ExceptHandler) and "IndexError" in (ast.unparse(item.type) if item.type else "")

@@ -34,7 +34,7 @@ class Programs:
     _used: dict[int, tuple[int, ...]] = field(default_factory=dict)
 
     def decide(self, items: Sequence[ClassifiedFence]) -> list[ClassifiedFence]:
-        """What each fence becomes; fences without Python stay as they are."""
+        """Decide what each fence becomes; fences without Python stay as they are."""
         out = list(items)
         for number, item in enumerate(items):
             if item.kind is CellKind.NODE:
@@ -55,7 +55,7 @@ class Programs:
         return self._not_run(item, code, joined) or self._made(number, item, joined)
 
     def _not_run(self, item: ClassifiedFence, code: PythonCode, joined: CompleteProgram) -> ClassifiedFence | None:
-        """The fence as one that is only shown, with the reason; None if it can run."""
+        """Return the fence as a static one, with the reason; None if it can run."""
         if joined.missing:
             return self._undefined(item, code, joined.missing)
         if code.never_initialized:
@@ -148,7 +148,7 @@ class Programs:
         return _static(item, f"it needs {names}, which {verb} not installed", f"it needs {names}, not installed here.")
 
     def _name(self, item: ClassifiedFence) -> tuple[str, bool]:
-        """A name for a node's cell; a file that is shown again, changed, keeps its own."""
+        """Return (name, whether the author chose it) for a node's cell; a file shown again keeps its name."""
         name, named, problems = node_name(item, self.named_files.get(item.fence.line, ""), self.file)
         self.problems += problems
         wanted, count = name, 1
@@ -156,14 +156,14 @@ class Programs:
             count += 1
             name = f"{wanted}_{count}"
         if name in self.own:
-            # Its package's folder would be taken for it.
+            # Otherwise an import would find the package's folder instead.
             name = f"{name}_node"
         self._names[name] = name
         return name, named
 
 
 def _why_fragment(item: ClassifiedFence, code: PythonCode, joined: CompleteProgram) -> str:
-    """What a class without a main lacks to be a program; empty if nothing."""
+    """Return what keeps a class without a main from being a program; empty if nothing does."""
     if code.is_complete or not code.node_classes or code.calls_main:
         return ""
     if code.lacking and not joined.amends:
@@ -180,7 +180,7 @@ def _facts(joined: CompleteProgram, code: PythonCode) -> PythonCode:
 
 
 def _needs_arguments(joined: CompleteProgram) -> bool:
-    """Whether the class that code adds methods to can't be made without arguments."""
+    """Return whether the class that the code extends can't be created without arguments."""
     above = ast.parse(joined.before).body if joined.amends else []
     classes = [item for item in above if isinstance(item, ast.ClassDef) and item.name == joined.amends]
     return bool(classes) and needs_arguments(classes[-1])
@@ -218,7 +218,7 @@ def _with_parts(items: list[ClassifiedFence], used: Mapping[int, Iterable[int]])
 
 
 def _goes_on(number: int, used: Mapping[int, Iterable[int]], items: Sequence[ClassifiedFence]) -> bool:
-    """Whether a class without a main, or a script that only begins, gets what it lacks further down."""
+    """Return whether a class without a main, or the beginning of a script, is completed further down."""
     code = items[number].code
     if code is None or code.has_main or code.has_main_guard or code.spins or code.loops:
         return False

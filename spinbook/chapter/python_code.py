@@ -1,4 +1,4 @@
-"""What a piece of Python is, read from its syntax tree and never by running it."""
+"""Facts about a piece of Python, read from its syntax tree, never by running it."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class PythonCode:
     defines: frozenset[str] = frozenset()
     """Names that exist after it ran."""
     needs: Mapping[str, int] = field(default_factory=dict)
-    """Names it uses at its top level, or in what runs from there, that neither it nor Python defines -> line."""
+    """Names it uses but neither it nor Python defines -> line."""
     fragment: str | None = None
     """Why it can't run alone although each line is valid Python, if so."""
     relative_imports: Mapping[str, int] = field(default_factory=dict)
@@ -93,25 +93,25 @@ class PythonCode:
     programs: Mapping[str, int] = field(default_factory=dict)
     """Programs that it starts through os.system, subprocess or `!…` -> line."""
     asks: int = 0
-    """The line on which it waits for keyboard input; 0: it does not."""
+    """The line on which it waits for keyboard input; 0 if it does not."""
     alone: tuple[str, ...] = ()
     """The Node classes that nothing in the code makes or derives from, and that need no arguments."""
     nameless: tuple[str, ...] = ()
-    """Those of them that can't be made after all: they have no `__init__`, and so give the node no name."""
+    """Those of `alone` that can't be created: without an `__init__` they give the node no name."""
     lacking: Mapping[str, int] = field(default_factory=dict)
-    """Attributes of `self` that a Node class uses and nothing sets -> line."""
+    """Attributes of `self` that a Node class uses but nothing sets -> line."""
     fails_at_once: str = ""
     """The first of those that `__init__` uses itself."""
     never_initialized: Mapping[str, int] = field(default_factory=dict)
     """Node classes whose `__init__` does not call Node's -> line."""
     wants_ros: bool = False
-    """Whether it needs that `rclpy.init` was called, by itself or above."""
+    """Whether `rclpy.init` has to be called before it, or by it."""
     initializes: bool = False
     """Whether it calls `rclpy.init`, however it is imported."""
     leaves: str = ""
-    """How it would end a notebook's kernel, or take its command line for its own."""
+    """How it would end a notebook's kernel, or read the kernel's command line."""
     words_read: int = 0
-    """How many words it takes from its command line, whether they are there or not."""
+    """How many command-line arguments it reads without checking that they exist."""
 
     @property
     def is_node(self) -> bool:
@@ -131,17 +131,17 @@ class PythonCode:
 
 
 def blank_magics(code: str) -> str:
-    """The code with IPython's magic lines replaced by `pass`, each on its own line still."""
+    """Return the code with IPython's magic lines replaced by `pass`, each on its own line still."""
     return "\n".join(_MAGIC.sub(r"\1pass", line) for line in code.split("\n"))
 
 
 def has_magics(code: str) -> bool:
-    """Whether a line is one of IPython's (`%plot`, `!ls`)."""
+    """Return whether a line is one of IPython's (`%plot`, `!ls`)."""
     return any(_MAGIC.match(line) for line in code.split("\n"))
 
 
 def programs_in_magics(code: str) -> dict[str, int]:
-    """The programs that a snippet starts with `!program` or `%program` -> line."""
+    """Return the programs that a snippet starts with `!program` or `%program` -> line."""
     found: dict[str, int] = {}
     for number, line in enumerate(code.split("\n"), start=1):
         if match := _MAGIC.match(line):
@@ -234,7 +234,7 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
 
 
 def _imports(everything: Sequence[ast.AST]) -> dict[str, Any]:
-    """What the code imports, each with its first line: modules, names of modules, relative modules."""
+    """Return what the code imports, each with its first line: modules, names of modules, relative modules."""
     optional = _optional_imports(everything)
     imports: dict[str, int] = {}
     interfaces: dict[tuple[str, str], int] = {}
@@ -275,7 +275,7 @@ def _is_launch_function(item: ast.AST) -> bool:
 
 
 def _optional_imports(everything: Sequence[ast.AST]) -> set[ast.AST]:
-    """Imports whose absence the code itself deals with, or that only a type checker reads."""
+    """Return imports whose absence the code itself deals with, or that only a type checker reads."""
     found: set[ast.AST] = set()
     for item in everything:
         caught = isinstance(item, ast.Try) and any(
@@ -297,7 +297,7 @@ def _imports_setuptools(tree: ast.Module) -> bool:
 
 
 def _node_name(call: ast.Call) -> str | None:
-    """The name that a call gives a node literally; None if it gives none."""
+    """Return the name that a call gives a node literally; None if it gives none."""
     function = last_name(call.func)
     is_super_init = (
         function == "__init__"
@@ -313,7 +313,7 @@ def _node_name(call: ast.Call) -> str | None:
 
 
 def _names(everything: Sequence[ast.AST], code: str) -> tuple[frozenset[str], dict[str, int]]:
-    """The names that the code defines, and those it uses and does not define, by Python's own symbol table."""
+    """Return the names that the code defines, and those it uses and does not define, by Python's own symbol table."""
     table = symtable.symtable(code, "<chapter>", "exec")
     defined = {s.get_name() for s in table.get_symbols() if s.is_assigned() or s.is_imported() or s.is_namespace()}
     used: set[str] = set()

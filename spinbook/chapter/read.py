@@ -1,4 +1,4 @@
-"""Reads a chapter: the one entrance to this folder."""
+"""Reads a chapter: the entry point of this package."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ from spinbook.chapter.source import Source, read_source
 class Surroundings:
     """What a chapter may refer to outside itself.
 
-    `package` is the course's ROS package, `modules` the node modules of the course's other chapters, `exercises`
-    the exercises that exist, `names` what chapters are called, by their file, `interfaces` the messages, services and
-    actions that the course defines, such as `my_robot_interfaces/msg/JointLimits`, `labels` what MyST's labels name,
-    `titles` the chapters' titles, by their file.
+    `package` is the course's ROS package, `modules` the node modules of the course's other chapters, `exercises` the
+    exercises that exist, `names` the chapters' names, by their file, `interfaces` the messages, services and actions
+    that the course defines, such as `my_robot_interfaces/msg/JointLimits`, `labels` what MyST's labels name, `titles`
+    the chapters' titles, by their file.
     """
 
     package: str
@@ -102,29 +102,29 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResu
 
 
 def fences_of(root: Path, file: Path) -> Iterator[Fence]:
-    """The fences of a chapter that are closed, in order; none if it can't be read."""
+    """Return the fences of a chapter that are closed, in order; none if it can't be read."""
     return (block.fence for block in _parse(root, file).fences if block.fence and block.closed)
 
 
 def modules_of(root: Path, file: Path) -> frozenset[str]:
-    """The modules whose files a chapter shows: the titles of its fences."""
+    """Return the modules whose files a chapter shows: the titles of its fences."""
     titles = (block.fence.title for block in _parse(root, file).fences if block.fence)
     stems = (Path(title).name.removesuffix(".py") for title in titles if title and title.endswith(".py"))
     return frozenset(stem for stem in stems if stem.isidentifier())
 
 
 def labels_of(root: Path, file: Path) -> dict[str, Label]:
-    """What the labels of a chapter name."""
+    """Return what the labels of a chapter name."""
     return labels(_parse(root, file).blocks, file)
 
 
 def headings_of(root: Path, file: Path) -> tuple[Heading, ...]:
-    """The headings of a chapter."""
+    """Return the headings of a chapter."""
     return tuple(headings(_parse(root, file).blocks))
 
 
 def title_of(root: Path, file: Path) -> str:
-    """The title of a chapter, as Markdown; "" if it can't be read."""
+    """Return the title of a chapter, as Markdown; "" if it can't be read."""
     parsed = _parse(root, file)
     return _title(parsed, file)[0] if parsed.source else ""
 
@@ -138,7 +138,7 @@ def _parse(root: Path, file: Path) -> _ParsedChapter:
 
 
 def forget_chapters() -> None:
-    """Read every chapter's file again when it is asked for: what it includes may have changed."""
+    """Forget what has been read, because files that chapters include may have changed."""
     _parsed.cache_clear()
     locate.cache_clear()
 
@@ -191,7 +191,7 @@ def _classify(
 def _own(
     packages: OwnPackages, surroundings: Surroundings, items: Sequence[ClassifiedFence]
 ) -> dict[str, frozenset[str]]:
-    """Package of the chapter or the course -> the modules that fences show."""
+    """Map each package of the chapter or the course to the modules that fences show."""
     titles = {Path(item.fence.title).name.removesuffix(".py") for item in items if item.fence.title}
     modules = surroundings.modules | titles
     nodes = dict.fromkeys([surroundings.package, *packages.names], modules)
@@ -199,7 +199,7 @@ def _own(
 
 
 def _kinds(surroundings: Surroundings) -> dict[str, frozenset[str]]:
-    """Package of the course's interfaces -> its modules, such as `msg`."""
+    """Map each package of the course's interfaces to its modules, such as `msg`."""
     pairs = [name.split("/")[:2] for name in surroundings.interfaces]
     return {package: frozenset(kind for of, kind in pairs if of == package) for package, _ in pairs}
 
@@ -267,7 +267,7 @@ def _references(
 
 
 def _uses(parsed: _ParsedChapter, root: Path, file: Path) -> tuple[Path, ...]:
-    """The files of the course that the chapter includes, or links to."""
+    """Return the files of the course that the chapter includes, or links to."""
     assert parsed.source is not None
     folder = file.parent.as_posix()
     targets = (target for target, _ in _links(parsed.source.text) if not is_elsewhere(target))
@@ -277,7 +277,7 @@ def _uses(parsed: _ParsedChapter, root: Path, file: Path) -> tuple[Path, ...]:
 
 @functools.lru_cache(maxsize=512)
 def _links(text: str) -> tuple[tuple[str, int], ...]:
-    """Targets of links and images, each with its line, counted from 1."""
+    """Return the targets of links and images, each with its line, counted from 1."""
     if "](" not in text and "]:" not in text:
         return ()
     tokens = MarkdownIt("commonmark").enable("table").parse(text)
@@ -295,7 +295,7 @@ def _links_in(token: Token) -> Iterator[tuple[str, int]]:
 
 
 def _heading(parsed: _ParsedChapter, title: str) -> list[Piece]:
-    """The title as the chapter's heading, where it is only in the front matter, as Docusaurus and Jekyll want it."""
+    """Return a heading with the title if the title is only in the front matter, as Docusaurus and Jekyll expect."""
     headings = [block.lines for block in parsed.blocks if block.kind is BlockKind.HEADING]
     if any(lines[0].text.lstrip().startswith("# ") or len(lines) > 1 for lines in headings):
         return []

@@ -1,4 +1,4 @@
-"""Decides for each command of a chapter's shell fences whether it can run: whose program, whose package, whose type."""
+"""Decides whether each command in a chapter's shell fences can run: are its program, package and types available?"""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from spinbook.chapter.launch_files import launched_nodes
 from spinbook.chapter.own_packages import OwnPackages, created_package
 from spinbook.chapter.terminal import Command, CommandKind
 
-#: Commands that fail for a name that does not exist: noun -> verbs.
+#: Commands that fail if the name they are given does not exist: noun -> verbs.
 _ASKING = {
     "topic": {"echo", "info", "type"},
     "service": {"call", "type", "info"},
@@ -42,13 +42,13 @@ class _Reason:
 
 
 class _CodeSoFar:
-    """The text of all that runs so far: a name that a program gives is somewhere in it."""
+    """The text of all code above: a name that a program creates is somewhere in it."""
 
     def __init__(self) -> None:
         self._text = ""
 
     def add(self, text: str) -> None:
-        """Hear what runs. The names are known that turtlesim and the demo nodes give."""
+        """Add code that runs, with the names that turtlesim and the demo nodes create."""
         self._text += text.lower()
         self._text += "".join(names for package, names in _GIVEN.items() if package in text)
 
@@ -58,7 +58,7 @@ class _CodeSoFar:
 
 _TURTLESIM = " turtlesim turtle1 turtle2 cmd_vel pose color_sensor spawn kill clear reset set_pen teleport_absolute "
 _TURTLESIM += "teleport_relative rotate_absolute background_r background_g background_b "
-#: Package -> the names that its programs give.
+#: Package -> the names that its programs create.
 _GIVEN = {"turtlesim": _TURTLESIM, "demo_nodes_": " chatter talker listener add_two_ints "}
 
 
@@ -66,7 +66,7 @@ _GIVEN = {"turtlesim": _TURTLESIM, "demo_nodes_": " chatter talker listener add_
 class Shells:
     """The shell fences of one chapter.
 
-    `package` is the course's own, `modules` what the course's node cells make, `own` the chapter's packages,
+    `package` is the course's own, `modules` are those that the course's node cells make, `own` the chapter's packages,
     `named_files` the file that the text before a fence names, `interfaces` the course's own.
     """
 
@@ -87,7 +87,7 @@ class Shells:
     """The chapter's nodes so far -> their number among the fences."""
 
     def decide(self, items: Sequence[ClassifiedFence]) -> list[ClassifiedFence]:
-        """What each fence becomes; a node that `ros2 run` starts further down gets the names that it has there."""
+        """Decide what each fence becomes; a node that `ros2 run` starts below also gets the names used there."""
         out = list(items)
         for number, item in enumerate(items):
             if item.kind is CellKind.NODE and item.name:
@@ -151,12 +151,12 @@ class Shells:
         return self._foreign(package, executable)
 
     def _is_elsewhere(self, package: str) -> bool:
-        """Whether a package is ROS's or comes with Spinbook, so that no program of the chapter is meant."""
+        """Return whether a package is part of ROS or Spinbook, so that it is not a program of the chapter."""
         comes_with_us = package in executables.BUILT_IN and package not in self.own.names
         return comes_with_us or package in ros_packages()
 
     def _lacks_words(self, command: Command, out: Sequence[ClassifiedFence]) -> _Reason | None:
-        """Whether a program of the chapter reads more words than the command gives it."""
+        """Return a reason if a program of the chapter reads more arguments than the command gives it."""
         given = list(itertools.takewhile(lambda word: not word.startswith("-"), command.words[4:]))
         for number in self._nodes.values():
             code = out[number].code
@@ -201,7 +201,7 @@ class Shells:
         return _Reason(f"there is no package `{package}` here", fix, package)
 
     def _started(self, package: str, executable: str, out: Sequence[ClassifiedFence]) -> int | None:
-        """The node above that `ros2 run` means, by the setup.py shown, by its file, by its node's name or its class."""
+        """Return the number of the node above that `ros2 run` means, by setup.py, file name, node name or class."""
         stem = executable.removesuffix(".py")
         module = self.own.executables.get((package, executable))
         for name in (module, stem):
@@ -217,7 +217,7 @@ class Shells:
         return unnamed[-1] if is_own and len(unnamed) == 1 else None
 
     def _lacks_file(self, command: Command) -> bool:
-        """Whether it reads a parameter file that no cell above has put into the package."""
+        """Return whether a command reads a parameter file that no cell above has put into the package."""
         words = command.words
         named = [after for word, after in itertools.pairwise(words) if word == "--params-file"]
         if words[1:3] == ("param", "load"):
@@ -225,7 +225,7 @@ class Shells:
         return any(_file_name(word) not in self._files for word in named)
 
     def _launched(self, command: Command) -> list[Command]:
-        """`ros2 launch` of a launch file above as a comment, and the commands that start its nodes."""
+        """Replace `ros2 launch` of a launch file above by a comment and the commands that start its nodes."""
         if command.kind is not CommandKind.ROS2 or command.words[1:2] != ("launch",):
             return [command]
         files = [word for word in command.words[2:] if word.endswith(".py")]
@@ -265,7 +265,7 @@ class Shells:
         return None
 
     def _named(self, command: Command) -> _Reason | None:
-        """A topic, service or node whose name no program of the chapter contains: a command that uses it fails."""
+        """Return a reason if a command names a topic, service or node that no program above contains."""
         words = [word for word in command.words[3:] if not word.startswith("-")]
         if command.words[1] not in _ASKING or command.words[2] not in _ASKING[command.words[1]] or self.has_exercise:
             return None
@@ -277,7 +277,7 @@ class Shells:
         return _Reason(f"nothing above makes `{words[0]}`", fix, "names that nothing makes")
 
     def _types(self, command: Command) -> _Reason | None:
-        """Types of interfaces that a command names."""
+        """Return a reason if a command names an interface type that does not exist."""
         for package, kind, name in _TYPE.findall(command.text):
             own = own_names(f"{package}.{kind}", self.interfaces)
             known = own or interfaces_of(f"{package}.{kind}")
@@ -295,7 +295,7 @@ def _lacking(package: str) -> _Reason:
 
 
 def _last_name(path: str) -> str:
-    """The last part of a name, which a program's text holds; of a node's parameter services, the node's name."""
+    """Return the part of a name that a program contains: the last one, or the node's for its parameter services."""
     node, _, last = path.strip("/").lower().rpartition("/")
     return _last_name(node) if last in OWN_SERVICES and node else last
 

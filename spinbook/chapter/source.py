@@ -1,4 +1,4 @@
-"""A chapter's file as text: decoded, line ends and byte-order mark taken care of, front matter split off."""
+"""A chapter's file as text: decoded, with `\n` line ends, without byte-order mark and front matter."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
-#: The same as yaml.SafeLoader; the one in C is ten times faster.
+#: The C version of yaml.SafeLoader is ten times faster.
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-#: What Jekyll puts before addresses, ahead of reading Markdown: `{{ site.baseurl }}/a`, `{{ "/a" | relative_url }}`.
+#: What Jekyll replaces in addresses before it reads Markdown: `{{ site.baseurl }}/a`, `{{ "/a" | relative_url }}`.
 _LIQUID = re.compile(
     r"""\{\{-?\s*(?:site\.(?:baseurl|url)|["']([^"'{}]*)["']\s*\|\s*(?:relative|absolute)_url)\s*-?\}\}"""
     r"""|\{%-?\s*(?:link|post_url)\s+(\S+)\s*-?%\}"""
@@ -116,7 +116,7 @@ def _split_front_matter(text: str, file: Path) -> tuple[Mapping[str, Any], str, 
 
 
 def _simple_lines(lines: list[str]) -> dict[str, str]:
-    """The part of invalid YAML front matter that can still be read: its lines `key: value`."""
+    """Return the part of invalid YAML front matter that can still be read: its lines `key: value`."""
     read = (line.partition(":") for line in lines if line[:1].isalpha())
     return {key.strip(): value.strip().strip("\"'") for key, colon, value in read if colon}
 

@@ -1,7 +1,7 @@
 """A shell fence: the commands in it, and whether a notebook can run them.
 
 A notebook runs `ros2 …`, `colcon …` and `rqt_plot …`. A terminal also needs `cd`, `source` and `export`; a notebook
-does not, so they stay as comments. Anything else is shown but not run.
+does not, so they become comments. Anything else is shown but not run.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ROS2 = {
     "launch": set(),
 }
 _MOVING_ABOUT = frozenset({"cd", "source", ".", "export", "unset", "clear"})
-#: Commands that show or make files: they can be left out next to a command that runs.
+#: Commands that show or make files: a notebook can skip them if the fence has a command that runs.
 _BESIDE = frozenset(
     [
         "mkdir",
@@ -47,7 +47,7 @@ _BESIDE = frozenset(
     ]
 )
 _SHELL_SYNTAX = re.compile(r"[|;<>`]|&&|\$\(|(?<!\S)&(?!\S)|&$")
-#: What makes a shell read a word otherwise than it is written.
+#: Characters with a special meaning to a shell.
 _QUOTING = re.compile(r"[\"'\\]")
 _PROMPT = re.compile(r"^\s*(?:[\w.-]+@[\w.-]+:\S*)?[$#>]\s+(?=\S)")
 #: What a reader replaces: `{topic_name}`, `[options]`, `<name>`.
@@ -56,7 +56,7 @@ PROGRAMS = frozenset({"ros2", "colcon", "rqt_plot"})
 
 
 class CommandKind(Enum):
-    """What runs a command in a notebook."""
+    """The program that runs a command in a notebook."""
 
     ROS2 = "ros2"
     COLCON = "colcon"
@@ -91,19 +91,19 @@ class UnsupportedCommand:
 
     @property
     def is_ros(self) -> bool:
-        """Whether it is one of the commands that a notebook runs, in a form that it does not."""
+        """Whether it is one of the commands that a notebook runs, but in a form that it can't run."""
         return self.text.split(" ")[0] in PROGRAMS
 
 
 def read_commands(code: str) -> list[Command | UnsupportedCommand]:
-    """The commands of a shell fence, in order. Next to a command that runs, what is only for a terminal is a note."""
+    """Return the commands of a shell fence, in order. If one can run, commands for a terminal become notes."""
     read = [_read(part, line) for text, line in _logical_lines(code) for part in _parts(text)]
     runs = any(isinstance(command, Command) and command.kind is not CommandKind.NOTE for command in read)
     return [_noted(command) if runs and isinstance(command, UnsupportedCommand) else command for command in read]
 
 
 def looks_like_shell(code: str) -> bool:
-    """Whether text without a language is commands of a terminal: each line begins as one, and one is ROS's."""
+    """Return whether each line of a text begins like a terminal command, and at least one like a ROS command."""
     texts = [text for text, _ in _logical_lines(code) if not text.startswith("#")]
     known = PROGRAMS | _MOVING_ABOUT | {"mkdir"}
     firsts = [text.split()[0] for text in texts]
@@ -111,7 +111,7 @@ def looks_like_shell(code: str) -> bool:
 
 
 def programs_of(code: str) -> list[tuple[str, ...]]:
-    """The words of each command, whether a notebook runs it or not."""
+    """Return the words of each command, whether a notebook runs it or not."""
     found = []
     for text, _ in _logical_lines(code):
         for part in _parts(text):
@@ -129,7 +129,7 @@ def _noted(command: UnsupportedCommand) -> Command | UnsupportedCommand:
 
 
 def _parts(text: str) -> list[str]:
-    """The commands of a line that are joined with `&&`, or with `;` behind moving about."""
+    """Return the commands of a line that are joined with `&&`, or with `;` after a change of folder."""
     if text.startswith("#") or ("&&" not in text and ";" not in text):
         return [text]
     try:
@@ -143,12 +143,12 @@ def _parts(text: str) -> list[str]:
 
 
 def _unquoted(text: str) -> bool:
-    """Whether no `&&` and no `;` are in quotation marks."""
+    """Return whether every `&&` and `;` is outside quotation marks."""
     return all("&&" not in quoted and ";" not in quoted for quoted in re.findall(r"\"[^\"]*\"|'[^']*'", text))
 
 
 def _logical_lines(code: str) -> Iterator[tuple[str, int]]:
-    """Each command with its prompt taken off, lines joined that end in a backslash or inside quotes."""
+    """Yield each command without its prompt; a line that ends in a backslash or inside quotes is joined to the next."""
     joined, start = "", 0
     for number, raw in enumerate(code.split("\n"), start=1):
         if not joined:
@@ -206,7 +206,7 @@ def _read(text: str, line: int) -> Command | UnsupportedCommand:
 
 
 def _without_comment(text: str) -> str:
-    """A command without the comment behind it."""
+    """Return a command without the comment after it."""
     quote = ""
     for index, letter in enumerate(text):
         if quote:

@@ -67,7 +67,7 @@ class Course:
 
 
 def names_of(chapters: Sequence[Path]) -> dict[Path, str]:
-    """File -> a name that no other of these files has: its own, with as many of its folders as it takes."""
+    """Return file -> a name that no other of these files has: its own, with as many of its folders as it takes."""
     names = {chapter: _name(chapter, 0) for chapter in chapters}
     for folders in range(1, max((len(chapter.parts) for chapter in chapters), default=1)):
         taken = Counter(name.lower() for name in names.values())
@@ -137,7 +137,7 @@ def read_course(root: Path) -> Course:
 
 
 def _site(given: str, repository: str) -> str:
-    """The website's address with a slash at its end: as given, or that of the repository's GitHub Pages."""
+    """Return the website's address with a slash at its end: as given, or that of the repository's GitHub Pages."""
     if given:
         return given.rstrip("/") + "/"
     match = re.fullmatch(r"https://github\.com/([\w-]+)/([\w.-]+?)(?:\.git)?/?", repository)

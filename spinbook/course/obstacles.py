@@ -71,7 +71,8 @@ class Obstacle:
 
 
 def obstacles(problems: Iterable[Problem]) -> list[Obstacle]:
-    """The causes that several places may share: those first that would unlock most, those last that block nothing."""
+    """Return the causes that several places may share: those first that would unlock most, those last that block
+    nothing."""
     groups: dict[str, list[Problem]] = {}
     for problem in problems:
         if problem.group:
@@ -81,12 +82,12 @@ def obstacles(problems: Iterable[Problem]) -> list[Obstacle]:
 
 
 def by_itself(problems: Iterable[Problem]) -> Iterator[Problem]:
-    """The problems that are listed one by one, because each has its own cause."""
+    """Return the problems that are listed one by one, because each has its own cause."""
     return (problem for problem in problems if not problem.group)
 
 
 def ranked(problems: Sequence[Problem]) -> list[str]:
-    """The lines of a report of all causes; none if there are none."""
+    """Return the lines of a report of all causes; none if there are none."""
     found = obstacles(problems)
     blocking = [item.in_words for item in found if item.blocks]
     others = [item.in_words for item in found if not item.blocks]
@@ -95,5 +96,5 @@ def ranked(problems: Sequence[Problem]) -> list[str]:
 
 
 def strict(problem: Problem) -> Problem:
-    """The problem as `--strict` sees it: what is not run is an error."""
+    """Return the problem as `--strict` sees it: what is not run is an error."""
     return replace(problem, severity=Severity.ERROR) if problem.severity is Severity.NOT_RUN else problem

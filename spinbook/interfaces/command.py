@@ -45,7 +45,7 @@ def list_(start: Path) -> None:
 
 
 def _state() -> dict[str, str]:
-    """Each package that comes with Spinbook, and whether it is installed."""
+    """Return each package that comes with Spinbook, and whether it is installed."""
     installed = prefixes.packages(prefixes.installed())
     return {
         package: "installed" if package in installed else f"spinbook interfaces add {package}"

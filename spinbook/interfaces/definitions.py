@@ -38,7 +38,7 @@ class CourseDefinitions:
 
 
 def collect(course: Course) -> CourseDefinitions:
-    """Every definition of a course. A definition that is in two chapters with the same text counts once."""
+    """Return every definition of a course. A definition that is in two chapters with the same text counts once."""
     definitions, faults = read_folder(course.root / FOLDER, course.root)
     known = {(item.full_name, item.text) for item in definitions}
     for item in _in_chapters(course):
@@ -49,7 +49,7 @@ def collect(course: Course) -> CourseDefinitions:
 
 
 def checked(course: Course) -> CourseDefinitions:
-    """The same, of a course whose definitions have no faults. Raises SpinbookError with each fault there is."""
+    """Return the same, of a course whose definitions have no faults. Raises SpinbookError with each fault there is."""
     collected = collect(course)
     faults = check(collected.definitions, prefixes.interfaces(prefixes.installed()))
     if found := [*collected.problems, *problems(faults)]:
@@ -58,7 +58,7 @@ def checked(course: Course) -> CourseDefinitions:
 
 
 def problems(faults: Iterable[Fault]) -> Iterator[Problem]:
-    """What the compiler says of definitions, as problems of an author's files."""
+    """Return what the compiler says of definitions, as problems of an author's files."""
     return (Problem(fault.file, fault.line, fault.problem, fault.fix) for fault in faults)
 
 
@@ -82,7 +82,7 @@ def _in_chapter(course: Course, file: Path) -> Iterator[Definition]:
 
 
 def folder_of(course: Course) -> Path:
-    """The folder with the compiled interfaces of a course."""
+    """Return the folder with the compiled interfaces of a course."""
     return course.build_folder / "interfaces"
 
 
@@ -110,7 +110,7 @@ def compile_course(course: Course, collected: CourseDefinitions | None = None) -
 
 
 def _are_sourced(collected: CourseDefinitions) -> bool:
-    """Whether a sourced workspace has them all, built by colcon from the same text."""
+    """Return whether a sourced workspace has them all, built by colcon from the same text."""
     places = [prefix for prefix in prefixes.installed() if prefix not in activation.active()]
     return all(
         store.is_installed(package, members, places) for package, members in by_package(collected.definitions).items()

@@ -184,7 +184,7 @@ def show_rest(process: KeptProcess, seconds: float) -> None:
 
 
 def in_short(text: str, first: int = FIRST_LINES, last: int = LAST_LINES) -> str:
-    """A long log with its middle left out."""
+    """Return a long log with its middle left out."""
     lines = text.rstrip("\n").split("\n")
     if len(lines) <= first + last:
         return "\n".join(lines)

@@ -45,7 +45,7 @@ class CheckedCode:
 
 
 def code_of(exercise: Exercise, session: Session, shell: Any, notebook: Path | None) -> CheckedCode:
-    """The exercise's code, as the session ran it last: its cell, and what that needs of the others.
+    """Return the exercise's code, as the session ran it last: its cell, and what that needs of the others.
 
     Raises CellFailed, with what to do, if the cell has not been run and the notebook's file is not known.
     """
@@ -71,7 +71,8 @@ def code_of(exercise: Exercise, session: Session, shell: Any, notebook: Path | N
 
 
 def cells_as_run(session: Session, shell: Any) -> tuple[NotebookCell, ...]:
-    """The cells that the kernel has run, each as it ran last: one that a later one replaces in full is left out."""
+    """Return the cells that the kernel has run, each as it ran last: one that a later one replaces in full is left
+    out."""
     history = enumerate(shell.history_manager.input_hist_raw)
     cells = [NotebookCell(number, source) for number, source in history if source.strip()]
     ran = {cell.name: cell for cell in cells if cell.name}
@@ -107,7 +108,8 @@ def _edited(node: str) -> str:
 
 
 def _saved_after(notebook: Path | None, moment: float) -> bool:
-    """Whether the notebook was saved after this moment (s since the epoch): what was saved before is out of date."""
+    """Return whether the notebook was saved after this moment (s since the epoch): what was saved before is out of
+    date."""
     try:
         return notebook is not None and notebook.stat().st_mtime > moment
     except OSError:
@@ -128,7 +130,7 @@ VS_CODE = "__vsc_ipynb_file__"
 
 
 def notebook_file(variables: Mapping[str, Any], environment: Mapping[str, str]) -> Path | None:
-    """The notebook's file as last saved, or None if it is not known (Colab, a plain terminal)."""
+    """Return the notebook's file as last saved, or None if it is not known (Colab, a plain terminal)."""
     for given in (variables.get(VS_CODE), environment.get(JUPYTER)):
         if isinstance(given, str) and given.endswith(".ipynb") and Path(given).is_file():
             return Path(given).resolve()
@@ -140,7 +142,7 @@ _GRACE = (0.5, 0.5)
 
 
 def checked(exercise: Path, code: Code, seconds: float) -> dict[str, str]:
-    """The result for `code`, by media type: text/html and text/plain.
+    """Return the result for `code`, by media type: text/html and text/plain.
 
     Raises CellFailed when there is none: after `seconds`, when interrupted, or by a fault that is not the student's.
     """
@@ -195,7 +197,8 @@ def check_cell(session: Session, shell: Any, name: str, course: str, seconds: fl
 
 
 def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
-    """The exercise `name`, in `course`, otherwise in this folder, the notebook's, or above. Raises CellFailed."""
+    """Return the exercise `name`, in `course`, otherwise in this folder, the notebook's, or above. Raises
+    CellFailed."""
     places = [Path(course)] if course else [Path.cwd(), *([notebook.parent] if notebook else [])]
     text = ""
     for place in places:

@@ -22,8 +22,8 @@ DOMAIN_NOTE = "SPINBOOK_DOMAIN_NOTE"
 
 
 def for_domain(domain: int, environment: Mapping[str, str]) -> dict[str, str]:
-    """The variables with which ROS processes communicate in `domain`, on this machine only. Fast DDS (the default) gets
-    a profile for UDP on 127.0.0.1; other middlewares get LOCALHOST.
+    """Return the variables with which ROS processes communicate in `domain`, on this machine only. Fast DDS (the
+    default) gets a profile for UDP on 127.0.0.1; other middlewares get LOCALHOST.
     """
     is_fast_dds = environment.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp").startswith("rmw_fastrtps")
     settings = {
@@ -53,7 +53,7 @@ def _home_is_writable(environment: Mapping[str, str]) -> bool:
 
 
 def missing_middleware(environment: Mapping[str, str]) -> str | None:
-    """The middleware that RMW_IMPLEMENTATION names, if it is not installed here.
+    """Return the middleware that RMW_IMPLEMENTATION names, if it is not installed here.
 
     rclpy ends the whole process (exit code 102) when asked for one that is absent, so this must be known before.
     """
@@ -105,7 +105,7 @@ def claim_domain() -> Domain:
 
 
 def shared_domain(number: int) -> Domain:
-    """A domain that others may use too. Raises ValueError if it is not a ROS domain."""
+    """Return a domain that others may use too. Raises ValueError if it is not a ROS domain."""
     if not 0 <= number <= HIGHEST:
         raise ValueError(f"a ROS domain is a number from 0 to {HIGHEST}, not {number}.")
     return Domain(number, None)

@@ -35,7 +35,7 @@ class LineReader(argparse.ArgumentParser):
         raise CellFailed(f"{message}\n{self.format_usage().rstrip()}")
 
     def read(self, line: str) -> argparse.Namespace | None:
-        """The arguments, or None if the help was requested and has been printed."""
+        """Return the arguments, or None if the help was requested and has been printed."""
         words = split(line)
         if "-h" in words or "--help" in words:
             print(self.format_help())
@@ -44,7 +44,7 @@ class LineReader(argparse.ArgumentParser):
 
 
 def split(line: str) -> list[str]:
-    """The words of a line, quoted as in a shell. Raises CellFailed."""
+    """Return the words of a line, quoted as in a shell. Raises CellFailed."""
     try:
         return shlex.split(line)
     except ValueError as error:
@@ -317,7 +317,7 @@ class SpinbookMagics(Magics):
 
 
 def register(shell: Any, session: Session) -> Sequence[str]:
-    """Add the commands to a shell. Returns their names."""
+    """Return add the commands to a shell. Returns their names."""
     magics = SpinbookMagics(shell, session)
     shell.register_magics(magics)
     return [*magics.magics["line"], *magics.magics["cell"]]

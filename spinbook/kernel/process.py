@@ -56,12 +56,13 @@ class KeptProcess:
         self._control.sendall(json.dumps(request).encode() + b"\n")
 
     def read(self) -> tuple[bytes, int]:
-        """(what it printed since the last call, how many bytes before that were too many to keep); updates `status`."""
+        """Return (what it printed since the last call, how many bytes before that were too many to keep); updates
+        `status`."""
         data, dropped, self._offset = self._read_from(self._offset)
         return data, dropped
 
     def read_all(self) -> tuple[bytes, int]:
-        """(all that is kept of what it printed, how many bytes are missing in the middle)."""
+        """Return (all that is kept of what it printed, how many bytes are missing in the middle)."""
         head, _, offset = self._read_from(0)
         tail, dropped, _ = self._read_from(offset)
         return head + tail, dropped
@@ -79,7 +80,7 @@ class KeptProcess:
         return data, answer["dropped"], answer["offset"] + len(data)
 
     def descendants(self) -> list[int]:
-        """The ids of the process and of all that it has started, as far as they still run."""
+        """Return the ids of the process and of all that it has started, as far as they still run."""
         return supervisor.descendants(self._supervisor.pid)
 
     def stop(self, grace: tuple[float, float] = STOP_GRACE) -> None:
@@ -106,5 +107,5 @@ class CellFailed(Exception):
     """Raised by a notebook command. Only its message is shown, but the cell counts as failed everywhere."""
 
     def _render_traceback_(self) -> list[str]:
-        """What IPython prints instead of a traceback."""
+        """Return what IPython prints instead of a traceback."""
         return [str(self)]

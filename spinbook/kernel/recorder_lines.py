@@ -16,7 +16,7 @@ def write_line(kind: str, *values: Any) -> None:
 
 
 def read_lines(lines: Iterable[str]) -> Iterator[tuple[str, list[Any]]]:
-    """The kind and the values of each line; whatever a library printed among them is passed over."""
+    """Yield the kind and the values of each line; whatever a library printed among them is passed over."""
     for line in lines:
         try:
             kind, *values = json.loads(line)

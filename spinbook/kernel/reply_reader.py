@@ -86,7 +86,7 @@ class ServiceReplyReader:
             self._subscription = _subscribe(node, f"rr{service}Reply", answer)
 
     def take(self) -> Iterator[tuple[float, Any]]:
-        """What has arrived since: (when it was sent in s since the epoch, the answer)."""
+        """Yield what has arrived since: (when it was sent in s since the epoch, the answer)."""
         while self._subscription is not None and (taken := _take(self._subscription)) is not None:
             yield taken[0], deserialize_message(taken[1], self._answer)
 
@@ -113,7 +113,7 @@ def _type_support(answer: Any) -> int:
 
 
 def _take(subscription: int) -> tuple[float, bytes] | None:
-    """The next message: (when it was sent in s, its bytes)."""
+    """Return the next message: (when it was sent in s, its bytes)."""
     rmw, utilities = ctypes.CDLL(f"lib{_FAST_DDS}.so"), ctypes.CDLL("librcutils.so")
     allocator = _typed(utilities.rcutils_get_default_allocator, _Allocator)()
     data, taken, information = _Bytes(None, 0, 0, allocator), ctypes.c_bool(False), _Information()

@@ -68,15 +68,15 @@ class NodeRegistry:
         return node
 
     def get(self, name: str) -> RunningNode | None:
-        """The node of that name, running or ended."""
+        """Return the node of that name, running or ended."""
         return self._nodes.get(name)
 
     def names(self) -> list[str]:
-        """The names, in the order in which they were started."""
+        """Return the names, in the order in which they were started."""
         return list(self._nodes)
 
     def status(self, name: str) -> Status:
-        """The current status of a node."""
+        """Return the current status of a node."""
         return self._nodes[name].process.wait(0)
 
     def stop(self, name: str) -> StopResult:
@@ -126,7 +126,7 @@ class NodeStart:
     known_as: tuple[str, ...] = ()
 
     def argv(self, file: Path, words: Sequence[str] = ()) -> list[str]:
-        """The command that starts the code in `file`; `words` are for the node."""
+        """Return the command that starts the code in `file`; `words` are for the node."""
         own = [part for name in self.classes for part in ("--class", name)]
         own = ["--main"] if self.calls_main else own
         if not own:
@@ -213,7 +213,7 @@ class Session:
         print(f"Wrote {file.relative_to(Path.cwd())}")
 
     def _package_of(self, known_as: Sequence[str]) -> tuple[Package, tuple[str, ...]]:
-        """The package to which a node belongs, and what its executables are called there."""
+        """Return the package to which a node belongs, and what its executables are called there."""
         pairs = [name.partition("/") for name in known_as]
         if not pairs:
             return self.package, ()
@@ -317,7 +317,7 @@ class Session:
             time.sleep(_LOG_POLL_S)
 
     def log(self, name: str, whole: bool) -> str:
-        """All that is kept of what a node printed. Raises CellFailed for an unknown name."""
+        """Return all that is kept of what a node printed. Raises CellFailed for an unknown name."""
         node = self.find(name)
         data, dropped = node.process.read_all()
         text = data.decode(errors="replace")
@@ -326,7 +326,7 @@ class Session:
         return text if whole else in_short(text)
 
     def find(self, name: str) -> RunningNode:
-        """The node of that name. Raises CellFailed, naming those that there are."""
+        """Return the node of that name. Raises CellFailed, naming those that there are."""
         node = self.nodes.get(name)
         if node is None:
             there = ", ".join(self.nodes.names()) or "none"

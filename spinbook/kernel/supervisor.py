@@ -49,7 +49,7 @@ class ProcessOutput:
             del self._tail[: -self._kept]
 
     def since(self, offset: int) -> tuple[int, int, bytes]:
-        """(offset, dropped, bytes): what is kept from `offset` on, and how many bytes before it are lost."""
+        """Return (offset, dropped, bytes): what is kept from `offset` on, and how many bytes before it are lost."""
         if offset < len(self._head):
             return offset, 0, bytes(self._head[offset:])
         start = self.total - len(self._tail)
@@ -67,7 +67,7 @@ def _processes() -> Iterator[tuple[int, bytes, int]]:
 
 
 def descendants(root: int) -> list[int]:
-    """The process ids of all that `root` started and that still run, zombies left out."""
+    """Return the process ids of all that `root` started and that still run, zombies left out."""
     children: dict[int, list[int]] = {}
     for pid, state, parent in _processes():
         if state != b"Z":

@@ -61,7 +61,7 @@ def run_ros2(session: Session, words: list[str], bound: DisplayLimit) -> None:
 
 
 def _folder(session: Session, words: list[str]) -> Path:
-    """Where a command runs: in the workspace if it reads files of the package, as in a terminal."""
+    """Return where a command runs: in the workspace if it reads files of the package, as in a terminal."""
     reads_files = words[:1] == ["launch"] or words[:2] == ["param", "load"]
     return session.workspace if reads_files and session.workspace.is_dir() else Path.cwd()
 
@@ -100,7 +100,8 @@ def _run_executable(session: Session, words: list[str], bound: DisplayLimit) -> 
 
 
 def _renamed(words: list[str]) -> str:
-    """What `__node:=NAME` or `__name:=NAME` calls the node: a second one of that executable, next to the first."""
+    """Return what `__node:=NAME` or `__name:=NAME` calls the node: a second one of that executable, next to the
+    first."""
     for word in words:
         option, found, name = word.partition(":=")
         if found and option in ("__node", "__name"):

@@ -79,7 +79,7 @@ class Lane:
 
 
 def lanes(recording: RecordedEvents) -> tuple[Lane, ...]:
-    """The lanes in the order of the names: one for each topic and service, one for each goal of an action."""
+    """Return the lanes in the order of the names: one for each topic and service, one for each goal of an action."""
     events = sorted(recording.events, key=lambda event: event.at)
     end = max((event.at for event in events), default=0.0)
     drawn: list[Lane] = []
@@ -113,7 +113,7 @@ def _calls(name: str, events: list[TimelineEvent], end: float) -> Lane:
 
 
 def _goals(name: str, events: list[TimelineEvent], end: float) -> Iterator[Lane]:
-    """A lane for each goal, in the order in which they were sent."""
+    """Yield a lane for each goal, in the order in which they were sent."""
     numbers = dict.fromkeys(event.goal for event in events if event.goal)
     answers = _answers(events)
     for count, number in enumerate(numbers, start=1):
@@ -146,7 +146,7 @@ def _goal(name: str, label: str, events: list[TimelineEvent], end: float) -> Lan
 
 
 def _bars(events: list[TimelineEvent], end: float) -> Iterator[Span]:
-    """What the goal went through: it waits for an answer, runs, and is being cancelled."""
+    """Yield what the goal went through: it waits for an answer, runs, and is being cancelled."""
     looks: dict[str, Literal["waits", "runs", "cancels"]] = {
         "goal": "waits",
         "ACCEPTED": "waits",
@@ -175,7 +175,7 @@ def _mark(event: TimelineEvent) -> Mark | None:
 
 
 def in_words(drawn: Iterable[Lane], start: float) -> str:
-    """What the picture shows, a line for each lane; times in s from `start`."""
+    """Return what the picture shows, a line for each lane; times in s from `start`."""
     lines = []
     for lane in drawn:
         message = [f"{mark.text} at {mark.at - start:.2f} s" for mark in lane.marks if mark.text]

@@ -42,13 +42,13 @@ _UNWRITTEN = "response"
 
 
 def span_of(lanes: Iterable[Lane]) -> tuple[float, float]:
-    """The first and the last time (s) of anything on the lanes."""
+    """Return the first and the last time (s) of anything on the lanes."""
     times = [mark.at for lane in lanes for mark in lane.marks]
     return min(times), max(times)
 
 
 def moving_timeline(lanes: Sequence[Lane], title: str = "") -> str:
-    """The picture of lanes of which at least one has a mark."""
+    """Return the picture of lanes of which at least one has a mark."""
     start, end = span_of(lanes)
     across = Scale(start, max(end, start + 0.1), _LEFT, _WIDTH - _RIGHT)
     words = in_words(lanes, start)
@@ -78,7 +78,7 @@ def _fitting(label: str) -> str:
 
 
 def _lane(lane: Lane, top: float, across: Scale) -> tuple[str, float]:
-    """The bars, marks and words of a lane below `top`, and where it ends."""
+    """Return the bars, marks and words of a lane below `top`, and where it ends."""
     middle = top + _BAR / 2
     bars = "".join(_bar(span, top, across) for span in lane.spans)
     marks = "".join(_shape(mark, across.at(mark.at), middle) for mark in _few(lane.marks))
@@ -101,7 +101,7 @@ def _bar(span: Span, top: float, across: Scale) -> str:
 
 
 def _few(marks: Sequence[Mark]) -> Iterator[Mark]:
-    """The marks, with every so manyth of very many ticks."""
+    """Return the marks, with every so manyth of very many ticks."""
     ticks = [mark for mark in marks if mark.look == "tick"]
     step = math.ceil(len(ticks) / MOST_TICKS) or 1
     return chain(ticks[::step], (mark for mark in marks if mark.look != "tick"))
@@ -120,7 +120,7 @@ def _shape(mark: Mark, x: float, y: float) -> str:
 
 
 def _placed(marks: Sequence[Mark], across: Scale) -> Iterator[tuple[str, float, int]]:
-    """(text, x in px, row) of what is written, so that no two texts lie on one another."""
+    """Yield (text, x in px, row) of what is written, so that no two texts lie on one another."""
     ends: list[float] = []
     for mark in filter(_is_written, marks):
         width = sum(_CAPITAL if char.isupper() else _CHAR for char in mark.text)
@@ -135,7 +135,7 @@ def _is_written(mark: Mark) -> bool:
 
 
 def _axis(across: Scale, top: float, bottom: float) -> str:
-    """Lines at round times counted from the first event, and the times below them."""
+    """Return lines at round times counted from the first event, and the times below them."""
     seconds = Scale(0.0, across.high - across.low, across.start, across.end)
     lines = texts = ""
     for mark in seconds.marks():
@@ -147,7 +147,7 @@ def _axis(across: Scale, top: float, bottom: float) -> str:
 
 
 def _legend(lanes: Sequence[Lane], y: float) -> tuple[str, float]:
-    """What the bars and marks mean that are there; and where it ends."""
+    """Return what the bars and marks mean that are there; and where it ends."""
     spans = {span.look for lane in lanes for span in lane.spans}
     marks = {mark.look for lane in lanes for mark in lane.marks}
     entries = [
@@ -175,12 +175,12 @@ def _legend(lanes: Sequence[Lane], y: float) -> tuple[str, float]:
 
 
 def _plain_ticks(lanes: Sequence[Lane]) -> bool:
-    """Whether a topic is among the lanes, whose ticks are messages."""
+    """Return whether a topic is among the lanes, whose ticks are messages."""
     return any(not lane.spans and any(mark.look == "tick" for mark in lane.marks) for lane in lanes)
 
 
 def _moving(cycle: Cycle, height: float) -> str:
-    """The window through which the lanes are seen, which grows to the right, and the pointer at its edge."""
+    """Return the window through which the lanes are seen, which grows to the right, and the pointer at its edge."""
     key, width = cycle.key, _WIDTH - _LEFT - _RIGHT
     whole = _WIDTH
     shown = f"transform:scaleX({coord(_LEFT / whole, 4)})"
@@ -206,7 +206,8 @@ _POINTS_AN_INCH = 72
 
 
 def still_timeline(lanes: Sequence[Lane], title: str = "") -> Figure:
-    """The same as a figure of matplotlib, as wide as a phone: the SVG's layout. Time counts from the first event."""
+    """Return the same as a figure of matplotlib, as wide as a phone: the SVG's layout. Time counts from the first
+    event."""
     # Web pages draw the other one, and have no matplotlib.
     from matplotlib.figure import Figure
 

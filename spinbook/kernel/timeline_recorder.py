@@ -76,12 +76,12 @@ class TimelineRecorder(Node):
                 record(sent, message)
 
     def _is_known(self, name: str, kind: str) -> bool:
-        """Whether it is known who else uses what has been found: a service's clients may not be heard of yet."""
+        """Return whether it is known who else uses what has been found: a service's clients may not be heard of yet."""
         since = time.monotonic() - self._seen.setdefault(name, time.monotonic())
         return kind != "service" or self.count_clients(name) > 0 or since > _CLIENTS_S
 
     def _kind(self, name: str) -> tuple[str, str] | None:
-        """What a name means, and its type, if there is a node that serves or publishes it."""
+        """Return what a name means, and its type, if there is a node that serves or publishes it."""
         ready = self.count_publishers(f"{name}/_action/status") > 0
         tables: Mapping[str, tuple[bool, list[tuple[str, list[str]]]]] = {
             "action": (ready, get_action_names_and_types(self)),
@@ -114,7 +114,7 @@ class TimelineRecorder(Node):
         self._polled.append((ServiceReplyReader(self, name, kind.Response).take, answered))
 
     def _requests(self, kind: Any, name: str) -> Take:
-        """What is asked of a service, taken as a server of its own would, and never answered."""
+        """Return what is asked of a service, taken as a server of its own would, and never answered."""
         from rclpy.impl.implementation_singleton import rclpy_implementation
         from rclpy.type_support import check_for_type_support
 
@@ -179,7 +179,8 @@ _STATES = {
 
 
 def _callback(record: Callable[..., None]) -> Any:
-    """A callback of the form that rclpy gives the information besides a message to: it looks at the parameters."""
+    """Return a callback of the form that rclpy gives the information besides a message to: it looks at the
+    parameters."""
 
     def callback(message: Any, information: dict[str, int]) -> None:
         record(information["source_timestamp"] / 1e9, message)
@@ -196,7 +197,7 @@ def _event(name: str, what: str, at: float, message: Any, goal: str = "") -> Non
 
 
 def in_short(message: Any) -> str:
-    """The first plain field of a message with its value, such as `position 1.0`; "" if it has none."""
+    """Return the first plain field of a message with its value, such as `position 1.0`; "" if it has none."""
     for field in message.get_fields_and_field_types():
         value = getattr(message, field)
         if isinstance(value, bool):
@@ -213,7 +214,7 @@ _MAY_WAIT = 300
 
 
 def _stop_event() -> threading.Event:
-    """An event that SIGINT and SIGTERM set. ROS continues: what has arrived by then is still to be read."""
+    """Return an event that SIGINT and SIGTERM set. ROS continues: what has arrived by then is still to be read."""
     text = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: text.set())

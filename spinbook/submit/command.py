@@ -91,7 +91,7 @@ def print_result(checked: SelfCheck, exercise: Exercise, console: Console) -> No
 
 
 def _ran(code: Path, notebook: Path | None, exercise: Exercise) -> HandInCandidate:
-    """The code that a notebook's kernel ran last, which may not have been saved yet."""
+    """Return the code that a notebook's kernel ran last, which may not have been saved yet."""
     return replace(given(code, exercise), file=notebook, origin="the cell as you ran it last")
 
 

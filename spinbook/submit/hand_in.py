@@ -41,8 +41,8 @@ class HandInCandidate:
 
 
 def candidates(exercise: Exercise, folder: Path) -> list[HandInCandidate]:
-    """The files that hold the exercise: notebooks and ROS 2 packages in `folder`, and the .py of its name, there or in
-    the exercise's own folder. One whose program is a question has a submission without one.
+    """Return the files that hold the exercise: notebooks and ROS 2 packages in `folder`, and the .py of its name, there
+    or in the exercise's own folder. One whose program is a question has a submission without one.
 
     Where there are several, those with the untouched starter don't count beside one with more in it, and two with the
     same code count once.
@@ -57,13 +57,13 @@ def candidates(exercise: Exercise, folder: Path) -> list[HandInCandidate]:
 
 
 def _packages(folder: Path) -> list[Path]:
-    """The ROS 2 packages in a folder, or in a workspace in it."""
+    """Return the ROS 2 packages in a folder, or in a workspace in it."""
     patterns = ("package.xml", "*/package.xml", "src/*/package.xml", "*/src/*/package.xml")
     return sorted({manifest.parent for pattern in patterns for manifest in folder.glob(pattern)})
 
 
 def is_starter(candidate: HandInCandidate, exercise: Exercise) -> bool:
-    """Whether this is still the unchanged starter."""
+    """Return whether this is still the unchanged starter."""
     return _bare(candidate.submission.source) in _starters(exercise)
 
 
@@ -72,7 +72,7 @@ def _name(file: Path, folder: Path) -> str:
 
 
 def _starters(exercise: Exercise) -> set[str]:
-    """The starter as it was handed out, where that is known."""
+    """Return the starter as it was handed out, where that is known."""
     handed_out = exercise.folder.parent.parent / BASE / "exercises" / exercise.name / exercise.file_name
     found = set()
     with contextlib.suppress(OSError, ValueError):
@@ -84,7 +84,8 @@ def _starters(exercise: Exercise) -> set[str]:
 
 
 def _bare(code: str) -> str:
-    """Code as it counts for a comparison: a cell ends without a line end, and begins with an emptied line of magic."""
+    """Return code as it counts for a comparison: a cell ends without a line end, and begins with an emptied line of
+    magic."""
     return code.replace("\r\n", "\n").strip()
 
 
@@ -157,12 +158,12 @@ def write_upload(hand_in: HandIn, target: Path) -> None:
 
 
 def default_target(exercise: Exercise, folder: Path) -> Path:
-    """The default path of the upload."""
+    """Return the default path of the upload."""
     return folder / f"{exercise.name}-submission.zip"
 
 
 def _now() -> datetime:
-    """The time, to the second; SOURCE_DATE_EPOCH (s) replaces the clock if uploads have to be reproducible."""
+    """Return the time, to the second; SOURCE_DATE_EPOCH (s) replaces the clock if uploads have to be reproducible."""
     given = os.environ.get("SOURCE_DATE_EPOCH", "")
     if given.isdigit():
         return datetime.fromtimestamp(int(given), timezone.utc)
@@ -176,7 +177,7 @@ LONGEST = 200
 
 
 def remembered_student(folder: Path) -> str | None:
-    """The name kept in `folder` or in one above it: empty if the student gave none, None if nobody asked yet."""
+    """Return the name kept in `folder` or in one above it: empty if the student gave none, None if nobody asked yet."""
     for place in (folder, *folder.parents):
         try:
             return (place / FILE).read_text(encoding="utf-8").strip()[:LONGEST]

@@ -45,7 +45,7 @@ class CheckRow:
 
 
 def as_text(grade: Grade, exercise: Exercise) -> str:
-    """What the terminal says, without colours."""
+    """Return what the terminal says, without colours."""
     out = io.StringIO()
     show(grade, exercise, Console(file=out, width=WIDTH, color_system=None, highlight=False))
     lines = [line.rstrip() for line in out.getvalue().rstrip("\n").split("\n")]
@@ -56,7 +56,7 @@ def as_text(grade: Grade, exercise: Exercise) -> str:
 
 
 def next_step(grade: Grade, exercise: Exercise) -> str:
-    """What a beginner does now."""
+    """Return what a beginner does now."""
     if grade.full_marks:
         return f"hand in. Type %submit {exercise.name} into a new cell and run it."
     if grade.outcome == "host-error":
@@ -69,7 +69,8 @@ def next_step(grade: Grade, exercise: Exercise) -> str:
 
 
 def as_html(grade: Grade, exercise: Exercise) -> str:
-    """A piece of HTML that needs nothing from outside and runs nothing, with everything of the student's escaped."""
+    """Return a piece of HTML that needs nothing from outside and runs nothing, with everything of the student's
+    escaped."""
     environment = Environment(
         loader=PackageLoader("spinbook.submit", "."),
         autoescape=True,
@@ -102,13 +103,13 @@ def _harmless(value: Any) -> Any:
 
 
 def _first_step(grade: Grade, exercise: Exercise) -> str:
-    """What to look for in a program that did not come through. The steps after it are about files, not cells."""
+    """Return what to look for in a program that did not come through. The steps after it are about files, not cells."""
     found = advice(grade, exercise)
     return found.steps[0] if found else ""
 
 
 def _end(log: str) -> str:
-    """The end of a log, where the reason for an end stands."""
+    """Return the end of a log, where the reason for an end stands."""
     return as_students_see_it(log).strip()[-LONGEST:]
 
 
@@ -132,7 +133,7 @@ def _row(check: ShownCheck, grade: Grade, exercise: Exercise) -> CheckRow:
 
 
 def _facts(finding: Finding, grade: Grade, element: str) -> tuple[tuple[tuple[str, str], ...], str]:
-    """What is wrong as label and value, and what of the finding's text they leave out."""
+    """Return what is wrong as label and value, and what of the finding's text they leave out."""
     phrase = f"got {finding.got}."
     if not (finding.expected and finding.got and phrase in finding.text):
         return (), finding.text

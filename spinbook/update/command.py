@@ -104,7 +104,7 @@ def _print_plan(made: UpdatePlan) -> None:
 
 
 def _lines(text: MergeReport) -> list[str]:
-    """What happened to a notebook's cells, in words."""
+    """Return what happened to a notebook's cells, in words."""
     lines = [f"CONFLICT: you and the course changed this cell; yours is kept: {name}" for name in text.conflicts]
     lines += [
         f"the course has removed this cell; yours is kept, because you changed it: {n}"

@@ -21,12 +21,12 @@ _REMEMBERED = {".ipynb", ".md", ".py", ".toml", ".txt", ".yml"}
 
 
 def is_remembered(path: PurePosixPath) -> bool:
-    """Whether a file of a handout, by its path in it, is remembered."""
+    """Return whether a file of a handout, by its path in it, is remembered."""
     return path.suffix in _REMEMBERED and path.parts[0] != ".spinbook"
 
 
 def base_files(handout: Mapping[str, bytes]) -> dict[str, bytes]:
-    """What a handout of these files, by name, needs to have in it besides, so that it can be updated one day."""
+    """Return what a handout of these files, by name, needs to have in it besides, so that it can be updated one day."""
     return {str(BASE / name): content for name, content in handout.items() if is_remembered(PurePosixPath(name))}
 
 
@@ -45,7 +45,7 @@ _PACKAGE = re.compile(rb"%chapter [^\n\"\\]*--package ([a-z0-9_]+)")
 
 
 def read_handout(path: Path) -> Files:
-    """Every file of a handout, by its path in it. Raises `SpinbookError` where it can't be read or is none."""
+    """Return every file of a handout, by its path in it. Raises `SpinbookError` where it can't be read or is none."""
     if not path.exists():
         raise SpinbookError(Problem(path, None, "there is no such file or folder.", "Name the new handout."))
     try:
@@ -127,7 +127,7 @@ def _bounded(path: Path, count: int, size: int) -> None:
 
 
 def _without_outer_folder(files: Files) -> Files:
-    """A zip often has one folder around everything."""
+    """Return a zip often has one folder around everything."""
     outer = {path.parts[0] for path in files}
     if len(outer) == 1 and all(len(path.parts) > 1 for path in files) and not outer & {".spinbook"}:
         return {PurePosixPath(*path.parts[1:]): data for path, data in files.items()}

@@ -19,19 +19,19 @@ _NODE = re.compile(r"%%node\s+(\w+)")
 
 
 def text(cell: Cell) -> str:
-    """The content of a cell. Editors differ in line ends and in space at the end, so these don't count."""
+    """Return the content of a cell. Editors differ in line ends and in space at the end, so these don't count."""
     source = cell.get("source", "")
     joined = source if isinstance(source, str) else "".join(source)
     return joined.replace("\r\n", "\n").rstrip()
 
 
 def content(cell: Cell) -> tuple[str, str]:
-    """What makes a cell the same as another: its type and its text, not its outputs."""
+    """Return what makes a cell the same as another: its type and its text, not its outputs."""
     return cell.get("cell_type", ""), text(cell)
 
 
 def label(cell: Cell) -> str:
-    """A cell's name for people: its node, or its first line."""
+    """Return a cell's name for people: its node, or its first line."""
     lines = [line.strip() for line in text(cell).split("\n") if line.strip()]
     return (lines[0] if lines else "an empty cell")[:60]
 
@@ -62,7 +62,7 @@ def _pair(old: Sequence[Cell], new: Sequence[Cell], found: dict[int, int], key: 
 
 
 def _node(cell: Cell) -> tuple[str, str] | None:
-    """The exercise or the node whose cell this is."""
+    """Return the exercise or the node whose cell this is."""
     if cell.get("cell_type") != "code":
         return None
     known = cell.get("metadata", {}).get("spinbook", {})
@@ -119,7 +119,7 @@ class _Item:
 
 
 def merged(base: Sequence[Cell], mine: Sequence[Cell], new: Sequence[Cell]) -> tuple[list[Cell], MergeReport]:
-    """The student's cells with the author's changes in them, and what became of what.
+    """Return the student's cells with the author's changes in them, and what became of what.
 
     With `new` equal to `base` the result equals `mine`. Every cell of `mine` that differs from its `base`, or has none,
     is in the result.
@@ -129,7 +129,7 @@ def merged(base: Sequence[Cell], mine: Sequence[Cell], new: Sequence[Cell]) -> t
 
 
 def merged_without_base(mine: Sequence[Cell], new: Sequence[Cell]) -> tuple[list[Cell], MergeReport]:
-    """The same if the original handout is not known: a cell that differs counts as changed by both."""
+    """Return the same if the original handout is not known: a cell that differs counts as changed by both."""
     pairs = sorted(found_again(new, mine).items())
     unknown: Cell = {"cell_type": "", "source": ""}
     base = [new[j] if content(new[j]) == content(mine[i]) else unknown for j, i in pairs]
@@ -220,19 +220,19 @@ class _Merge:
         return items
 
     def _moved(self, of: dict[int, int]) -> bool:
-        """Whether the cells that both sides have are in another order than in the base."""
+        """Return whether the cells that both sides have are in another order than in the base."""
         places = [of[b] for b in range(len(self.base)) if b in self.mine_of and b in self.new_of]
         return places != sorted(places)
 
 
 def _is_needed(cell: Cell) -> bool:
-    """Whether an exercise can't be done without this cell, so that a student should know that it is gone."""
+    """Return whether an exercise can't be done without this cell, so that a student should know that it is gone."""
     known = cell.get("metadata", {}).get("spinbook", {})
     return bool(known.get("exercise")) or known.get("kind") in ("setup", "check")
 
 
 def _refreshed(mine: Cell, base: Cell, new: Cell) -> Cell:
-    """The student's cell as it is, with what our tools need to know of it."""
+    """Return the student's cell as it is, with what our tools need to know of it."""
     if new.get("metadata") == base.get("metadata") and new.get("id") == base.get("id"):
         return mine
     cell = {**mine, "metadata": dict(mine.get("metadata", {}))}
@@ -244,7 +244,7 @@ def _refreshed(mine: Cell, base: Cell, new: Cell) -> Cell:
 
 
 def shown_below(new: Cell) -> Cell:
-    """The new version of a cell that the student has changed, as text to look at."""
+    """Return the new version of a cell that the student has changed, as text to look at."""
     language = "python" if new.get("cell_type") == "code" else "markdown"
     fence = "`" * max(3, 1 + max((len(run) for run in re.findall(r"`+", text(new))), default=0))
     words = (
@@ -257,7 +257,7 @@ def shown_below(new: Cell) -> Cell:
 
 
 def _woven(first: Sequence[_Item], second: Sequence[_Item]) -> list[_Item]:
-    """`first` in its order, with the entries that only `second` has put after those that they follow there."""
+    """Return `first` in its order, with the entries that only `second` has put after those that they follow there."""
     order = list(first)
     before: _Item | None = None
     for item in second:

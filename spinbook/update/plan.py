@@ -22,7 +22,7 @@ class NoNotebook(Exception):
 
 
 def read(data: bytes) -> dict[str, Any]:
-    """A notebook as a dictionary, with at least `cells` and `metadata`. Raises `NoNotebook`."""
+    """Return a notebook as a dictionary, with at least `cells` and `metadata`. Raises `NoNotebook`."""
     try:
         notebook = json.loads(data)
     except (ValueError, RecursionError) as error:
@@ -50,14 +50,14 @@ def _is_cell(cell: Any) -> bool:
 
 
 def chapter(notebook: dict[str, Any]) -> str:
-    """The chapter whose notebook this is, by whatever name it is saved; empty where it is another's."""
+    """Return the chapter whose notebook this is, by whatever name it is saved; empty where it is another's."""
     known = notebook["metadata"].get("spinbook", {})
     name = known.get("chapter", "") if isinstance(known, dict) else ""
     return name if isinstance(name, str) else ""
 
 
 def merged_notebook(base: bytes | None, mine: bytes, new: bytes) -> tuple[bytes, MergeReport]:
-    """The student's notebook with the author's changes in it. Raises `NoNotebook` where one of them is none.
+    """Return the student's notebook with the author's changes in it. Raises `NoNotebook` where one of them is none.
 
     With no `base` (a handout that kept none) a cell counts as the student's wherever it differs from the new one.
     """
@@ -116,7 +116,7 @@ class UpdatePlan:
 
 
 def plan(folder: Path, handout: Mapping[PurePosixPath, bytes]) -> UpdatePlan:
-    """What brings the student's `folder` up to `handout`. Changes nothing."""
+    """Return what brings the student's `folder` up to `handout`. Changes nothing."""
     made = UpdatePlan()
     base = _base_in(folder)
     for path, data in sorted(handout.items()):
@@ -192,7 +192,7 @@ def _notebook(made: UpdatePlan, folder: Path, path: PurePosixPath, base: bytes |
 
 
 def _students(folder: Path, path: PurePosixPath, new: bytes) -> PurePosixPath:
-    """Where the student has this notebook, which may have another name by now."""
+    """Return where the student has this notebook, which may have another name by now."""
     if (folder / path).exists():
         return path
     try:

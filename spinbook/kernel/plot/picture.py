@@ -24,7 +24,7 @@ _DASHES = ["-", "--", "-.", ":"]
 
 
 def draw(recording: PlotRecording, title: str = "") -> Figure:
-    """A figure of what was recorded. Time counts from the first sample."""
+    """Return a figure of what was recorded. Time counts from the first sample."""
     # Web pages read other parts of this module, and have no matplotlib.
     from matplotlib.figure import Figure
 
@@ -56,7 +56,7 @@ def draw(recording: PlotRecording, title: str = "") -> Figure:
 
 
 def panels(recording: PlotRecording) -> dict[tuple[str, str], list[PlotCurve]]:
-    """(kind, unit) -> the curves that share an axis, in the order in which they first appeared."""
+    """Return (kind, unit) -> the curves that share an axis, in the order in which they first appeared."""
     panels: dict[tuple[str, str], list[PlotCurve]] = {}
     for quantity, curve in recording.curves.items():
         panels.setdefault((quantity.kind, quantity.unit), []).append(curve)
@@ -64,7 +64,7 @@ def panels(recording: PlotRecording) -> dict[tuple[str, str], list[PlotCurve]]:
 
 
 def in_words(recording: PlotRecording) -> str:
-    """What the figure shows, for those who can't see it and for front ends without pictures."""
+    """Return what the figure shows, for those who can't see it and for front ends without pictures."""
     lines = []
     for (kind, unit), curves in panels(recording).items():
         for curve in curves:
@@ -75,7 +75,7 @@ def in_words(recording: PlotRecording) -> str:
 
 
 def as_png(figure: Figure) -> bytes:
-    """The figure as a PNG, without the date or the version of what drew it."""
+    """Return the figure as a PNG, without the date or the version of what drew it."""
     out = io.BytesIO()
     figure.savefig(out, format="png", dpi=110, metadata={"Software": None})
     return out.getvalue()
@@ -91,7 +91,7 @@ class Scale:
     end: float
 
     def at(self, value: float) -> float:
-        """The place of a value (px)."""
+        """Return the place of a value (px)."""
         return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
 
     def marks(self) -> list[float]:
@@ -106,7 +106,7 @@ class Scale:
 
 
 def around(values: list[float], start: float, end: float) -> Scale:
-    """A scale for these values, with some room beyond the outermost."""
+    """Return a scale for these values, with some room beyond the outermost."""
     low, high = min(values), max(values)
     room = (high - low) * 0.06 or abs(high) * 0.1 or 1.0
     return Scale(low - room, high + room, start, end)
@@ -124,7 +124,7 @@ _NAME_CHAR = 6.9
 def panel(
     name: str, curves: Mapping[str, PlotCurve], top: float, across: Scale, start: float, key: str
 ) -> tuple[str, float]:
-    """The panel below `top` with curves by label, and where it ends.
+    """Return the panel below `top` with curves by label, and where it ends.
 
     Curves are seen through the clip path `key` + "c"; the class `key` + "x" moves the pointer.
     """
@@ -161,7 +161,7 @@ def _axes(across: Scale, up: Scale) -> str:
 
 
 def _legend(looks: Mapping[str, str], y: float) -> tuple[str, float]:
-    """The names, as many in a row as fit, the first row at `y`; and where they end."""
+    """Return the names, as many in a row as fit, the first row at `y`; and where they end."""
     x, texts = float(LEFT), ""
     for label, look in looks.items():
         width = 38 + _NAME_CHAR * len(label)
@@ -174,7 +174,7 @@ def _legend(looks: Mapping[str, str], y: float) -> tuple[str, float]:
 
 
 def _polyline(curve: PlotCurve, across: Scale, up: Scale, start: float) -> str:
-    """The curve's path, each point relative to the one before it."""
+    """Return the curve's path, each point relative to the one before it."""
     places = [(across.at(time - start), up.at(value)) for time, value in zip(curve.times, curve.values, strict=True)]
     precision = PRECISION_PX
     while len(points := thinned(places, precision)) > MOST_POINTS:
@@ -195,12 +195,12 @@ _TOP = 28
 
 
 def moving_plot(recording: PlotRecording, title: str = "") -> str | None:
-    """The picture, or None where nothing can move: no time has passed, or there are too many curves."""
+    """Return the picture, or None where nothing can move: no time has passed, or there are too many curves."""
     return plot_svg(recording, title) if sum(map(len, _shown(recording).values())) <= MOST_CURVES else None
 
 
 def plot_svg(recording: PlotRecording, title: str = "") -> str | None:
-    """The picture, without motion if there are too many curves; None where no time has passed."""
+    """Return the picture, without motion if there are too many curves; None where no time has passed."""
     shown = _shown(recording)
     curves = [curve for by_label in shown.values() for curve in by_label.values()]
     end = max((curve.times[-1] for curve in curves), default=recording.start) - recording.start
@@ -224,7 +224,7 @@ def plot_svg(recording: PlotRecording, title: str = "") -> str | None:
 
 
 def _shown(recording: PlotRecording) -> dict[str, dict[str, PlotCurve]]:
-    """Axis -> label -> curve, of curves that can be drawn."""
+    """Return axis -> label -> curve, of curves that can be drawn."""
     several_topics = len({quantity.topic for quantity in recording.curves}) > 1
     shown: dict[str, dict[str, PlotCurve]] = {}
     for (kind, unit), curves in panels(recording).items():
@@ -237,7 +237,7 @@ def _shown(recording: PlotRecording) -> dict[str, dict[str, PlotCurve]]:
 
 
 def _moving(cycle: Cycle, height: float) -> str:
-    """The window through which the curves are seen, which grows to the right, and the pointers at its edge."""
+    """Return the window through which the curves are seen, which grows to the right, and the pointers at its edge."""
     key, width = cycle.key, WIDTH - LEFT - RIGHT
     away = f"transform:translateX({width}px)"
     rules = cycle.style(

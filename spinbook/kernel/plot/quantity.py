@@ -71,7 +71,7 @@ class PlotQuantity:
 
 
 def quantities(path: TopicPath, message: Any, type_name: str) -> Iterator[tuple[PlotQuantity, float]]:
-    """Every number that the path leads to in this message, with what it is.
+    """Yield every number that the path leads to in this message, with what it is.
 
     `type_name` is "package/Type". Raises LookupError if the message has no such field.
     """
@@ -126,7 +126,7 @@ def _prefixes(names: tuple[str, ...]) -> Iterator[str]:
 
 
 def stamp_of(message: Any) -> float | None:
-    """The message's own time in seconds, if it has a header with one."""
+    """Return the message's own time in seconds, if it has a header with one."""
     stamp = getattr(getattr(message, "header", None), "stamp", None)
     if stamp is None or (stamp.sec == 0 and stamp.nanosec == 0):
         return None

@@ -51,7 +51,7 @@ class PlotRecording:
             self.error = values[0]
 
     def why_empty(self, paths: Sequence[str]) -> str:
-        """Why nothing was recorded of these paths."""
+        """Return why nothing was recorded of these paths."""
         if self.waiting:
             there = ", ".join(self.published) or "none"
             return f"Nobody publishes {', '.join(self.waiting)}. Topics with a publisher are: {there}."
@@ -80,7 +80,7 @@ class RecordingTime:
         self._is_looking = self._has_samples = False
 
     def is_over(self, recording: PlotRecording, now: float) -> bool:
-        """Ask this again and again; `now` is a monotonic clock's time (s)."""
+        """Return ask this again and again; `now` is a monotonic clock's time (s)."""
         if recording.is_looking and not self._is_looking:
             self._is_looking, self._ends = True, now + _APPEAR_S
         if recording.curves and not self._has_samples:
