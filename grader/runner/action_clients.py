@@ -14,8 +14,8 @@ from grader.runner.cdr import deserialized
 from grader.runner.grader_side import ACCEPT_ANY, GraderSide
 from grader.runner.message import filled, message_class, to_fields
 from grader.scenario.scenario import CancelAll, CancelGoal, Scenario, SendGoal
-from rmw_lockstep.hub import Client, Subscription
-from rmw_lockstep.hub.ends import Moment
+from rmw_lockstep.hub import HubClient, HubSubscription
+from rmw_lockstep.hub.endpoints import Moment
 
 CancelStep: TypeAlias = CancelGoal | CancelAll
 
@@ -46,11 +46,13 @@ class ScriptedActionClient:
         self._ends, self.action, self.type = ends, action, type_name
         self._kind = message_class(type_name)
         node, base = ends.node, f"{action}/_action"
-        self._send: Client = node.client(f"{base}/send_goal", f"{type_name}_SendGoal")
-        self._cancel: Client = node.client(f"{base}/cancel_goal", CANCEL)
-        self._result: Client = node.client(f"{base}/get_result", f"{type_name}_GetResult")
-        self._feedback: Subscription = node.subscription(f"{base}/feedback", f"{type_name}_FeedbackMessage", ACCEPT_ANY)
-        self._status: Subscription = node.subscription(f"{base}/status", STATUS, ACCEPT_ANY)
+        self._send: HubClient = node.client(f"{base}/send_goal", f"{type_name}_SendGoal")
+        self._cancel: HubClient = node.client(f"{base}/cancel_goal", CANCEL)
+        self._result: HubClient = node.client(f"{base}/get_result", f"{type_name}_GetResult")
+        self._feedback: HubSubscription = node.subscription(
+            f"{base}/feedback", f"{type_name}_FeedbackMessage", ACCEPT_ANY
+        )
+        self._status: HubSubscription = node.subscription(f"{base}/status", STATUS, ACCEPT_ANY)
         self._goals: list[SentGoal] = []
 
     def send(self, step: SendGoal, number: int) -> None:
@@ -110,7 +112,7 @@ class ScriptedActionClient:
             finished=self._when(self._result, sent.result),
         )
 
-    def _when(self, client: Client, number: int | None) -> int | None:
+    def _when(self, client: HubClient, number: int | None) -> int | None:
         moment: Moment | None = None if number is None else client.moments.get(number)
         return None if moment is None else self._ends.at(moment)
 

@@ -18,11 +18,11 @@ from grader.runner.message_order import requests_in_order
 from grader.scenario.scenario import SECOND
 from grader.scenario.servers import ActionServer as Declared
 from grader.scenario.servers import GoalScript
-from rmw_lockstep.hub import Asked, Publisher, Qos, Server
+from rmw_lockstep.hub import HubPublisher, HubServer, PendingRequest, QosPolicies
 from rmw_lockstep.qos import TRANSIENT_LOCAL
 
 #: What rcl gives the status topic (rcl_action_qos_profile_status_default).
-STATUS_QOS = Qos(depth=1, durability=TRANSIENT_LOCAL)
+STATUS_QOS = QosPolicies(depth=1, durability=TRANSIENT_LOCAL)
 
 #: The bytes before a request's own fields: CDR's header, and the goal's id, which the client draws at random.
 _HEADER_AND_ID = 4 + 16
@@ -40,14 +40,14 @@ class RunningGoal:
     id: bytes
     at: int
     script: GoalScript
-    asked: Asked
+    asked: PendingRequest
     fields: dict[str, Any]
     accepted: bool | None = None
     answered: int | None = None
     states: list[GoalState] = field(default_factory=list)
     feedback: list[Feedback] = field(default_factory=list)
     cancels: list[Cancel] = field(default_factory=list)
-    waiting: list[Asked] = field(default_factory=list)
+    waiting: list[PendingRequest] = field(default_factory=list)
     asked_result: int | None = None
     finished: int | None = None
     result_sent: int | None = None
@@ -66,8 +66,8 @@ class ScriptedActionServer:
         self._ends, self._schedule, self._declared = ends, schedule, declared
         self._kind = message_class(declared.type)
         self._goals: list[RunningGoal] = []
-        self._servers: tuple[Server, Server, Server] | None = None
-        self._publishers: tuple[Publisher, Publisher] | None = None
+        self._servers: tuple[HubServer, HubServer, HubServer] | None = None
+        self._publishers: tuple[HubPublisher, HubPublisher] | None = None
 
     def open(self) -> None:
         """Start the server."""
@@ -79,7 +79,7 @@ class ScriptedActionServer:
             node.server(f"{base}/cancel_goal", CANCEL),
             node.server(f"{base}/get_result", f"{kind}_GetResult"),
         )
-        feedback = node.publisher(f"{base}/feedback", f"{kind}_FeedbackMessage", Qos())
+        feedback = node.publisher(f"{base}/feedback", f"{kind}_FeedbackMessage", QosPolicies())
         self._publishers = feedback, node.publisher(f"{base}/status", STATUS, STATUS_QOS)
 
     def close(self) -> None:
@@ -102,7 +102,7 @@ class ScriptedActionServer:
 
     # --- requests
 
-    def _goal(self, asked: Asked, now: int) -> None:
+    def _goal(self, asked: PendingRequest, now: int) -> None:
         request = deserialized(asked.cdr, self._kind.Impl.SendGoalService.Request)
         number = len(self._goals) + 1
         script = self._declared.scripts[min(number, len(self._declared.scripts)) - 1]
@@ -127,7 +127,7 @@ class ScriptedActionServer:
         if end != "never":
             self._plan(goal, now + nanoseconds(goal.script.after), lambda moment: self._end(goal, end, moment))
 
-    def _cancel(self, asked: Asked, now: int) -> None:
+    def _cancel(self, asked: PendingRequest, now: int) -> None:
         request = deserialized(asked.cdr, CancelService.Request)
         goal_id = bytes(request.goal_info.goal_id.uuid)
         at = self._ends.at(asked.moment)
@@ -150,7 +150,7 @@ class ScriptedActionServer:
                 due = now + nanoseconds(one.script.cancel_takes)
                 self._plan(one, due, lambda moment, goal=one: self._end(goal, "canceled", moment))
 
-    def _result(self, asked: Asked, now: int) -> None:
+    def _result(self, asked: PendingRequest, now: int) -> None:
         request = deserialized(asked.cdr, self._kind.Impl.GetResultService.Request)
         goal = next((one for one in self._goals if one.id == bytes(request.goal_id.uuid)), None)
         if goal is not None and goal.asked_result is None:
@@ -211,7 +211,7 @@ class ScriptedActionServer:
             goal.result_sent = now if goal.result_sent is None else goal.result_sent
         goal.waiting.clear()
 
-    def _send_result(self, asked: Asked, status: int, fields: dict[str, Any]) -> None:
+    def _send_result(self, asked: PendingRequest, status: int, fields: dict[str, Any]) -> None:
         response = self._kind.Impl.GetResultService.Response(status=status)
         filled(response.result, fields)
         assert self._servers

@@ -14,7 +14,7 @@ from grader.runner.cdr import deserialized, fields_of, serialized
 from grader.runner.grader_side import GraderSide
 from grader.runner.message import message_class
 from grader.scenario.scenario import GetParameter, Request, Scenario, SetParameter
-from rmw_lockstep.hub import Client
+from rmw_lockstep.hub import HubClient
 
 #: What `Calls` carries out.
 CallStep: TypeAlias = Request | SetParameter | GetParameter
@@ -27,7 +27,7 @@ class PendingCall:
     """A call that was made; `number` is None when there was no server."""
 
     step: Request | SetParameter | GetParameter
-    client: Client
+    client: HubClient
     number: int | None
 
     @property
@@ -41,13 +41,13 @@ class Calls:
 
     def __init__(self, ends: GraderSide, scenario: Scenario) -> None:
         self._ends = ends
-        self._clients: dict[str, Client] = {}
+        self._clients: dict[str, HubClient] = {}
         self._made: list[PendingCall] = []
         for step in scenario.steps:
             if isinstance(step, (Request, SetParameter, GetParameter)):
                 self._client(step)
 
-    def _client(self, step: Request | SetParameter | GetParameter) -> Client:
+    def _client(self, step: Request | SetParameter | GetParameter) -> HubClient:
         service, type_name = _service_of(step)
         if service not in self._clients:
             self._clients[service] = self._ends.node.client(service, type_name)

@@ -16,9 +16,8 @@ from itertools import count
 
 from grader.exercise.exercise import Qos
 from grader.scenario.scenario import SECOND, START, ComputerTime
-from rmw_lockstep.hub import Hub, HubNode
-from rmw_lockstep.hub import Qos as HubQos
-from rmw_lockstep.hub.ends import Heard, Moment
+from rmw_lockstep.hub import Hub, HubNode, QosPolicies
+from rmw_lockstep.hub.endpoints import DeliveredMessage, Moment
 from rmw_lockstep.qos import BEST_EFFORT, RELIABLE, TRANSIENT_LOCAL, VOLATILE
 
 #: How much of the computer's time passes per unit of simulated time, by a scenario's `computer_time`.
@@ -30,7 +29,7 @@ PACES: dict[ComputerTime, tuple[int, int]] = {"apart": (5, 4), "simulated": (1, 
 BETWEEN_MESSAGES = 10_000_000
 
 #: Compatible with whatever a student's publisher offers.
-ACCEPT_ANY = HubQos(depth=10_000, reliability=BEST_EFFORT)
+ACCEPT_ANY = QosPolicies(depth=10_000, reliability=BEST_EFFORT)
 
 _CLOCK = struct.Struct("<4siI")
 
@@ -94,7 +93,7 @@ class GraderSide:
     node: HubNode
     clocks: Clocks
 
-    def at(self, moment: Moment | Heard) -> int:
+    def at(self, moment: Moment | DeliveredMessage) -> int:
         """Return the simulated time of a moment (ns); anything before simulated time begins counts as its beginning."""
         return max(START, self.clocks.simulated(moment.now, moment.stage))
 
@@ -130,9 +129,9 @@ def nanoseconds(seconds: float) -> int:
     return round(seconds * SECOND)
 
 
-def hub_qos(qos: Qos) -> HubQos:
+def hub_qos(qos: Qos) -> QosPolicies:
     """Return the same policies in the hub's form."""
-    return HubQos(
+    return QosPolicies(
         depth=qos.depth,
         reliability=BEST_EFFORT if qos.reliability == "best_effort" else RELIABLE,
         durability=TRANSIENT_LOCAL if qos.durability == "transient_local" else VOLATILE,

@@ -6,9 +6,8 @@ from collections.abc import Callable
 
 from grader.recording.recording import Endpoint, EndPointKind
 from grader.recording.types import OWN_SERVICES
-from rmw_lockstep.hub import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, Hub
-from rmw_lockstep.hub import EndPoint as OnHub
-from rmw_lockstep.hub.graph import Graph
+from rmw_lockstep.hub import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, GraphEndpoint, Hub
+from rmw_lockstep.hub.graph import HubGraph
 from rmw_lockstep.qos import INFINITE, KEEP_ALL
 
 #: Topics that every node has.
@@ -29,33 +28,33 @@ def _nobody(process: int) -> bool:
     return False
 
 
-def nodes(graph: Graph, ours: Callable[[int], bool] = _nobody) -> tuple[str, ...]:
+def nodes(graph: HubGraph, ours: Callable[[int], bool] = _nobody) -> tuple[str, ...]:
     """Return the full names of the student's nodes, such as `/joint_velocity`, sorted; without processes in `ours`."""
     return tuple(node.full_name for node in graph.program_nodes() if not ours(node.id >> 32))
 
 
-def end_points(graph: Graph, ours: Callable[[int], bool] = _nobody) -> tuple[Endpoint, ...]:
+def end_points(graph: HubGraph, ours: Callable[[int], bool] = _nobody) -> tuple[Endpoint, ...]:
     """Return the student's end points, sorted, without those that every node has; those of an action count as one."""
     found = [
         recorded
-        for end_point in graph.program_end_points()
-        if not ours(end_point.process) and (recorded := _recorded(end_point, graph.nodes[end_point.node].full_name))
+        for endpoint in graph.program_endpoints()
+        if not ours(endpoint.process) and (recorded := _recorded(endpoint, graph.nodes[endpoint.node].full_name))
     ]
     return tuple(sorted(found, key=lambda one: (one.topic, one.kind, one.node)))
 
 
-def _recorded(end_point: OnHub, node: str) -> Endpoint | None:
-    kind, name, type_name = _KINDS[end_point.kind], end_point.name, end_point.type
-    if name.endswith(SEND_GOAL) and end_point.kind in (SERVER, CLIENT):
-        kind = "action server" if end_point.kind == SERVER else "action client"
+def _recorded(endpoint: GraphEndpoint, node: str) -> Endpoint | None:
+    kind, name, type_name = _KINDS[endpoint.kind], endpoint.name, endpoint.type
+    if name.endswith(SEND_GOAL) and endpoint.kind in (SERVER, CLIENT):
+        kind = "action server" if endpoint.kind == SERVER else "action client"
         name, type_name = name.removesuffix(SEND_GOAL), type_name.removesuffix("_SendGoal")
     elif (
         name in OWN_TO_ROS
         or "/_action/" in name
-        or (end_point.kind == SERVER and name.removeprefix(f"{node}/") in OWN_SERVICES)
+        or (endpoint.kind == SERVER and name.removeprefix(f"{node}/") in OWN_SERVICES)
     ):
         return None
-    qos = end_point.qos
+    qos = endpoint.qos
     return Endpoint(
         node=node,
         kind=kind,

@@ -137,7 +137,7 @@ _MESSAGES = {
         "answer its own messages? Check the names of its topics."
     ),
     "nodes": "Your program created more than {limit:,} nodes.",
-    "end points": "Your program created more than {limit:,} publishers, subscriptions, clients and services.",
+    "endpoints": "Your program created more than {limit:,} publishers, subscriptions, clients and services.",
     "connections": "Your program started more than {limit:,} processes.",
     "unread": "Your program does not take the messages that are sent to it: {found:,} bytes are waiting for it.",
     "wake-ups": "Your program woke up more than {limit:,} times in one scenario. Does a loop wait for no time at all?",

@@ -7,11 +7,11 @@ from grader.runner.cdr import serialized
 from grader.runner.grader_side import hub_qos
 from grader.runner.message import message_class
 from grader.scenario.scenario import Message, Scenario
-from rmw_lockstep.hub import HubNode, Publisher, Qos
+from rmw_lockstep.hub import HubNode, HubPublisher, QosPolicies
 from rmw_lockstep.qos import TRANSIENT_LOCAL
 
 #: Compatible with whatever a student's subscription requests.
-OFFER = Qos(depth=1_000, durability=TRANSIENT_LOCAL)
+OFFER = QosPolicies(depth=1_000, durability=TRANSIENT_LOCAL)
 
 
 _prepared: dict[int, tuple[Scenario, dict[int, bytes]]] = {}
@@ -36,7 +36,7 @@ class ReferencePublishers:
 
     def __init__(self, node: HubNode, scenario: Scenario) -> None:
         self._node, self._scenario = node, scenario
-        self._ready: dict[tuple[str, int], Publisher] = {}
+        self._ready: dict[tuple[str, int], HubPublisher] = {}
         self._current: dict[str, int] = {}
         for message in scenario.messages:
             self._add(message)

@@ -13,7 +13,7 @@ from grader.runner.grader_side import ACCEPT_ANY, Clocks
 from grader.runner.message import message_class
 from grader.runner.message_order import in_canonical_order, place_of, unordered_sources, without_order
 from grader.runner.program import CannotContinue, Task
-from rmw_lockstep.hub import Heard, HubNode, Qos, Subscription
+from rmw_lockstep.hub import DeliveredMessage, HubNode, HubSubscription, QosPolicies
 
 #: No exercise needs more than this from a node in one scenario.
 MOST_MESSAGES = 5_000
@@ -59,13 +59,13 @@ class Recorder:
         """
         self._node, self._earliest, self._ours = node, earliest, ours
         self._listening: list[RecordedTopic] = []
-        self._heard: list[tuple[int, Heard]] = []
-        self._own: dict[str, Subscription] = {}
+        self._heard: list[tuple[int, DeliveredMessage]] = []
+        self._own: dict[str, HubSubscription] = {}
         self._paused = False
         for name, type_name in topics:
             self._subscribe(RecordedTopic(name, type_name), ACCEPT_ANY)
 
-    def join(self, name: str, topic: str, type_name: str, qos: Qos) -> None:
+    def join(self, name: str, topic: str, type_name: str, qos: QosPolicies) -> None:
         """Add a subscriber of the scenario's own."""
         self.leave(name)
         self._own[name] = self._subscribe(RecordedTopic(topic, type_name, name), qos)
@@ -75,11 +75,11 @@ class Recorder:
         if name in self._own:
             self._own.pop(name).close()
 
-    def _subscribe(self, listening: RecordedTopic, qos: Qos) -> Subscription:
+    def _subscribe(self, listening: RecordedTopic, qos: QosPolicies) -> HubSubscription:
         number = len(self._listening)
         self._listening.append(listening)
 
-        def keep(heard: Heard) -> None:
+        def keep(heard: DeliveredMessage) -> None:
             if self._paused or self._ours(heard.publisher.process):
                 return
             self._heard.append((number, heard))
@@ -105,7 +105,7 @@ class Recorder:
     def received(self, clocks: Clocks, stages: Sequence[int]) -> tuple[ReceivedMessage, ...]:
         """Return what has arrived, in order. Raises `CannotContinue` for bytes that are not a message.
 
-        `stages` has the number of each message sent, among everything the hub has published; see `Heard.stage`.
+        `stages` has the number of each message sent, among everything the hub has published: `DeliveredMessage.stage`.
         """
         found = []
         sources = unordered_sources(self._heard)

@@ -28,7 +28,7 @@ from grader.runner.recorder import Recorder, recorded_topics
 from grader.runner.script import Script
 from grader.runner.team import Start, Team
 from grader.scenario.scenario import SECOND, START, Content, Message
-from rmw_lockstep.hub import Hub, Limits, Violation
+from rmw_lockstep.hub import Hub, HubLimits, Violation
 
 #: How long simulated time continues after the last message, for what a node does by timer (ns).
 AFTERWARDS = SECOND // 2
@@ -50,7 +50,7 @@ STEP = Allowance(ENDLESS.format(3.0), OUTSIDE.format(3.0))
 def run(
     task: Task,
     start: Start,
-    limits: Limits | None = None,
+    limits: HubLimits | None = None,
     programs: Mapping[str, Start] | None = None,
     companions: Sequence[Start] = (),
 ) -> Recording:

@@ -14,7 +14,7 @@ from grader.runner.service_servers import AuthorFault
 from grader.scenario.scenario import START, Message
 from grader.scenario.values import InvalidValue, check_fields
 from grader.scenario.world import World
-from rmw_lockstep.hub import Heard
+from rmw_lockstep.hub import DeliveredMessage
 
 
 class RunningWorld:
@@ -28,14 +28,14 @@ class RunningWorld:
         self._schedule, self._publish = schedule, publish
         self._period = nanoseconds(world.period)
         self._topics = tuple(self._model.reads.items())
-        self._heard: list[tuple[int, Heard]] = []
+        self._heard: list[tuple[int, DeliveredMessage]] = []
         for number, (topic, type_name) in enumerate(self._topics):
             ends.node.subscription(topic, type_name, ACCEPT_ANY, partial(self._keep, number))
         for topic, type_name in self._model.publishes.items():
             publishers.announce(topic, type_name)
         schedule.plan(START + self._period, self._step)
 
-    def _keep(self, number: int, heard: Heard) -> None:
+    def _keep(self, number: int, heard: DeliveredMessage) -> None:
         self._heard.append((number, heard))
 
     def _step(self, now: int) -> None:

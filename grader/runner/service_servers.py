@@ -15,7 +15,7 @@ from grader.scenario.code import AuthorCode
 from grader.scenario.servers import Reply
 from grader.scenario.servers import Server as Declared
 from grader.scenario.values import InvalidValue, check_fields
-from rmw_lockstep.hub import Asked, Server
+from rmw_lockstep.hub import HubServer, PendingRequest
 
 
 class AuthorFault(Exception):
@@ -26,7 +26,7 @@ class AuthorFault(Exception):
 class ServiceExchange:
     """A request that arrived, and the answer as soon as there is one."""
 
-    asked: Asked
+    asked: PendingRequest
     at: int
     request: dict[str, Any]
     answered: int | None = None
@@ -41,7 +41,7 @@ class ServiceServer:
         self._ends, self._schedule, self._declared = ends, schedule, declared
         self._kind = message_class(declared.type)
         self._answer = declared.replies.load() if isinstance(declared.replies, AuthorCode) else None
-        self._server: Server | None = None
+        self._server: HubServer | None = None
         self._exchanges: list[ServiceExchange] = []
 
     def open(self) -> None:
@@ -63,7 +63,7 @@ class ServiceServer:
             self._take(one, now)
         return bool(requests)
 
-    def _take(self, asked: Asked, now: int) -> None:
+    def _take(self, asked: PendingRequest, now: int) -> None:
         request = deserialized(asked.cdr, self._kind.Request)
         at = self._ends.at(asked.moment)
         exchange = ServiceExchange(asked, at, to_fields(request))
@@ -74,7 +74,7 @@ class ServiceServer:
             due = max(now, at + nanoseconds(reply.after))
             self._schedule.plan(due, lambda moment: self._respond(server, exchange, reply, moment))
 
-    def _respond(self, server: Server | None, exchange: ServiceExchange, reply: Reply, now: int) -> None:
+    def _respond(self, server: HubServer | None, exchange: ServiceExchange, reply: Reply, now: int) -> None:
         if server is None or server is not self._server:
             return
         fields = reply.fields or {}

@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 
 from grader.sandbox.program import SandboxUnavailable
-from rmw_lockstep.library import Library, Unavailable, compiler, library
+from rmw_lockstep.library import Library, UnavailableLibrary, compiler, library
 from rmw_lockstep.ros import installed_ros
 
 
@@ -33,13 +33,13 @@ def require_middleware() -> None:
         built = build()
     except BuildError as error:
         raise MiddlewareUnavailable(f"The grader's middleware could not be compiled. {error}") from None
-    if isinstance(built, Unavailable):
+    if isinstance(built, UnavailableLibrary):
         raise MiddlewareUnavailable(f"The grader's middleware is missing: {built.reason}. {built.remedy}")
 
 
 def to_be_compiled() -> bool:
     """Return whether `require_middleware` will compile it, which takes seconds."""
-    return isinstance(library(), Unavailable) and installed_ros() is not None and compiler() is not None
+    return isinstance(library(), UnavailableLibrary) and installed_ros() is not None and compiler() is not None
 
 
 def variables(of: Mapping[str, str]) -> dict[str, str]:
@@ -49,7 +49,7 @@ def variables(of: Mapping[str, str]) -> dict[str, str]:
         MiddlewareUnavailable: if it has not been compiled.
     """
     built = library()
-    if isinstance(built, Unavailable):
+    if isinstance(built, UnavailableLibrary):
         raise MiddlewareUnavailable(f"The grader's middleware is missing: {built.reason}. {built.remedy}")
     return built.environment(of)
 

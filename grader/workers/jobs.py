@@ -59,7 +59,7 @@ class RunJob:
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Recording:
         """Return the recording of the run."""
         from grader.runner.run import run
-        from rmw_lockstep.hub import Limits as HubLimits
+        from rmw_lockstep.hub import HubLimits
 
         def start(program: Program, hub: Path) -> SandboxedProgram:
             return fork_server.start(replace(program, hub=hub), self.isolation, self.limits, self.core)

@@ -12,7 +12,7 @@ from interface_compiler import activation, prefixes, store
 from interface_compiler.checks import check
 from interface_compiler.definition import CompileError, Definition, DefinitionError, Fault, by_package, read_folder
 from interface_compiler.near import make_current, use
-from interface_compiler.store import Compiled
+from interface_compiler.store import CompiledPackages
 from spinbook.chapter.fence import interface_package, interface_path, is_someone_elses
 from spinbook.chapter.read import fences_of
 from spinbook.course.course import FILE, Course
@@ -86,7 +86,7 @@ def folder_of(course: Course) -> Path:
     return course.build_folder / "interfaces"
 
 
-def compile_course(course: Course, collected: CourseDefinitions | None = None) -> Compiled | None:
+def compile_course(course: Course, collected: CourseDefinitions | None = None) -> CompiledPackages | None:
     """Compile a course's interfaces, if it has any and they have changed, and use them in this process from now on.
 
     Raises:

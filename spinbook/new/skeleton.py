@@ -23,7 +23,7 @@ from grader.exercise.exercise import (
     Topic,
 )
 
-#: A program's end point, and what an __init__ does for it.
+#: A program's endpoint, and what an __init__ does for it.
 _ENTRY = {
     "service": "self.{name}_service = self.create_service({type}, {topic}, self.on_{name})",
     "client": "self.{name}_client = self.create_client({type}, {topic})",
@@ -77,7 +77,7 @@ if __name__ == "__main__":
 
 @dataclass(frozen=True)
 class _Callback:
-    """A method that the program's end points call."""
+    """A method that the program's endpoints call."""
 
     name: str
     arguments: str

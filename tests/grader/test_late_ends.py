@@ -1,4 +1,4 @@
-"""A node may create its end points late: a publisher when it has something to publish, a subscription after a while."""
+"""A node may create its endpoints late: a publisher when it has something to publish, a subscription after a while."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ def node_of(source: str, class_name: str) -> Node:
 
 
 def policies(topic: Topic, node: Node) -> list[tuple[str, str, str]]:
-    """Return type, reliability and durability of the node's end points of a topic."""
+    """Return type, reliability and durability of the node's endpoints of a topic."""
     ends = node.get_publishers_info_by_topic if topic.direction == "publish" else node.get_subscriptions_info_by_topic
     return [
         (end.topic_type, end.qos_profile.reliability.name.lower(), end.qos_profile.durability.name.lower())

@@ -19,16 +19,16 @@ from ros_in_python.thinning import thinned
 from ros_in_python.turtlesim.events import DT, PIXELS_PER_UNIT, SIDE, TICK_NS, Pen
 from ros_in_python.turtlesim.moving import LONGEST_S, LONGEST_WAIT_S, MOST_SAMPLES, moving_svg, timeline
 from ros_in_python.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, Track, TrackSample
-from ros_in_python.turtlesim.world import World
+from ros_in_python.turtlesim.world import TurtleWorld
 from ros_in_python.turtlesim.world_picture import BLUE, WorldPicture, picture_of
 
 #: A quarter of a turn on a radius of 2, then a wait of 5 s, then 2 units straight on.
 TURN_TICKS, WAIT_TICKS, STRAIGHT_TICKS = 98, 312, 62
 
 
-def driven() -> tuple[World, list[tuple[float, float, float]]]:
+def driven() -> tuple[TurtleWorld, list[tuple[float, float, float]]]:
     """Return a world, and where its turtle was after each tick."""
-    world = World()
+    world = TurtleWorld()
     world.start()
     world.tick(0)
     places = []
@@ -114,7 +114,7 @@ def test_a_long_way_is_shown_faster_and_says_so() -> None:
 
 
 def test_a_world_in_which_nothing_moved_has_no_moving_picture() -> None:
-    world = World()
+    world = TurtleWorld()
     world.start()
     for n in range(20):
         world.tick(n * TICK_NS)
@@ -129,7 +129,7 @@ def test_clear_and_reset_begin_the_way_anew() -> None:
 
 
 def test_a_lifted_pen_drives_and_draws_nothing() -> None:
-    world = World()
+    world = TurtleWorld()
     world.start()
     world.tick(0)
     world.set_pen("turtle1", 0, 0, 0, 1, 1)
@@ -152,7 +152,7 @@ def test_it_is_a_few_kilobytes_of_xml_without_script_and_the_same_each_time() ->
 
 
 def test_ten_minutes_of_driving_are_thinned_and_the_error_is_reported() -> None:
-    world = World()
+    world = TurtleWorld()
     world.start()
     for n in range(9_000):
         world.command("turtle1", 2 + math.sin(n / 60), None, 1.0, n * TICK_NS)

@@ -15,7 +15,7 @@ from grader.runner.run import run
 from grader.sandbox import ForkServer, Limits, Program, SandboxedProgram, choose
 from grader.scenario import Scenario
 from grader.workers.pool import STUDENT_ENVIRONMENT
-from rmw_lockstep.hub import Limits as HubLimits
+from rmw_lockstep.hub import HubLimits
 
 
 @pytest.fixture(scope="session")

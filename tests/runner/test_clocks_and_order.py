@@ -21,7 +21,7 @@ from grader.runner.message_order import (
     without_order,
 )
 from grader.scenario.scenario import SECOND, START
-from rmw_lockstep.hub import Asked, EndPoint, Heard, Moment, Qos
+from rmw_lockstep.hub import DeliveredMessage, GraphEndpoint, Moment, PendingRequest, QosPolicies
 
 BEGAN = 1_000 * SECOND + 7
 
@@ -53,16 +53,16 @@ def test_simulated_time_goes_at_80_percent_of_the_computers_and_never_beyond_the
 MAIN, OTHER = True, False
 
 
-def heard(cdr: bytes, main: bool, now: int = 5, process: int = 1, node: str = "/node") -> tuple[int, Heard]:
-    publisher = EndPoint(process << 32 | 1, 0, process << 32 | 2, "/out", "a/msg/B", bytes(33), Qos())
-    return 0, Heard(publisher, node, now, 1, 1, main, cdr)
+def heard(cdr: bytes, main: bool, now: int = 5, process: int = 1, node: str = "/node") -> tuple[int, DeliveredMessage]:
+    publisher = GraphEndpoint(process << 32 | 1, 0, process << 32 | 2, "/out", "a/msg/B", bytes(33), QosPolicies())
+    return 0, DeliveredMessage(publisher, node, now, 1, 1, main, cdr)
 
 
-def order(entries: Sequence[tuple[int, Heard]]) -> list[bytes]:
+def order(entries: Sequence[tuple[int, DeliveredMessage]]) -> list[bytes]:
     return [one.cdr for _, one in in_canonical_order(entries, unordered_sources(entries))]
 
 
-def unordered(*entries: tuple[int, Heard]) -> set[Place]:
+def unordered(*entries: tuple[int, DeliveredMessage]) -> set[Place]:
     return without_order(entries, unordered_sources(entries))
 
 
@@ -88,12 +88,12 @@ def test_only_messages_of_one_moment_can_be_without_an_order() -> None:
     assert unordered(*first) == {place_of(0, first[0][1])}
 
 
-def asked(cdr: bytes, main: bool, now: int = 5, process: int = 1, node: str = "/node") -> Asked:
-    client = EndPoint(process << 32 | 1, 0, process << 32 | 2, "/add", "a/srv/B", bytes(33), Qos())
-    return Asked(client, node, 1, Moment(now, 1, 1, main), cdr)
+def asked(cdr: bytes, main: bool, now: int = 5, process: int = 1, node: str = "/node") -> PendingRequest:
+    client = GraphEndpoint(process << 32 | 1, 0, process << 32 | 2, "/add", "a/srv/B", bytes(33), QosPolicies())
+    return PendingRequest(client, node, 1, Moment(now, 1, 1, main), cdr)
 
 
-def requests(*entries: Asked, start: int = 0) -> list[bytes]:
+def requests(*entries: PendingRequest, start: int = 0) -> list[bytes]:
     return [one.cdr for one in requests_in_order(entries, lambda cdr: cdr[start:])]
 
 

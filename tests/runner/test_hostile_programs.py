@@ -7,7 +7,7 @@ import textwrap
 import pytest
 from runner_programs import ANSWER, RunProgram, numbers, program
 
-from rmw_lockstep.hub import Limits
+from rmw_lockstep.hub import HubLimits
 from rmw_lockstep.hub.frames import VERSION
 
 #: The process's own connection, and how to make another one.
@@ -61,7 +61,7 @@ def attack(code: str) -> str:
 def test_an_attack_ends_the_run_with_a_true_message(
     run_program: RunProgram, code: str, outcome: str, text: str
 ) -> None:
-    recording = run_program(attack(code), limits=Limits(frames=20_000, end_points=400, connections=16))
+    recording = run_program(attack(code), limits=HubLimits(frames=20_000, endpoints=400, connections=16))
     assert (recording.ending.outcome, text in recording.ending.message) == (outcome, True), recording.ending
     assert [received.fields["data"] for received in recording.received][:2] == [2, 4]
 
@@ -123,7 +123,7 @@ def test_a_program_that_sleeps_two_seconds_before_it_makes_a_node_is_not_too_lat
 
 
 def test_how_much_it_publishes_is_bounded_in_bytes_before_it_takes_any_memory(run_program: RunProgram) -> None:
-    recording = run_program(program(body=f"for i in range(100): {ANSWER}"), numbers(20), Limits(data_bytes=10_000))
+    recording = run_program(program(body=f"for i in range(100): {ANSWER}"), numbers(20), HubLimits(data_bytes=10_000))
     assert recording.ending.outcome == "over-limit"
     assert "more than 10,000 bytes" in recording.ending.message
     assert recording.received, "what came before is kept"

@@ -15,7 +15,7 @@ from pathlib import Path
 from interface_compiler import checks, prefixes
 from interface_compiler.compiling import Dependency, compile_package
 from interface_compiler.definition import CompileError, read_folder
-from interface_compiler.generating import Generated, Sources, generate
+from interface_compiler.generating import GeneratedCode, GeneratedSources, generate
 from interface_compiler.prefixes import PYTHON, RESOURCES
 
 #: Where a prefix keeps the definitions that it was made from.
@@ -42,7 +42,7 @@ def build(prefix: Path, package: str) -> None:
     wheels = Path(sys.prefix)
     places = prefixes.packages([prefix, *prefixes.installed()])
     known = {name: places[name] / "share" / name for name in places if name != package}
-    sources = Sources(package, prefix / DEFINITIONS / package, prefix / "share" / package, known)
+    sources = GeneratedSources(package, prefix / DEFINITIONS / package, prefix / "share" / package, known)
     definitions = [item for item in read_folder(prefix / DEFINITIONS)[0] if item.package == package]
     needed = sorted(checks.dependencies(definitions)[package])
     with tempfile.TemporaryDirectory(prefix=f"{package}-") as temporary:
@@ -55,7 +55,7 @@ def build(prefix: Path, package: str) -> None:
     _write_index(prefix, sources, needed)
 
 
-def _used(sources: Sources, needed: Sequence[str]) -> list[str]:
+def _used(sources: GeneratedSources, needed: Sequence[str]) -> list[str]:
     """Return the packages whose types this one uses, including those inside nested types."""
     used = set(needed)
     for interface in sources.interfaces():
@@ -65,7 +65,7 @@ def _used(sources: Sources, needed: Sequence[str]) -> list[str]:
     return sorted(used - {sources.package})
 
 
-def _write_init(generated: Generated, used: Sequence[Dependency]) -> None:
+def _write_init(generated: GeneratedCode, used: Sequence[Dependency]) -> None:
     lines = [f'"""The interfaces of the ROS 2 package {generated.package}."""\n']
     ours = [dependency.package for dependency in used if dependency.is_ours]
     if ours:
@@ -74,7 +74,7 @@ def _write_init(generated: Generated, used: Sequence[Dependency]) -> None:
     (generated.python / "__init__.py").write_text("".join(lines), encoding="utf-8")
 
 
-def _copy_headers(generated: Generated, prefix: Path) -> None:
+def _copy_headers(generated: GeneratedCode, prefix: Path) -> None:
     """Keep the headers, for packages that use this one's types."""
     target = prefix / "include" / generated.package
     for root in (generated.c, generated.introspection):
@@ -84,7 +84,7 @@ def _copy_headers(generated: Generated, prefix: Path) -> None:
             shutil.copyfile(header, copy)
 
 
-def _write_index(prefix: Path, sources: Sources, needed: Sequence[str]) -> None:
+def _write_index(prefix: Path, sources: GeneratedSources, needed: Sequence[str]) -> None:
     """Write what makes the package known to ament: its markers, and its package.xml."""
     files = [file for item in sources.interfaces() for file in (item.as_posix(), item.with_suffix(".idl").as_posix())]
     markers = {

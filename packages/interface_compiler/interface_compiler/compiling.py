@@ -16,7 +16,7 @@ from pathlib import Path
 
 from interface_compiler import toolchain
 from interface_compiler.definition import CompileError
-from interface_compiler.generating import Generated
+from interface_compiler.generating import GeneratedCode
 from interface_compiler.prefixes import PYTHON
 
 #: The wheels' libraries that the code calls, and those whose headers it includes.
@@ -79,7 +79,7 @@ def module_name(package: str) -> str:
     return f"{package}_s__rosidl_typesupport_c.abi3.so"
 
 
-def compile_package(generated: Generated, work: Path, dependencies: Sequence[Dependency], wheels: Path) -> Path:
+def compile_package(generated: GeneratedCode, work: Path, dependencies: Sequence[Dependency], wheels: Path) -> Path:
     """Compile a package's code. Return the extension module, which is in its Python package.
 
     Args:
@@ -110,7 +110,7 @@ def compile_package(generated: Generated, work: Path, dependencies: Sequence[Dep
     return module
 
 
-def _units(generated: Generated, work: Path) -> list[Path]:
+def _units(generated: GeneratedCode, work: Path) -> list[Path]:
     """Return the compiler's inputs: as few as possible, as most of its time is spent on reading headers."""
     c, introspection = generated.c / generated.package, generated.introspection / generated.package
     kinds = ("msg", "srv", "action")
@@ -141,7 +141,7 @@ def _joined(unit: Path, sources: Sequence[Path]) -> list[Path]:
     return [unit]
 
 
-def _python_sources(generated: Generated) -> list[Path]:
+def _python_sources(generated: GeneratedCode) -> list[Path]:
     converters = sorted(generated.python.glob("*/*_s.c"))
     return [*converters, *sorted(generated.python.glob(f"_{generated.package}_s.ep.*.c"))]
 
@@ -167,7 +167,7 @@ def _dispatch(c: Path) -> str:
     return text
 
 
-def _includes(generated: Generated, dependencies: Iterable[Dependency], wheels: Path) -> list[str]:
+def _includes(generated: GeneratedCode, dependencies: Iterable[Dependency], wheels: Path) -> list[str]:
     import numpy
 
     folders = [generated.c, generated.introspection, toolchain.headers(), Path(numpy.get_include())]

@@ -23,7 +23,7 @@ _HEADERS_OF_OWN = ("rosidl_generator_c", *TYPE_SUPPORTS)
 
 
 @dataclass(frozen=True)
-class Generated:
+class GeneratedCode:
     """Where the code of one package was written: C and C++, the C of introspection, and Python with its C."""
 
     package: str
@@ -33,7 +33,7 @@ class Generated:
 
 
 @dataclass(frozen=True)
-class Sources:
+class GeneratedSources:
     """One package's definitions: `folder/{msg,srv,action}/…`, and `share` for their installed files.
 
     `known` are the folders of the other packages' shared files, by package.
@@ -50,7 +50,7 @@ class Sources:
         return sorted(file.relative_to(self.folder) for file in files)
 
 
-def generate(sources: Sources, work: Path, python: Path, templates: Path) -> Generated:
+def generate(sources: GeneratedSources, work: Path, python: Path, templates: Path) -> GeneratedCode:
     """Write the code of a package, and its .idl files and type descriptions into its share folder.
 
     Args:
@@ -59,7 +59,7 @@ def generate(sources: Sources, work: Path, python: Path, templates: Path) -> Gen
         python: where the Python package goes.
         templates: the `share` folder that has the generators' templates.
     """
-    generated = Generated(sources.package, work / "c", work / "introspection", python)
+    generated = GeneratedCode(sources.package, work / "c", work / "introspection", python)
     for folder in (generated.c / sources.package, generated.introspection / sources.package, python):
         folder.mkdir(parents=True, exist_ok=True)
     _read_each_idl_once()
@@ -73,15 +73,15 @@ def generate(sources: Sources, work: Path, python: Path, templates: Path) -> Gen
     return generated
 
 
-def describe(sources: Sources, work: Path) -> None:
+def describe(sources: GeneratedSources, work: Path) -> None:
     """Write only the .idl files and the type descriptions, with their hashes, into a package's share folder."""
     _read_each_idl_once()
     with contextlib.redirect_stdout(io.StringIO()):
         _write_idl(sources)
-        _Generators(sources, Generated(sources.package, work, work, work), work, work).describe()
+        _Generators(sources, GeneratedCode(sources.package, work, work, work), work, work).describe()
 
 
-def _write_idl(sources: Sources) -> None:
+def _write_idl(sources: GeneratedSources) -> None:
     from rosidl_adapter import convert_to_idl
 
     for interface in sources.interfaces():
@@ -94,7 +94,7 @@ def _write_idl(sources: Sources) -> None:
 class _Generators:
     """Calls the generators one after another. Each reads its arguments from a JSON file."""
 
-    def __init__(self, sources: Sources, generated: Generated, work: Path, templates: Path) -> None:
+    def __init__(self, sources: GeneratedSources, generated: GeneratedCode, work: Path, templates: Path) -> None:
         self._sources, self._generated, self._work, self._templates = sources, generated, work, templates
         idl = [interface.with_suffix(".idl").as_posix() for interface in sources.interfaces()]
         self._common = {
@@ -134,7 +134,7 @@ class _Generators:
         getattr(importlib.import_module(generator), function)(str(arguments), *more)
 
 
-def _write_visibility(generated: Generated, templates: Path) -> None:
+def _write_visibility(generated: GeneratedCode, templates: Path) -> None:
     """Write the headers with the export macros, which CMake makes in a usual build."""
     folder = generated.c / generated.package / "msg"
     folder.mkdir(exist_ok=True)

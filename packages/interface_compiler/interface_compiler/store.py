@@ -30,7 +30,7 @@ _KEPT = 8
 
 
 @dataclass(frozen=True)
-class Compiled:
+class CompiledPackages:
     """Packages that were compiled into a prefix, and whether that was done just now."""
 
     prefix: Path
@@ -48,7 +48,7 @@ class Compiled:
         return self.prefix.name
 
 
-def ensure(definitions: Sequence[Definition], store: Path) -> Compiled:
+def ensure(definitions: Sequence[Definition], store: Path) -> CompiledPackages:
     """Return the compiled packages of these definitions, compiled now if they are not in the store yet.
 
     Two processes that want the same wait for each other.
@@ -66,15 +66,15 @@ def ensure(definitions: Sequence[Definition], store: Path) -> Compiled:
             if not prefix.is_dir():
                 _compile(definitions, found, prefix)
                 _prune(store, prefix)
-                return Compiled(prefix, packages, fresh=True)
-    return Compiled(prefix, packages)
+                return CompiledPackages(prefix, packages, fresh=True)
+    return CompiledPackages(prefix, packages)
 
 
-def find(definitions: Sequence[Definition], store: Path) -> Compiled | None:
+def find(definitions: Sequence[Definition], store: Path) -> CompiledPackages | None:
     """Return the compiled packages of these definitions, if the store has them."""
     found = keys(definitions)
     prefix = store.resolve() / digest(*found.values())
-    return Compiled(prefix, tuple(found)) if prefix.is_dir() else None
+    return CompiledPackages(prefix, tuple(found)) if prefix.is_dir() else None
 
 
 def digest(*texts: str) -> str:

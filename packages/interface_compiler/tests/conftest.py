@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from definitions import robot
 
-from interface_compiler.store import Compiled, ensure
+from interface_compiler.store import CompiledPackages, ensure
 
 #: A ROS domain that no other tests use, below those whose ports Linux gives to anybody.
 DOMAIN = 100
@@ -27,6 +27,6 @@ def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
 
 
 @pytest.fixture(scope="session")
-def robot_interfaces(tmp_path_factory: pytest.TempPathFactory) -> Compiled:
+def robot_interfaces(tmp_path_factory: pytest.TempPathFactory) -> CompiledPackages:
     """A package of a message, a service and an action, which need each other and std_msgs and geometry_msgs."""
     return ensure(robot(), Path(tmp_path_factory.mktemp("store")))

@@ -15,20 +15,20 @@ from definitions import definition
 
 from interface_compiler import prefixes
 from interface_compiler.activation import extend
-from interface_compiler.store import Compiled, ensure
+from interface_compiler.store import CompiledPackages, ensure
 
 HERE = Path(__file__).parent
 Asked = list[tuple[str, dict[str, Any]]]
 
 
-def environment(compiled: Compiled | None) -> dict[str, str]:
+def environment(compiled: CompiledPackages | None) -> dict[str, str]:
     variables = dict(os.environ)
     if compiled is not None:
         extend(variables, compiled.prefix)
     return variables
 
 
-def talk(tmp_path: Path, asked: Asked, ours: Compiled | None, theirs: Compiled | None) -> str:
+def talk(tmp_path: Path, asked: Asked, ours: CompiledPackages | None, theirs: CompiledPackages | None) -> str:
     """Let one process ask the other one; return what the asking one prints."""
     file = tmp_path / "asked.json"
     file.write_text(json.dumps(asked))
@@ -55,7 +55,9 @@ LIMITS = {
 
 
 @pytest.mark.usefixtures("ros_domain")
-def test_nested_bounded_default_and_wide_fields_and_a_service(tmp_path: Path, robot_interfaces: Compiled) -> None:
+def test_nested_bounded_default_and_wide_fields_and_a_service(
+    tmp_path: Path, robot_interfaces: CompiledPackages
+) -> None:
     asked: Asked = [
         ("robot_interfaces/msg/JointLimits", LIMITS),
         ("robot_interfaces/srv/GetLimits", {"names": ["hip", "knee"]}),
@@ -78,7 +80,7 @@ def test_add_two_ints_and_fibonacci_with_feedback_and_cancel(tmp_path: Path) -> 
 @pytest.mark.usefixtures("ros_domain")
 @pytest.mark.parametrize("asking", ["ours", "theirs"])
 def test_a_package_compiled_here_talks_to_the_same_one_made_by_cmake(
-    tmp_path: Path, rebuilt_test_msgs: Compiled, asking: str
+    tmp_path: Path, rebuilt_test_msgs: CompiledPackages, asking: str
 ) -> None:
     asked: Asked = [
         ("test_msgs/msg/Nested", {"basic_types_value": {"int8_value": -3, "float64_value": 0.125, "bool_value": True}}),
@@ -95,7 +97,7 @@ def test_a_package_compiled_here_talks_to_the_same_one_made_by_cmake(
 
 
 @pytest.fixture(scope="session")
-def rebuilt_test_msgs(tmp_path_factory: pytest.TempPathFactory) -> Compiled:
+def rebuilt_test_msgs(tmp_path_factory: pytest.TempPathFactory) -> CompiledPackages:
     """A part of test_msgs, from the definitions in its wheel, which CMake made."""
     wanted = [
         *("msg/BasicTypes.msg", "msg/Nested.msg", "msg/WStrings.msg", "msg/Defaults.msg", "msg/Constants.msg"),

@@ -17,7 +17,7 @@ from definitions import definition, robot
 from interface_compiler import prefixes, shipped, store, toolchain
 from interface_compiler.activation import extend
 from interface_compiler.definition import CompileError, DefinitionError
-from interface_compiler.store import Compiled, ensure, find
+from interface_compiler.store import CompiledPackages, ensure, find
 from interface_compiler.wheel import wheel
 
 POINT = definition("msg/Point.msg", "float64 x 1.5\n", "small_interfaces")
@@ -38,7 +38,7 @@ except AssertionError:
 """
 
 
-def run(code: str, compiled: Compiled) -> str:
+def run(code: str, compiled: CompiledPackages) -> str:
     # rclpy's messages check the given values only when asked to.
     environment = {**os.environ, "ROS_PYTHON_CHECK_FIELDS": "1"}
     extend(environment, compiled.prefix)
@@ -48,11 +48,11 @@ def run(code: str, compiled: Compiled) -> str:
     return done.stdout + done.stderr
 
 
-def test_constants_defaults_and_bounds_are_those_of_the_definition(robot_interfaces: Compiled) -> None:
+def test_constants_defaults_and_bounds_are_those_of_the_definition(robot_interfaces: CompiledPackages) -> None:
     assert run(USE, robot_interfaces) == "fine\n"
 
 
-def test_the_package_is_known_to_ament_with_its_definitions(robot_interfaces: Compiled) -> None:
+def test_the_package_is_known_to_ament_with_its_definitions(robot_interfaces: CompiledPackages) -> None:
     prefix = robot_interfaces.prefix
 
     assert prefixes.interfaces([prefix])["robot_interfaces"] >= {"msg/JointLimits", "srv/GetLimits", "action/MoveJoint"}
@@ -102,7 +102,7 @@ def test_the_same_definitions_give_the_same_wheel_wherever_it_is_made(tmp_path: 
     assert first == second
 
 
-def test_one_wheel_fits_every_python_from_3_10_on(robot_interfaces: Compiled) -> None:
+def test_one_wheel_fits_every_python_from_3_10_on(robot_interfaces: CompiledPackages) -> None:
     name, content = wheel("robot_interfaces", robot_interfaces.prefix)
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         (module,) = (file for file in archive.namelist() if file.endswith(".so"))

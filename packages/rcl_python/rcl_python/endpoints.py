@@ -13,7 +13,7 @@ from rcl_python.context import Context
 from rcl_python.graph import CLIENT, PUBLISHER, SERVICE, SUBSCRIPTION, NodeInfo
 from rcl_python.handle import Destroyable
 from rcl_python.names import full_topic_fault, topic_fault
-from rcl_python.participant import Arrival, Endpoint
+from rcl_python.participant import Arrival, LocalEndpoint
 from rcl_python.qos import Profile
 from rcl_python.values import (
     RCLError,
@@ -68,7 +68,9 @@ class _End(Destroyable):
         self.node = node
         self.type = the_type
         here = participant.current()
-        self.end: Endpoint = here.add_endpoint(kind, node.info, resolved, type_name_of(the_type), profile or _DEFAULT)
+        self.end: LocalEndpoint = here.add_endpoint(
+            kind, node.info, resolved, type_name_of(the_type), profile or _DEFAULT
+        )
         super().__init__()
 
     def _destroy(self) -> None:

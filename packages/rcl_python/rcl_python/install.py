@@ -22,7 +22,7 @@ class _TypeSupport(types.ModuleType):
         return self.__name__, name
 
 
-class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
+class _CompiledModuleFinder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
     """Finds the compiled modules here, before Python looks for them on the path."""
 
     def find_spec(
@@ -47,5 +47,5 @@ def install() -> None:
     """Let rclpy find this package instead of its compiled module. Raises RuntimeError if rclpy is already imported."""
     if _PYBIND in sys.modules:
         raise RuntimeError("rclpy has been imported already: call rcl_python.install() first")
-    if not any(isinstance(finder, _Finder) for finder in sys.meta_path):
-        sys.meta_path.insert(0, _Finder())
+    if not any(isinstance(finder, _CompiledModuleFinder) for finder in sys.meta_path):
+        sys.meta_path.insert(0, _CompiledModuleFinder())

@@ -70,7 +70,7 @@ class Statuses:
     )
 
 
-class Endpoint:
+class LocalEndpoint:
     """An endpoint of this process."""
 
     def __init__(self, participant: Participant, info: EndpointInfo) -> None:
@@ -194,7 +194,7 @@ class Participant:
         self.link = link
         self.identity = identity
         self.graph = Graph()
-        self.local: dict[str, Endpoint] = {}
+        self.local: dict[str, LocalEndpoint] = {}
         self.on_signal: Callable[[str], None] = lambda name: None
         self.overhearing: list[Callable[[Frame, bytes], None]] = []
         """Called with each response that arrives, for any client."""
@@ -230,21 +230,21 @@ class Participant:
             self.link.send({"op": "node_gone", "key": key})
             self._changed()
 
-    def add_endpoint(self, kind: str, node: NodeInfo, topic: str, type_name: str, given: Profile) -> Endpoint:
+    def add_endpoint(self, kind: str, node: NodeInfo, topic: str, type_name: str, given: Profile) -> LocalEndpoint:
         """Announce an endpoint, and find its matches."""
         with self.link.lock:
             self.pump()
             others = self.graph.ends(node.domain, OPPOSITE[kind], topic=topic)
             found = quality.resolved(given, [end.qos for end in others], publishes=kind == PUBLISHER)
             info = EndpointInfo(self.new_key(), kind, node.key, topic, type_name, found, node.domain)
-            mine = self.local[info.gid] = Endpoint(self, info)
+            mine = self.local[info.gid] = LocalEndpoint(self, info)
             self.graph.endpoints[info.gid] = info
             self.link.send({"op": "endpoint", **to_plain(info)})
             self._introduce(mine)
             self._changed()
         return mine
 
-    def _introduce(self, mine: Endpoint) -> None:
+    def _introduce(self, mine: LocalEndpoint) -> None:
         """Introduce readers first, so that the messages kept by a writer find the reader ready."""
         for other in list(self.graph.endpoints.values()):
             there = self.local.get(other.gid)
@@ -255,7 +255,7 @@ class Participant:
                 if one is not None and one.info.kind == PUBLISHER:
                     one.meet(two)
 
-    def remove_endpoint(self, mine: Endpoint) -> None:
+    def remove_endpoint(self, mine: LocalEndpoint) -> None:
         """Announce that an endpoint is gone."""
         with self.link.lock:
             self.local.pop(mine.info.gid, None)
@@ -278,7 +278,7 @@ class Participant:
         self._changed()
         return bool(far)
 
-    def request(self, client: Endpoint, data: bytes) -> int:
+    def request(self, client: LocalEndpoint, data: bytes) -> int:
         """Send a request to every matched server; return its number."""
         with self.link.lock:
             client.sequence += 1
@@ -286,7 +286,7 @@ class Participant:
                 self.on_kept(client.info)
         return client.sequence
 
-    def respond(self, service: Endpoint, client: str, number: int, data: bytes) -> None:
+    def respond(self, service: LocalEndpoint, client: str, number: int, data: bytes) -> None:
         """Send a response to the client that sent the request."""
         with self.link.lock:
             self._exchange("response", [client], service.info.gid, number, data)
@@ -366,7 +366,7 @@ class Participant:
     def _on_signal(self, frame: Frame, data: bytes) -> None:
         self.on_signal(frame["name"])
 
-    def _here(self, gids: Iterable[str]) -> list[Endpoint]:
+    def _here(self, gids: Iterable[str]) -> list[LocalEndpoint]:
         return [self.local[gid] for gid in gids if gid in self.local]
 
 

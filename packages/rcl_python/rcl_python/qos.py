@@ -24,7 +24,7 @@ from rmw_lockstep.qos import (
     RELIABLE,
     TRANSIENT_LOCAL,
     VOLATILE,
-    Qos,
+    QosPolicies,
     first_mismatch,
 )
 
@@ -36,7 +36,7 @@ _HISTORY_OF_DEFAULT, _DEPTH_OF_DEFAULT = KEEP_LAST, 1
 
 
 @dataclass(frozen=True)
-class Profile(Qos):
+class Profile(QosPolicies):
     """A profile of quality of service, as rclpy gives it: 0 means "not given"."""
 
     liveliness: int = 0

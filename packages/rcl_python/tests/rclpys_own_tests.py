@@ -19,7 +19,7 @@ import xml.etree.ElementTree as ET
 from collections import Counter
 from pathlib import Path
 
-from rmw_lockstep.library import Unavailable, library
+from rmw_lockstep.library import UnavailableLibrary, library
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -72,7 +72,7 @@ def _middleware(over: str) -> dict[str, str]:
     if over != "lockstep":
         return {}
     found = library()
-    if isinstance(found, Unavailable):
+    if isinstance(found, UnavailableLibrary):
         sys.exit(f"{found.reason} {found.remedy}")
     return found.environment(os.environ)
 

@@ -18,7 +18,7 @@ from rmw_lockstep.library import (
     DESCRIPTION,
     SOURCES,
     Library,
-    Unavailable,
+    UnavailableLibrary,
     compiler,
     description,
     key,
@@ -45,14 +45,14 @@ _AT_ONCE = 2
 #: How many earlier sets of libraries are kept, for programs that still use them.
 _FORMER = 3
 
-_NO_COMPILER = Unavailable("g++ is not installed", "Install it: sudo apt-get install g++")
+_NO_COMPILER = UnavailableLibrary("g++ is not installed", "Install it: sudo apt-get install g++")
 
 
 class BuildError(Exception):
     """Raised when the compiler or the linker fails; the text has its output."""
 
 
-def build() -> Library | Unavailable:
+def build() -> Library | UnavailableLibrary:
     """Return the compiled middleware; compile it now if there is none yet (seconds, and about 300 MB of memory).
 
     Raises:
@@ -66,7 +66,9 @@ def build() -> Library | Unavailable:
         return _NO_COMPILER
     root = next((root for root in library_folders() if _writable(root)), None)
     if root is None:
-        return Unavailable("there is no folder for it that can be written to", "Set HOME to a folder of your own.")
+        return UnavailableLibrary(
+            "there is no folder for it that can be written to", "Set HOME to a folder of your own."
+        )
     with _turn(root):
         found = library()  # another process may have compiled it meanwhile
         return found if isinstance(found, Library) else Library(_compiled(ros, root), ros.prefix)
@@ -158,7 +160,7 @@ def main() -> None:
         found = build()
     except BuildError as error:
         sys.exit(f"The middleware rmw_lockstep could not be compiled. {error}")
-    if isinstance(found, Unavailable):
+    if isinstance(found, UnavailableLibrary):
         sys.exit(f"There is no middleware rmw_lockstep: {found.reason}. {found.remedy}")
     print(found.folder)
 

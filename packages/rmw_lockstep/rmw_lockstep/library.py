@@ -69,27 +69,27 @@ class Library:
 
 
 @dataclass(frozen=True)
-class Unavailable:
+class UnavailableLibrary:
     """Why there is no compiled middleware, and what to do about it."""
 
     reason: str
     remedy: str
 
 
-def library() -> Library | Unavailable:
+def library() -> Library | UnavailableLibrary:
     """Return the compiled middleware for the ROS 2 in use, or why there is none. Never compiles: see `build.build`."""
     ros = installed_ros()
     if ros is None:
-        return Unavailable("ROS 2's headers are not installed here", "Install ROS 2: make setup")
+        return UnavailableLibrary("ROS 2's headers are not installed here", "Install ROS 2: make setup")
     if not sources():
-        return Unavailable(f"its C++ sources are not in {SOURCES}", "Install the package again.")
+        return UnavailableLibrary(f"its C++ sources are not in {SOURCES}", "Install the package again.")
     for folder in _folders(ros):
         if (folder / DESCRIPTION).exists():
             return Library(folder, ros.prefix)
     built_by_colcon = _built_by_colcon() if ros.chooses_at_run_time else None
     if built_by_colcon:
         return Library(built_by_colcon, ros.prefix)
-    return Unavailable("it has not been compiled for this ROS 2", "Compile it: python -m rmw_lockstep.build")
+    return UnavailableLibrary("it has not been compiled for this ROS 2", "Compile it: python -m rmw_lockstep.build")
 
 
 def _folders(ros: Ros) -> Iterator[Path]:

@@ -12,7 +12,7 @@ KEEP_LAST, KEEP_ALL = 1, 2
 RELIABLE, BEST_EFFORT = 1, 2
 TRANSIENT_LOCAL, VOLATILE = 1, 2
 AUTOMATIC, MANUAL_BY_TOPIC = 1, 3
-#: The policies that can keep end points from matching: rmw_qos_policy_kind_t.
+#: The policies that can keep endpoints from matching: rmw_qos_policy_kind_t.
 DURABILITY, DEADLINE, LIVELINESS, RELIABILITY = 2, 4, 8, 16
 
 _RELIABILITY = {RELIABLE: "reliable", BEST_EFFORT: "best_effort"}
@@ -20,8 +20,8 @@ _DURABILITY = {TRANSIENT_LOCAL: "transient_local", VOLATILE: "volatile"}
 
 
 @dataclass(frozen=True)
-class Qos:
-    """The policies of one end point, with the numbers of rmw/types.h; durations are in ns."""
+class QosPolicies:
+    """The policies of one endpoint, with the numbers of rmw/types.h; durations are in ns."""
 
     history: int = KEEP_LAST
     depth: int = 10
@@ -43,13 +43,13 @@ class Qos:
         return _DURABILITY.get(self.durability, "system_default")
 
 
-def compatible(offered: Qos, requested: Qos) -> bool:
+def compatible(offered: QosPolicies, requested: QosPolicies) -> bool:
     """Return whether a subscription that requests one gets what a publisher sends that offers the other."""
     return not first_mismatch(offered, requested)
 
 
-def first_mismatch(offered: Qos, requested: Qos) -> int:
-    """Return the policy that keeps two end points from matching, 0 if they match.
+def first_mismatch(offered: QosPolicies, requested: QosPolicies) -> int:
+    """Return the policy that keeps two endpoints from matching, 0 if they match.
 
     The rules are DDS's "requested versus offered" (DDS 1.4, section 2.2.3), in the order in which Fast DDS reports.
     """

@@ -10,7 +10,7 @@ import pytest
 from programs import Watch
 from stand_in import Process, Raw, Waits
 
-from rmw_lockstep.hub import Hub, Limits
+from rmw_lockstep.hub import Hub, HubLimits
 
 
 @pytest.fixture
@@ -21,13 +21,13 @@ def folder() -> Iterator[Path]:
 
 
 @pytest.fixture
-def limits() -> Limits:
+def limits() -> HubLimits:
     """To be overridden."""
-    return Limits()
+    return HubLimits()
 
 
 @pytest.fixture
-def hub(folder: Path, limits: Limits) -> Iterator[Hub]:
+def hub(folder: Path, limits: HubLimits) -> Iterator[Hub]:
     with Hub(folder, limits, Waits()) as hub:
         yield hub
 

@@ -16,7 +16,7 @@ from typing import Any
 from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import String
 
-from rmw_lockstep.hub import BEGIN, Hub, Qos
+from rmw_lockstep.hub import BEGIN, Hub, QosPolicies
 from rmw_lockstep.library import Library, library
 from rmw_lockstep.qos import BEST_EFFORT, KEEP_ALL
 
@@ -93,7 +93,7 @@ class Watch:
         self._deadline = time.monotonic() + LONGEST_S
         self.hub = Hub(folder, on_tick=self._look)
         self.node = self.hub.node("watch")
-        hears_all = Qos(history=KEEP_ALL, reliability=BEST_EFFORT)
+        hears_all = QosPolicies(history=KEEP_ALL, reliability=BEST_EFFORT)
         self._said = self.node.subscription("/said", "std_msgs/msg/String", hears_all)
 
     def _look(self) -> None:

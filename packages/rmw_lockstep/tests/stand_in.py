@@ -36,7 +36,7 @@ def node(number: int, name: str | bytes = "node", namespace: str = "/") -> bytes
     return frame(b"N", struct.pack("<Q", number) + text(name) + text(namespace))
 
 
-def end_point(
+def endpoint(
     number: int,
     kind: int,
     of: int,
@@ -155,12 +155,12 @@ class Process:
         self.wakes.sort(key=lambda wake: wake[0])
 
     def make(self, name: str, *ends: tuple[int, str, dict[str, int]]) -> list[int]:
-        """Announce a node with end points of `(kind, topic, qos)`. Returns their identities, the node's first."""
+        """Announce a node with endpoints of `(kind, topic, qos)`. Returns their identities, the node's first."""
         numbers = [self.identity()]
         frames = [node(numbers[0], name)]
         for kind, topic, qos in ends:
             numbers.append(self.identity())
-            frames.append(end_point(numbers[-1], kind, numbers[0], topic, **qos))  # type: ignore[arg-type]
+            frames.append(endpoint(numbers[-1], kind, numbers[0], topic, **qos))  # type: ignore[arg-type]
         self.raw.send(*frames)
         return numbers
 

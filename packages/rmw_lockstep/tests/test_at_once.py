@@ -7,27 +7,27 @@ from collections.abc import Callable
 
 import pytest
 from programs import Watch
-from stand_in import Process, data, end_point, frame, node, violation
+from stand_in import Process, data, endpoint, frame, node, violation
 
-from rmw_lockstep.hub import BEGIN, CLIENT, PUBLISHER, SUBSCRIPTION, Hub, Limits, Qos
+from rmw_lockstep.hub import BEGIN, CLIENT, PUBLISHER, SUBSCRIPTION, Hub, HubLimits, QosPolicies
 
 NODE, PUB, SUB, ASKS, OTHER = (1 << 32 | number for number in range(1, 6))
 MS = 1_000_000
 MOST = 200
 
 ENDS = {
-    PUB: end_point(PUB, PUBLISHER, NODE),
-    SUB: end_point(SUB, SUBSCRIPTION, NODE),
-    ASKS: end_point(ASKS, CLIENT, NODE, "/service", "std_srvs/srv/Trigger"),
-    OTHER: end_point(OTHER, PUBLISHER, NODE, "/other"),
+    PUB: endpoint(PUB, PUBLISHER, NODE),
+    SUB: endpoint(SUB, SUBSCRIPTION, NODE),
+    ASKS: endpoint(ASKS, CLIENT, NODE, "/service", "std_srvs/srv/Trigger"),
+    OTHER: endpoint(OTHER, PUBLISHER, NODE, "/other"),
 }
 
 Make = Callable[..., Process]
 
 
 @pytest.fixture
-def limits() -> Limits:
-    return Limits(at_once=MOST)
+def limits() -> HubLimits:
+    return HubLimits(at_once=MOST)
 
 
 def kept(sender: int, count: int, now: int = BEGIN) -> bytes:
@@ -78,14 +78,14 @@ def test_too_much_at_one_moment_ends_the_program(
 
 def test_of_many_topics_with_a_little_each_the_first_three_are_named(hub: Hub, process: Make) -> None:
     numbers = range(1 << 32 | 10, 1 << 32 | 40)
-    ends = [end_point(number, PUBLISHER, NODE, f"/topic_{number & 0xFF}") for number in numbers]
+    ends = [endpoint(number, PUBLISHER, NODE, f"/topic_{number & 0xFF}") for number in numbers]
     sender(process, [], *ends, *[data(number, now=BEGIN) for number in numbers for _ in range(7)])
     assert why(hub) == ("at once", "/topic_10 and /topic_11 and /topic_12", MOST + 1)
 
 
 def test_a_new_publisher_for_each_message_is_named_by_its_topic(hub: Hub, process: Make) -> None:
     numbers = range(1 << 32 | 10, 1 << 32 | 10 + MOST + 1)
-    sender(process, [SUB], *[end_point(n, PUBLISHER, NODE) + data(n, now=BEGIN) for n in numbers])
+    sender(process, [SUB], *[endpoint(n, PUBLISHER, NODE) + data(n, now=BEGIN) for n in numbers])
     assert why(hub) == ("own messages", "/topic", MOST + 1)
 
 
@@ -117,7 +117,7 @@ def test_what_is_kept_is_reported_by_who_sent_it(hub: Hub, process: Make, ends: 
 
 
 def test_each_moment_and_each_message_of_the_hub_begins_anew(hub: Hub, process: Make) -> None:
-    asks = hub.node("runner").publisher("/asks", "std_msgs/msg/String", Qos())
+    asks = hub.node("runner").publisher("/asks", "std_msgs/msg/String", QosPolicies())
     one = process()
     ends = (PUBLISHER, "/said", {}), (SUBSCRIPTION, "/asks", {})
 

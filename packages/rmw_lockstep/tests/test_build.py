@@ -17,7 +17,7 @@ import pytest
 import rmw_lockstep
 from rmw_lockstep import library as finding
 from rmw_lockstep.build import build
-from rmw_lockstep.library import PREBUILT, Library, Unavailable, library
+from rmw_lockstep.library import PREBUILT, Library, UnavailableLibrary, library
 from rmw_lockstep.ros import installed_ros
 
 PACKAGE = Path(rmw_lockstep.__file__).parent
@@ -166,7 +166,7 @@ def no_ros(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
 
 @pytest.mark.usefixtures("no_ros")
 def test_without_ros_it_says_so() -> None:
-    assert library() == Unavailable("ROS 2's headers are not installed here", "Install ROS 2: make setup")
+    assert library() == UnavailableLibrary("ROS 2's headers are not installed here", "Install ROS 2: make setup")
 
 
 def test_a_sourced_ros_chooses_by_name_and_the_wheels_by_the_order_of_folders(tmp_path: Path) -> None:

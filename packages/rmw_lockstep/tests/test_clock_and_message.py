@@ -11,7 +11,7 @@ from programs import Watch, serialized
 from rclpy.serialization import serialize_message
 from rosgraph_msgs.msg import Clock
 
-from rmw_lockstep.hub import Qos
+from rmw_lockstep.hub import QosPolicies
 
 #: A node that takes its time from /clock and says what it hears, and when.
 LISTENER = """
@@ -40,8 +40,8 @@ class Robot:
 
     def __init__(self, watch: Watch) -> None:
         self._watch = watch
-        self._clock = watch.node.publisher("/clock", "rosgraph_msgs/msg/Clock", Qos(depth=10))
-        self._heard = watch.node.publisher("/heard", "std_msgs/msg/String", Qos(depth=10))
+        self._clock = watch.node.publisher("/clock", "rosgraph_msgs/msg/Clock", QosPolicies(depth=10))
+        self._heard = watch.node.publisher("/heard", "std_msgs/msg/String", QosPolicies(depth=10))
 
     def step(self, second: int) -> None:
         """Send the time (s), and behind a barrier a message."""

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from stand_in import Process, Raw, Waits, busy, data, end_point, frame, hello, idle, node, response, violation, welcomed
+from stand_in import Process, Raw, Waits, busy, data, endpoint, frame, hello, idle, node, response, violation, welcomed
 
-from rmw_lockstep.hub import BEGIN, PUBLISHER, SUBSCRIPTION, Hub, Limits, Qos
+from rmw_lockstep.hub import BEGIN, PUBLISHER, SUBSCRIPTION, Hub, HubLimits, QosPolicies
 
 NODE, PUB, SUB = 1 << 32 | 1, 1 << 32 | 2, 1 << 32 | 3
 STRING = "std_msgs/msg/String"
@@ -21,8 +21,8 @@ Make = Callable[..., Process]
 
 
 @pytest.fixture
-def limits() -> Limits:
-    return Limits(message_bytes=10_000, data_bytes=50_000, messages=1_000, frames=20_000, nodes=10, connections=8)
+def limits() -> HubLimits:
+    return HubLimits(message_bytes=10_000, data_bytes=50_000, messages=1_000, frames=20_000, nodes=10, connections=8)
 
 
 def reason(hub: Hub) -> tuple[str, str]:
@@ -34,7 +34,7 @@ def reason(hub: Hub) -> tuple[str, str]:
 def begin(raw: Raw, hub: Hub) -> Raw:
     """Start a process that has a node with a publisher and a subscription, and is idle."""
     welcomed(raw, hub).send(
-        node(NODE), end_point(PUB, PUBLISHER, NODE), end_point(SUB, SUBSCRIPTION, NODE), idle(1, BEGIN)
+        node(NODE), endpoint(PUB, PUBLISHER, NODE), endpoint(SUB, SUBSCRIPTION, NODE), idle(1, BEGIN)
     )
     hub.wait_until_idle()
     return raw
@@ -62,13 +62,13 @@ def begin(raw: Raw, hub: Hub) -> Raw:
         node(1 << 32 | 9, "n" * 300),
         node(1 << 32 | 9, "node", "no/slash"),
         frame(b"N", struct.pack("<Q", 1 << 32 | 9) + b"\1\0\0\0a\1\0\0\0/more"),
-        end_point(1 << 32 | 9, 7, NODE),
-        end_point(1 << 32 | 9, PUBLISHER, 1 << 32 | 77),
-        end_point(2 << 32 | 9, PUBLISHER, NODE),
-        end_point(PUB, PUBLISHER, NODE),
-        end_point(1 << 32 | 9, PUBLISHER, NODE, "/a b"),
-        end_point(1 << 32 | 9, PUBLISHER, NODE, "/nul\0"),
-        end_point(1 << 32 | 9, PUBLISHER, NODE, "/t", "no type"),
+        endpoint(1 << 32 | 9, 7, NODE),
+        endpoint(1 << 32 | 9, PUBLISHER, 1 << 32 | 77),
+        endpoint(2 << 32 | 9, PUBLISHER, NODE),
+        endpoint(PUB, PUBLISHER, NODE),
+        endpoint(1 << 32 | 9, PUBLISHER, NODE, "/a b"),
+        endpoint(1 << 32 | 9, PUBLISHER, NODE, "/nul\0"),
+        endpoint(1 << 32 | 9, PUBLISHER, NODE, "/t", "no type"),
         frame(b"E", b"\0" * 20),
         frame(b"e", struct.pack("<Q", 1)),
         frame(b"n", struct.pack("<Q", 77)),
@@ -106,7 +106,7 @@ def test_a_message_that_is_too_long_is_reported_by_its_length_before_it_is_read(
 def flood(frames: list[bytes], process: Make, hub: Hub) -> tuple[str, str]:
     """Return what happens to a process that creates a node and a publisher, and then sends this."""
     one = process()
-    one.on[b"W"] = lambda process, _: process.raw.send(node(NODE), end_point(PUB, PUBLISHER, NODE), *frames)
+    one.on[b"W"] = lambda process, _: process.raw.send(node(NODE), endpoint(PUB, PUBLISHER, NODE), *frames)
     one.start()
     return reason(hub)
 
@@ -129,9 +129,9 @@ def test_a_flood_ends_where_a_limit_is_reached(
     assert why[0] == "nodes" or text == why[1]
 
 
-def test_ten_thousand_end_points_are_too_many(hub: Hub, process: Make) -> None:
-    ends = [end_point(1 << 32 | n, PUBLISHER, NODE, f"/topic_{n}") for n in range(10, 10_010)]
-    assert flood(ends, process, hub)[0] == "end points"
+def test_ten_thousand_endpoints_are_too_many(hub: Hub, process: Make) -> None:
+    ends = [endpoint(1 << 32 | n, PUBLISHER, NODE, f"/topic_{n}") for n in range(10, 10_010)]
+    assert flood(ends, process, hub)[0] == "endpoints"
 
 
 def test_connections_are_counted(hub: Hub) -> None:
@@ -144,10 +144,10 @@ def test_connections_are_counted(hub: Hub) -> None:
 
 
 def test_for_a_process_that_never_reads_not_everything_is_kept(folder: Path) -> None:
-    with Hub(folder, Limits(unread_bytes=1_000_000), Waits()) as hub:
-        topic = hub.node("runner").publisher("/topic", STRING, Qos())
+    with Hub(folder, HubLimits(unread_bytes=1_000_000), Waits()) as hub:
+        topic = hub.node("runner").publisher("/topic", STRING, QosPolicies())
         raw = Raw(hub.path)
-        welcomed(raw, hub).send(frame(b"J"), node(NODE), end_point(SUB, SUBSCRIPTION, NODE))
+        welcomed(raw, hub).send(frame(b"J"), node(NODE), endpoint(SUB, SUBSCRIPTION, NODE))
         hub.pause()
         for _ in range(40):
             topic.publish(b"x" * 50_000)
@@ -171,7 +171,7 @@ def test_an_idle_that_is_followed_by_another_frame_is_not_believed(hub: Hub, raw
 
 
 def test_times_neither_go_back_nor_beyond_what_was_granted(hub: Hub, raw: Raw) -> None:
-    said = hub.node("runner").subscription("/topic", STRING, Qos())
+    said = hub.node("runner").subscription("/topic", STRING, QosPolicies())
     begin(raw, hub)
     hub.advance(BEGIN + 1_000)
     raw.send(*(data(PUB, handled=9, now=BEGIN + after) for after in (500, 100, 2**40, -(2**40))))
@@ -246,4 +246,4 @@ def test_a_connection_that_is_closed_takes_what_it_had_along(hub: Hub, raw: Raw)
     while hub.links:
         hub.pause()
     assert not hub.graph.nodes
-    assert not hub.graph.end_points
+    assert not hub.graph.endpoints

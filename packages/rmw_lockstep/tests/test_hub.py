@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from stand_in import BEST_EFFORT, RELIABLE, TRANSIENT_LOCAL, VOLATILE, Process, Raw, idle, welcomed
 
-from rmw_lockstep.hub import BEGIN, PUBLISHER, SUBSCRIPTION, Hub, Qos
-from rmw_lockstep.hub.link import Link
+from rmw_lockstep.hub import BEGIN, PUBLISHER, SUBSCRIPTION, Hub, QosPolicies
+from rmw_lockstep.hub.link import ProcessLink
 
 MS = 1_000_000
 STRING = "std_msgs/msg/String"
@@ -52,7 +52,7 @@ def test_a_path_that_is_too_long_for_a_socket_is_refused(tmp_path: Path) -> None
 
 
 def test_a_process_that_joins_gets_the_graph(hub: Hub, process: Make) -> None:
-    hub.node("runner").publisher("/clock", "rosgraph_msgs/msg/Clock", Qos())
+    hub.node("runner").publisher("/clock", "rosgraph_msgs/msg/Clock", QosPolicies())
     one = process().start()
     hub.wait_until_idle()
     assert one.kinds() == "WNEg"
@@ -61,7 +61,7 @@ def test_a_process_that_joins_gets_the_graph(hub: Hub, process: Make) -> None:
 
 def test_who_does_not_join_hears_nothing_of_the_graph(hub: Hub, process: Make) -> None:
     one = process(joins=False).start()
-    hub.node("runner").publisher("/clock", "rosgraph_msgs/msg/Clock", Qos())
+    hub.node("runner").publisher("/clock", "rosgraph_msgs/msg/Clock", QosPolicies())
     hub.wait_until_idle()
     assert one.kinds() == "W"
 
@@ -70,8 +70,8 @@ def test_the_graph_shows_what_the_program_has(hub: Hub, process: Make) -> None:
     listener(process()).start()
     hub.wait_until_idle()
     assert [node.full_name for node in hub.graph.program_nodes()] == ["/listener"]
-    [end_point] = hub.graph.program_end_points()
-    assert (end_point.name, end_point.type, end_point.qos.reliability_name) == ("/said", STRING, "reliable")
+    [endpoint] = hub.graph.program_endpoints()
+    assert (endpoint.name, endpoint.type, endpoint.qos.reliability_name) == ("/said", STRING, "reliable")
 
 
 def test_what_a_process_had_is_gone_with_it(hub: Hub, process: Make) -> None:
@@ -85,8 +85,8 @@ def test_what_a_process_had_is_gone_with_it(hub: Hub, process: Make) -> None:
 
 
 def test_a_message_is_recorded_with_its_moment(hub: Hub, process: Make) -> None:
-    said = hub.node("runner").subscription("/said", STRING, Qos())
-    clock = hub.node("runner").publisher("/clock", "rosgraph_msgs/msg/Clock", Qos())
+    said = hub.node("runner").subscription("/said", STRING, QosPolicies())
+    clock = hub.node("runner").publisher("/clock", "rosgraph_msgs/msg/Clock", QosPolicies())
     talker(process(), 10 * MS).start()
     hub.wait_until_idle()
     for step in range(1, 4):
@@ -101,7 +101,7 @@ def test_a_message_is_recorded_with_its_moment(hub: Hub, process: Make) -> None:
 
 def test_for_one_process_a_step_is_sent_in_one_piece(hub: Hub, process: Make) -> None:
     runner = hub.node("runner")
-    clock, topic = (runner.publisher(name, STRING, Qos()) for name in ("/clock", "/said"))
+    clock, topic = (runner.publisher(name, STRING, QosPolicies()) for name in ("/clock", "/said"))
     one = listener(process()).start()
     hub.wait_until_idle()
     before = len(one.seen)
@@ -135,7 +135,7 @@ def test_two_processes_talk_and_neither_gets_ahead_of_the_other(hub: Hub, proces
 
 def test_the_hub_does_not_wait_before_it_has_asked(hub: Hub, process: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     """Otherwise it would wait 20 ms each time for nothing, as no process has got the question yet."""
-    queued: list[Link] = []
+    queued: list[ProcessLink] = []
 
     def take(hub: Hub, take: Callable[[Hub], None] = Hub._take) -> None:
         queued.extend(link for link in hub.links if link._queued)
@@ -162,7 +162,7 @@ def test_the_hub_knows_when_the_program_wakes_next(hub: Hub, process: Make) -> N
 @pytest.mark.parametrize("offers", [RELIABLE, BEST_EFFORT])
 @pytest.mark.parametrize("asks", [RELIABLE, BEST_EFFORT])
 def test_only_ends_that_fit_exchange_messages(hub: Hub, process: Make, offers: int, asks: int) -> None:
-    publisher = hub.node("runner").publisher("/said", STRING, Qos(reliability=offers))
+    publisher = hub.node("runner").publisher("/said", STRING, QosPolicies(reliability=offers))
     one = listener(process(), reliability=asks).start()
     hub.wait_until_idle()
     publisher.publish(b"hello")
@@ -176,7 +176,7 @@ def test_only_ends_that_fit_exchange_messages(hub: Hub, process: Make, offers: i
 def test_a_late_subscription_gets_what_was_published_before_if_it_asks_for_it(
     hub: Hub, process: Make, durability: int
 ) -> None:
-    publisher = hub.node("runner").publisher("/said", STRING, Qos(durability=TRANSIENT_LOCAL, depth=2))
+    publisher = hub.node("runner").publisher("/said", STRING, QosPolicies(durability=TRANSIENT_LOCAL, depth=2))
     for text in (b"one", b"two", b"three"):
         publisher.publish(text)
     one = listener(process(), durability=durability).start()
@@ -187,12 +187,12 @@ def test_a_late_subscription_gets_what_was_published_before_if_it_asks_for_it(
 
 def test_what_a_process_replays_goes_to_the_subscription_it_is_meant_for(hub: Hub, process: Make) -> None:
     runner = hub.node("runner")
-    first, second = (runner.subscription("/said", STRING, Qos()) for _ in range(2))
+    first, second = (runner.subscription("/said", STRING, QosPolicies()) for _ in range(2))
     one = process()
 
     def begin(process: Process, payload: bytes) -> None:
         _, publisher = process.make("talker", (PUBLISHER, "/said", {}))
-        process.publish(publisher, b"again", only=second.end_point.id)
+        process.publish(publisher, b"again", only=second.endpoint.id)
 
     one.on[b"g"] = begin
     one.start()
@@ -228,7 +228,7 @@ def test_a_sleep_by_the_kernels_clock_is_waited_for(hub: Hub, raw: Raw) -> None:
 
 
 def test_what_was_said_before_the_end_is_heard(hub: Hub, process: Make) -> None:
-    said = hub.node("runner").subscription("/said", STRING, Qos())
+    said = hub.node("runner").subscription("/said", STRING, QosPolicies())
     one = talker(process(), MS).start()
     hub.wait_until_idle()
     one.publish(one.number << 32 | 2, b"last words")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from programs import Watch, serialized
 
-from rmw_lockstep.hub import Qos
+from rmw_lockstep.hub import QosPolicies
 
 #: Looks every 3 ms, from 0 on, and says when it got a message and how many turns that took.
 LOOP = """
@@ -32,7 +32,7 @@ SLEEPS = {
 @pytest.mark.parametrize("sleep", SLEEPS)
 def test_a_long_silence_takes_few_turns_and_its_end_is_seen_at_the_next_one(watch: Watch, sleep: str) -> None:
     watch.start(LOOP + "    " + SLEEPS[sleep])
-    publisher = watch.node.publisher("/heard", "std_msgs/msg/String", Qos(depth=10))
+    publisher = watch.node.publisher("/heard", "std_msgs/msg/String", QosPolicies(depth=10))
     for at in (3.0, 3.5, 4.0, 14.001):
         watch.go_on(at - watch.elapsed_s)
         publisher.publish(serialized(str(at)))

@@ -15,7 +15,7 @@ from rmw_lockstep.qos import (
     MANUAL_BY_TOPIC,
     RELIABILITY,
     TRANSIENT_LOCAL,
-    Qos,
+    QosPolicies,
     compatible,
     first_mismatch,
 )
@@ -24,22 +24,24 @@ from rmw_lockstep.qos import (
 @pytest.mark.parametrize(
     ("weak", "strong", "policy"),
     [
-        (Qos(reliability=BEST_EFFORT), Qos(), RELIABILITY),
-        (Qos(), Qos(durability=TRANSIENT_LOCAL), DURABILITY),
-        (Qos(), Qos(liveliness=MANUAL_BY_TOPIC), LIVELINESS),
-        (Qos(lease=2), Qos(lease=1), LIVELINESS),
-        (Qos(deadline=2), Qos(deadline=1), DEADLINE),
-        (Qos(deadline=0), Qos(deadline=1), DEADLINE),
+        (QosPolicies(reliability=BEST_EFFORT), QosPolicies(), RELIABILITY),
+        (QosPolicies(), QosPolicies(durability=TRANSIENT_LOCAL), DURABILITY),
+        (QosPolicies(), QosPolicies(liveliness=MANUAL_BY_TOPIC), LIVELINESS),
+        (QosPolicies(lease=2), QosPolicies(lease=1), LIVELINESS),
+        (QosPolicies(deadline=2), QosPolicies(deadline=1), DEADLINE),
+        (QosPolicies(deadline=0), QosPolicies(deadline=1), DEADLINE),
     ],
 )
-def test_a_weaker_offer_does_not_satisfy_and_a_stronger_one_does(weak: Qos, strong: Qos, policy: int) -> None:
+def test_a_weaker_offer_does_not_satisfy_and_a_stronger_one_does(
+    weak: QosPolicies, strong: QosPolicies, policy: int
+) -> None:
     assert first_mismatch(weak, strong) == policy
     assert not compatible(weak, strong)
     assert compatible(strong, weak)
 
 
 def test_of_several_policies_the_first_is_named() -> None:
-    assert first_mismatch(Qos(reliability=BEST_EFFORT), Qos(durability=TRANSIENT_LOCAL)) == DURABILITY
+    assert first_mismatch(QosPolicies(reliability=BEST_EFFORT), QosPolicies(durability=TRANSIENT_LOCAL)) == DURABILITY
 
 
 def test_qos_hashes_and_the_hub_need_neither_a_library_nor_a_compiler() -> None:

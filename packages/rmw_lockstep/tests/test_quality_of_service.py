@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from programs import Watch, serialized
 
-from rmw_lockstep.hub import Qos
+from rmw_lockstep.hub import QosPolicies
 from rmw_lockstep.qos import TRANSIENT_LOCAL
 
 
@@ -116,12 +116,12 @@ def test_a_queue_keeps_the_newest_messages_as_deep_as_it_is(watch: Watch) -> Non
     assert [said for _, said in watch.said()] == ["7", "8", "9"]
 
 
-LASTING = Qos(depth=10, durability=TRANSIENT_LOCAL)
+LASTING = QosPolicies(depth=10, durability=TRANSIENT_LOCAL)
 
 
 def test_a_late_subscription_gets_what_is_on_its_way_once_and_in_order(watch: Watch) -> None:
     lasting = watch.node.publisher("/lasting", "std_msgs/msg/String", LASTING)
-    begin = watch.node.publisher("/begin", "std_msgs/msg/String", Qos())
+    begin = watch.node.publisher("/begin", "std_msgs/msg/String", QosPolicies())
     watch.start("""
         qos = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         heard = lambda message: say(message.data)
@@ -143,7 +143,7 @@ def test_a_late_subscription_gets_what_is_on_its_way_once_and_in_order(watch: Wa
 
 
 def test_a_late_subscription_of_another_process_gets_each_message_once_and_in_order(watch: Watch) -> None:
-    begin = watch.node.publisher("/begin", "std_msgs/msg/String", Qos())
+    begin = watch.node.publisher("/begin", "std_msgs/msg/String", QosPolicies())
     qos = "qos = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)"
     watch.start(f"""
         {qos}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable
 
-from stand_in import Process, end_point, frame, node, response
+from stand_in import Process, endpoint, frame, node, response
 
 from rmw_lockstep.hub import CLIENT, SERVER, Hub
 
@@ -34,7 +34,7 @@ def serving(process: Process) -> Process:
 
 
 def node_and_end(number: int, end: int, kind: int) -> bytes:
-    return node(number, f"node_{number >> 32}") + end_point(end, kind, number, "/trigger", TRIGGER)
+    return node(number, f"node_{number >> 32}") + endpoint(end, kind, number, "/trigger", TRIGGER)
 
 
 def test_the_hub_calls_a_process(hub: Hub, process: Make) -> None:

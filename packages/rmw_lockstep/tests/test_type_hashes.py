@@ -1,4 +1,4 @@
-"""End points of the hub's own carry the hash of their type, as those of programs do."""
+"""Endpoints of the hub's own carry the hash of their type, as those of programs do."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import ast
 
 from programs import Watch
 
-from rmw_lockstep.hub import Qos
+from rmw_lockstep.hub import QosPolicies
 from rmw_lockstep.type_hash import NO_HASH, type_hash
 
 STRING = "std_msgs/msg/String"
 
 
-def test_a_program_sees_the_same_hash_on_the_hubs_end_points_as_on_its_own(watch: Watch) -> None:
-    watch.node.publisher("/same", STRING, Qos())
+def test_a_program_sees_the_same_hash_on_the_hubs_endpoints_as_on_its_own(watch: Watch) -> None:
+    watch.node.publisher("/same", STRING, QosPolicies())
     watch.start("""
         node.create_publisher(String, '/same', 10)
         def look():

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 
-from rmw_lockstep.hub import BEGIN, EPOCH, Hub, Limits
-from rmw_lockstep.hub.frames import Hello, Idle
-from rmw_lockstep.hub.limits import Use
-from rmw_lockstep.hub.link import Link
+from rmw_lockstep.hub import BEGIN, EPOCH, Hub, HubLimits
+from rmw_lockstep.hub.frames import HelloFrame, IdleFrame
+from rmw_lockstep.hub.limits import HubUsage
+from rmw_lockstep.hub.link import ProcessLink
 from rmw_lockstep.hub.router import Router
 from spinbook.browser.in_page import program_imports, threads
 
@@ -73,14 +73,14 @@ class Turns:
         self._hub.release()
 
 
-class PageConnection(Link):
+class PageConnection(ProcessLink):
     """The hub's end of the connection to the program."""
 
-    def __init__(self, use: Use) -> None:
+    def __init__(self, use: HubUsage) -> None:
         self.queued: deque[bytes] = deque()
         # There is no socket: the program's side takes out what is queued.
         super().__init__(None, PROGRAM, use)  # type: ignore[arg-type]
-        self.hello = Hello(1, PROGRAM, 0, True)
+        self.hello = HelloFrame(1, PROGRAM, 0, True)
 
     def _peer(self) -> tuple[int, int]:
         return 0, 0  # no process of this machine has the number 0
@@ -99,15 +99,15 @@ class PageConnection(Link):
 
     def report_idle(self, now: int, until: int | None, in_ros: int) -> None:
         """Note that the program is idle until `until` (ns), or until a frame arrives; `in_ros` threads wait in ROS."""
-        self.believe(Idle(self.handled, now, -1 if until is None else until, in_ros, 0, 0, 0, 1, ()))
+        self.believe(IdleFrame(self.handled, now, -1 if until is None else until, in_ros, 0, 0, 0, 1, ()))
 
 
 class PageHub(Hub):
     """The hub of one run."""
 
-    def __init__(self, turns: Turns, limits: Limits | None = None) -> None:
+    def __init__(self, turns: Turns, limits: HubLimits | None = None) -> None:
         self._turns = turns
-        self._use = Use(limits or Limits())
+        self._use = HubUsage(limits or HubLimits())
         self._until, self._epoch, self._instant = BEGIN, EPOCH, BEGIN
         self._standstills, self._awaited, self._runs = 0, False, {}
         self.main: int | None = None

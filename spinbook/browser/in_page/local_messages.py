@@ -9,7 +9,7 @@ from collections import Counter
 
 from rcl_python.graph import EndpointInfo
 
-#: So many of one end point, at one moment, are reported to the hub.
+#: So many of one endpoint, at one moment, are reported to the hub.
 REPORTED = 100
 
 #: Whoever calls a logger in a loop sends many of these, and they lead to nothing.
@@ -17,7 +17,7 @@ LOG = "/rosout"
 
 
 class LocalMessages:
-    """Messages and requests of the current moment, by the end points that sent them."""
+    """Messages and requests of the current moment, by the endpoints that sent them."""
 
     def __init__(self) -> None:
         self._now = 0

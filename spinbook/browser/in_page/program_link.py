@@ -17,7 +17,7 @@ from rcl_python.context import interrupt
 from rcl_python.graph import CLIENT, PUBLISHER, SERVICE, SUBSCRIPTION, EndpointInfo
 from rcl_python.link import Frame
 from rmw_lockstep.hub import EPOCH, frames
-from rmw_lockstep.qos import AUTOMATIC, INFINITE, KEEP_LAST, Qos
+from rmw_lockstep.qos import AUTOMATIC, INFINITE, KEEP_LAST, QosPolicies
 from rmw_lockstep.type_hash import NO_HASH
 from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.busy_threads import BusyThreads
@@ -77,7 +77,7 @@ class ProgramLink:
             program_imports.turn_to_program()
 
     def _in_order(self, frame: Frame) -> bool:
-        """Whether to tell the hub. Garbage has no order, but end points leave before their node, and only once."""
+        """Whether to tell the hub. Garbage has no order, but endpoints leave before their node, and only once."""
         op = frame["op"]
         if op == "endpoint":
             self._ends[frame["gid"]] = frame["node"]
@@ -206,9 +206,9 @@ def _encoded(frame: Frame, data: bytes, moment: tuple[int, int, int]) -> Iterato
     if op == "hello":
         yield "J", b""
     elif op == "node":
-        yield "N", frames.to_node(frames.Node(_id(frame["key"]), frame["name"], frame["namespace"]))[_HEADER:]
+        yield "N", frames.to_node(frames.GraphNode(_id(frame["key"]), frame["name"], frame["namespace"]))[_HEADER:]
     elif op == "endpoint":
-        yield "E", frames.to_end_point(_end_point(frame))[_HEADER:]
+        yield "E", frames.to_endpoint(_endpoint(frame))[_HEADER:]
     elif op == "node_gone":
         yield "n", frames.to_gone(b"n", _id(frame["key"]))[_HEADER:]
     elif op == "endpoint_gone":
@@ -233,9 +233,9 @@ def _key(number: int) -> str:
     return f"{number >> 32}.{number & 0xFFFFFFFF}"
 
 
-def _end_point(frame: Frame) -> frames.EndPoint:
+def _endpoint(frame: Frame) -> frames.GraphEndpoint:
     given = frame["qos"]
-    qos = Qos(
+    qos = QosPolicies(
         given["history"] or KEEP_LAST,
         given["depth"],
         given["reliability"],
@@ -246,7 +246,7 @@ def _end_point(frame: Frame) -> frames.EndPoint:
         given["lease"] or INFINITE,
     )
     kind = _KINDS.index(frame["kind"])
-    return frames.EndPoint(
+    return frames.GraphEndpoint(
         _id(frame["gid"]), kind, _id(frame["node"]), frame["topic"], frame["type"], NO_HASH, qos
     )  # fmt: skip
 
@@ -263,8 +263,8 @@ def _node(payload: bytes, number: int) -> tuple[Frame, bytes]:
     return {"op": "node", **plain}, b""
 
 
-def _new_end_point(payload: bytes, number: int) -> tuple[Frame, bytes]:
-    end = frames.end_point(payload)
+def _new_endpoint(payload: bytes, number: int) -> tuple[Frame, bytes]:
+    end = frames.endpoint(payload)
     profile = quality.Profile(**vars(end.qos))
     names = {"gid": _key(end.id), "node": _key(end.node), "topic": end.name, "type": end.type}
     return {"op": "endpoint", **names, "kind": _KINDS[end.kind], "qos": vars(profile), "domain": 0}, b""
@@ -299,7 +299,7 @@ def _response(payload: bytes, number: int) -> tuple[Frame, bytes]:
 
 _DECODERS: dict[str, Callable[[bytes, int], tuple[Frame, bytes]]] = {
     "N": _node,
-    "E": _new_end_point,
+    "E": _new_endpoint,
     "n": _gone("node_gone", "key"),
     "e": _gone("endpoint_gone", "gid"),
     "D": _message,

@@ -1,10 +1,19 @@
 """The hub's end of the protocol between programs and the hub: see PROTOCOL.md."""
 
-from rmw_lockstep.hub.ends import Asked, Client, Heard, HubNode, Moment, Publisher, Server, Subscription
-from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndPoint, Node
+from rmw_lockstep.hub.endpoints import (
+    DeliveredMessage,
+    HubClient,
+    HubNode,
+    HubPublisher,
+    HubServer,
+    HubSubscription,
+    Moment,
+    PendingRequest,
+)
+from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, GraphEndpoint, GraphNode
 from rmw_lockstep.hub.hub import BEGIN, EPOCH, SOCKET, TICK_S, Hub
-from rmw_lockstep.hub.limits import Limits, Violation
-from rmw_lockstep.qos import Qos
+from rmw_lockstep.hub.limits import HubLimits, Violation
+from rmw_lockstep.qos import QosPolicies
 
 __all__ = [
     "BEGIN",
@@ -15,18 +24,18 @@ __all__ = [
     "SOCKET",
     "SUBSCRIPTION",
     "TICK_S",
-    "Asked",
-    "Client",
-    "EndPoint",
-    "Heard",
+    "DeliveredMessage",
+    "GraphEndpoint",
+    "GraphNode",
     "Hub",
+    "HubClient",
+    "HubLimits",
     "HubNode",
-    "Limits",
+    "HubPublisher",
+    "HubServer",
+    "HubSubscription",
     "Moment",
-    "Node",
-    "Publisher",
-    "Qos",
-    "Server",
-    "Subscription",
+    "PendingRequest",
+    "QosPolicies",
     "Violation",
 ]

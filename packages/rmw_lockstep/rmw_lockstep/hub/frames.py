@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from rmw_lockstep.hub.limits import Violation
-from rmw_lockstep.qos import Qos
+from rmw_lockstep.qos import QosPolicies
 from rmw_lockstep.type_hash import HASH_BYTES
 
 VERSION = 3
@@ -27,7 +27,7 @@ _WELCOME = struct.Struct("<IIqq")
 _ID = struct.Struct("<Q")
 _PAIR = struct.Struct("<QQ")
 _LENGTH = struct.Struct("<I")
-_END_POINT = struct.Struct("<QBQ")
+_ENDPOINT = struct.Struct("<QBQ")
 _QOS = struct.Struct("<BIBBBqqq")
 DATA = struct.Struct("<QQqQqI")
 CALL = struct.Struct("<QqqQqI")
@@ -49,7 +49,7 @@ POLLS, KERNEL_SLEEP = 1, 2
 
 
 @dataclass(frozen=True)
-class Hello:
+class HelloFrame:
     """A process introduces itself; `pid` and `parent` are its own and its parent's id, as it sees them."""
 
     version: int
@@ -59,7 +59,7 @@ class Hello:
 
 
 @dataclass(frozen=True)
-class Node:
+class GraphNode:
     """A node of some process."""
 
     id: int
@@ -73,7 +73,7 @@ class Node:
 
 
 @dataclass(frozen=True)
-class EndPoint:
+class GraphEndpoint:
     """A publisher, subscription, server or client of some process."""
 
     id: int
@@ -82,7 +82,7 @@ class EndPoint:
     name: str
     type: str
     hash: bytes
-    qos: Qos
+    qos: QosPolicies
 
     @property
     def process(self) -> int:
@@ -90,7 +90,7 @@ class EndPoint:
         return self.id >> 32
 
 
-class Data(NamedTuple):
+class DataFrame(NamedTuple):
     """A message: when this process had handled `handled` of the hub's frames, at `now` (ns) of its time."""
 
     publisher: int
@@ -102,7 +102,7 @@ class Data(NamedTuple):
     cdr: bytes
 
 
-class Call(NamedTuple):
+class CallFrame(NamedTuple):
     """A request or a response."""
 
     client: int
@@ -114,8 +114,8 @@ class Call(NamedTuple):
     cdr: bytes
 
 
-class Kept(NamedTuple):
-    """So many messages or requests of one end point, at one moment, that nobody outside the process gets."""
+class KeptFrame(NamedTuple):
+    """So many messages or requests of one endpoint, at one moment, that nobody outside the process gets."""
 
     sender: int
     number: int
@@ -124,7 +124,7 @@ class Kept(NamedTuple):
     thread: int
 
 
-class Idle(NamedTuple):
+class IdleFrame(NamedTuple):
     """A process is idle. `next` is when it will wake by itself (ns), or -1 for never.
 
     `runs`, in the answer to ASK, differs from an earlier answer if any of its threads has run in between; otherwise 0.
@@ -144,15 +144,15 @@ class Idle(NamedTuple):
 # --- from a process
 
 
-def hello(payload: bytes) -> Hello:
+def hello(payload: bytes) -> HelloFrame:
     """Decode a HELLO. Raises `Violation` if it is invalid or of an unknown version; so do the functions below."""
     version, pid, parent, timed = _exactly(_HELLO, payload)
     if version != VERSION:
         raise Violation("protocol", f"a process speaks version {version} of the protocol, the hub version {VERSION}")
-    return Hello(version, pid, parent, bool(timed))
+    return HelloFrame(version, pid, parent, bool(timed))
 
 
-def node(payload: bytes) -> Node:
+def node(payload: bytes) -> GraphNode:
     """Decode a NODE."""
     (number,) = _first(_ID, payload)
     name, at = _string(payload, _ID.size)
@@ -160,26 +160,26 @@ def node(payload: bytes) -> Node:
     _end(payload, at)
     _check(_NODE_NAME, name, "a node's name")
     _check(_NAMESPACE, namespace, "a namespace")
-    return Node(number, name, namespace)
+    return GraphNode(number, name, namespace)
 
 
-def end_point(payload: bytes) -> EndPoint:
-    """Decode an END_POINT."""
-    number, kind, owner = _first(_END_POINT, payload)
+def endpoint(payload: bytes) -> GraphEndpoint:
+    """Decode an ENDPOINT."""
+    number, kind, owner = _first(_ENDPOINT, payload)
     if kind > CLIENT:
-        raise Violation("protocol", f"there is no end point of kind {kind}")
-    name, at = _string(payload, _END_POINT.size)
+        raise Violation("protocol", f"there is no endpoint of kind {kind}")
+    name, at = _string(payload, _ENDPOINT.size)
     type_name, at = _string(payload, at)
     if len(payload) != at + HASH_BYTES + _QOS.size:
-        raise Violation("protocol", "an end point of a wrong length")
+        raise Violation("protocol", "an endpoint of a wrong length")
     _check(_TOPIC, name, "the name of a topic or service")
     _check(_TYPE, type_name, "a type")
-    qos = Qos(*_QOS.unpack_from(payload, at + HASH_BYTES))
-    return EndPoint(number, kind, owner, name, type_name, bytes(payload[at : at + HASH_BYTES]), qos)
+    qos = QosPolicies(*_QOS.unpack_from(payload, at + HASH_BYTES))
+    return GraphEndpoint(number, kind, owner, name, type_name, bytes(payload[at : at + HASH_BYTES]), qos)
 
 
 def identity(payload: bytes) -> int:
-    """Decode the only content of NODE_GONE, END_POINT_GONE and ALIVE."""
+    """Decode the only content of NODE_GONE, ENDPOINT_GONE and ALIVE."""
     (number,) = _exactly(_ID, payload)
     return int(number)
 
@@ -190,28 +190,28 @@ def replayed(payload: bytes) -> tuple[int, int]:
     return publisher, subscription
 
 
-def data(payload: bytes) -> Data:
+def data(payload: bytes) -> DataFrame:
     """Decode a DATA."""
-    return Data._make((*_first(DATA, payload), payload[DATA.size :]))
+    return DataFrame._make((*_first(DATA, payload), payload[DATA.size :]))
 
 
-def call(payload: bytes) -> Call:
+def call(payload: bytes) -> CallFrame:
     """Decode a REQUEST or a RESPONSE."""
-    return Call._make((*_first(CALL, payload), payload[CALL.size :]))
+    return CallFrame._make((*_first(CALL, payload), payload[CALL.size :]))
 
 
-def kept(payload: bytes) -> Kept:
+def kept(payload: bytes) -> KeptFrame:
     """Decode a KEPT."""
-    return Kept._make(_exactly(KEPT, payload))
+    return KeptFrame._make(_exactly(KEPT, payload))
 
 
-def idle(payload: bytes) -> Idle:
+def idle(payload: bytes) -> IdleFrame:
     """Decode an IDLE."""
     handled, now, next_, in_ros, in_time, others, flags, runs, count = _first(_IDLE, payload)
     if len(payload) != _IDLE.size + 4 * count:
         raise Violation("protocol", "an IDLE of a wrong length")
     children = struct.unpack_from(f"<{count}I", payload, _IDLE.size) if count else ()
-    return Idle(handled, now, next_, in_ros, in_time, others, flags, runs, children)
+    return IdleFrame(handled, now, next_, in_ros, in_time, others, flags, runs, children)
 
 
 def _first(form: struct.Struct, payload: bytes) -> tuple[int, ...]:
@@ -267,23 +267,23 @@ def to_welcome(process: int, now: int, epoch: int) -> bytes:
     return frame(b"W", _WELCOME.pack(VERSION, process, now, epoch))
 
 
-def to_node(what: Node) -> bytes:
+def to_node(what: GraphNode) -> bytes:
     """Encode a NODE."""
     return frame(b"N", _ID.pack(what.id) + _text(what.name) + _text(what.namespace))
 
 
-def to_end_point(what: EndPoint) -> bytes:
-    """Encode an END_POINT."""
+def to_endpoint(what: GraphEndpoint) -> bytes:
+    """Encode an ENDPOINT."""
     qos = what.qos
     policies = _QOS.pack(
         qos.history, qos.depth, qos.reliability, qos.durability, qos.liveliness, qos.deadline, qos.lifespan, qos.lease
     )
     names = _text(what.name) + _text(what.type)
-    return frame(b"E", _END_POINT.pack(what.id, what.kind, what.node) + names + what.hash + policies)
+    return frame(b"E", _ENDPOINT.pack(what.id, what.kind, what.node) + names + what.hash + policies)
 
 
 def to_gone(kind: bytes, number: int) -> bytes:
-    """Encode NODE_GONE, END_POINT_GONE or ALIVE, by its `kind`."""
+    """Encode NODE_GONE, ENDPOINT_GONE or ALIVE, by its `kind`."""
     return frame(kind, _ID.pack(number))
 
 

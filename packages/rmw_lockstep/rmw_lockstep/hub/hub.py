@@ -15,10 +15,10 @@ from pathlib import Path
 from types import TracebackType
 
 from rmw_lockstep.hub import frames
-from rmw_lockstep.hub.ends import Asked, HubNode
-from rmw_lockstep.hub.graph import Graph
-from rmw_lockstep.hub.limits import Limits, Use, Violation
-from rmw_lockstep.hub.link import Link
+from rmw_lockstep.hub.endpoints import HubNode, PendingRequest
+from rmw_lockstep.hub.graph import HubGraph
+from rmw_lockstep.hub.limits import HubLimits, HubUsage, Violation
+from rmw_lockstep.hub.link import ProcessLink
 from rmw_lockstep.hub.router import Router
 
 SECOND = 1_000_000_000
@@ -57,7 +57,7 @@ class Hub:
     def __init__(
         self,
         folder: Path,
-        limits: Limits | None = None,
+        limits: HubLimits | None = None,
         on_tick: Callable[[], None] = _do_nothing,
         begin: int = BEGIN,
         epoch: int = EPOCH,
@@ -75,7 +75,7 @@ class Hub:
         self.mains: set[int] = set()
         self.before_end: Callable[[], None] = _do_nothing
         self.on_tick = on_tick
-        self._use = Use(limits or Limits())
+        self._use = HubUsage(limits or HubLimits())
         self._until, self._epoch = begin, epoch
         self._instant = begin
         self._standstills = 0
@@ -104,7 +104,7 @@ class Hub:
     def add_listener(self, folder: Path) -> Path:
         """Listen in another folder, too, for another program, and return the socket's path.
 
-        `Link.listener` counts these from 1.
+        `ProcessLink.listener` counts these from 1.
         """
         self._listeners.append(self._listen(folder))
         return folder / SOCKET
@@ -114,12 +114,12 @@ class Hub:
         return HubNode(self._router, self._router.new_node(name, namespace))
 
     @property
-    def graph(self) -> Graph:
+    def graph(self) -> HubGraph:
         """The ROS graph."""
         return self._router.graph
 
     @property
-    def links(self) -> list[Link]:
+    def links(self) -> list[ProcessLink]:
         """The processes that are connected."""
         return self._router.links
 
@@ -129,7 +129,7 @@ class Hub:
         return self._until
 
     @property
-    def unserved(self) -> list[Asked]:
+    def unserved(self) -> list[PendingRequest]:
         """Requests of the program for which there was no server, in the order in which they arrived."""
         return self._router.unserved
 
@@ -230,7 +230,7 @@ class Hub:
             return False
         return not idle or links[0].is_idle
 
-    def _grant(self, link: Link, until: int) -> None:
+    def _grant(self, link: ProcessLink, until: int) -> None:
         self._use.wake_up()
         link.granted = until
         link.queue(frames.to_time(until))
@@ -265,7 +265,7 @@ class Hub:
             self._grant(link, self._instant)
         return True
 
-    def _see_progress(self, link: Link) -> None:
+    def _see_progress(self, link: ProcessLink) -> None:
         """Raise `Violation` when a process's time does not advance."""
         self._standstills = self._standstills + 1 if link.granted == self._instant else 0
         if self._standstills > MOST_STANDSTILLS:
@@ -305,7 +305,7 @@ class Hub:
             link.queue(frames.ASK)
         return False
 
-    def _missing_children(self) -> list[Link]:
+    def _missing_children(self) -> list[ProcessLink]:
         """Return the processes that name a child which is not connected: not yet, no longer, or never."""
         naming = [link for link in self.links if link.idle and link.idle.children]
         if not naming:
@@ -337,7 +337,7 @@ class Hub:
             except Violation:
                 connection.close()
                 raise
-            link = Link(connection, self._use.connections, self._use, number)
+            link = ProcessLink(connection, self._use.connections, self._use, number)
             link.wait_at_most(TICK_S)
             self.links.append(link)
             self._poll.register(connection, select.POLLIN)
@@ -385,7 +385,7 @@ class Hub:
             elif events & ~select.POLLOUT:
                 self._read(by_number[number], socket.MSG_DONTWAIT)
 
-    def _read(self, link: Link, flags: int) -> None:
+    def _read(self, link: ProcessLink, flags: int) -> None:
         try:
             alive = link.read(self._router.handle, flags)
         except BlockingIOError:
@@ -393,7 +393,7 @@ class Hub:
         if not alive:
             self._end(link)
 
-    def _end(self, link: Link) -> None:
+    def _end(self, link: ProcessLink) -> None:
         self.before_end()
         self._poll.unregister(link.socket)
         link.close()

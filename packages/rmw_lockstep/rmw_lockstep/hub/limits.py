@@ -16,7 +16,7 @@ Reason = Literal[
     "own messages",
     "frames",
     "nodes",
-    "end points",
+    "endpoints",
     "connections",
     "unread",
     "wake-ups",
@@ -24,7 +24,7 @@ Reason = Literal[
 
 
 @dataclass(frozen=True)
-class Limits:
+class HubLimits:
     """How much all processes of a program may send, own and leave unread, from the first connection to the last.
 
     Sizes are in bytes. No correct program comes near any of them.
@@ -42,7 +42,7 @@ class Limits:
     """Frames of any kind."""
     nodes: int = 200
     """Nodes at the same time."""
-    end_points: int = 4_000
+    endpoints: int = 4_000
     """Publishers, subscriptions, clients and servers at the same time. A node of rclpy has about ten of its own."""
     connections: int = 64
     """Processes at the same time."""
@@ -65,10 +65,10 @@ class Violation(Exception):
         self.limit = limit
 
 
-class Use:
+class HubUsage:
     """What a program has used so far. Each method raises `Violation` when that exceeds `limits`."""
 
-    def __init__(self, limits: Limits) -> None:
+    def __init__(self, limits: HubLimits) -> None:
         self.limits = limits
         self.frames = 0
         self.messages = 0
@@ -113,12 +113,10 @@ class Use:
         if count > self.limits.nodes:
             raise _exceeded("nodes", "nodes", count, self.limits.nodes)
 
-    def end_points(self, count: int) -> None:
-        """Check that there may be `count` end points."""
-        if count > self.limits.end_points:
-            raise _exceeded(
-                "end points", "publishers, subscriptions, clients and servers", count, self.limits.end_points
-            )
+    def endpoints(self, count: int) -> None:
+        """Check that there may be `count` endpoints."""
+        if count > self.limits.endpoints:
+            raise _exceeded("endpoints", "publishers, subscriptions, clients and servers", count, self.limits.endpoints)
 
     def unread(self, size: int) -> None:
         """Check that `size` bytes may be kept for a process that does not read."""

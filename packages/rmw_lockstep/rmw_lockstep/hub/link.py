@@ -8,8 +8,8 @@ import struct
 from bisect import bisect_right
 from collections.abc import Callable
 
-from rmw_lockstep.hub.frames import KERNEL_SLEEP, Hello, Idle
-from rmw_lockstep.hub.limits import Use, Violation
+from rmw_lockstep.hub.frames import KERNEL_SLEEP, HelloFrame, IdleFrame
+from rmw_lockstep.hub.limits import HubUsage, Violation
 
 #: How much is read at once: little enough that a process which never stops sending can't block the hub.
 PIECE = 65_536
@@ -21,24 +21,24 @@ _CREDENTIALS = struct.Struct("iII")
 _WAIT = struct.Struct("ll")
 
 
-class Link:
+class ProcessLink:
     """One process. `number` begins its identities; `pid` is its process id as the hub sees it.
 
     `listener` is the number of the listening socket to which it connected: that of its program.
     """
 
-    def __init__(self, sock: socket.socket, number: int, use: Use, listener: int = 0) -> None:
+    def __init__(self, sock: socket.socket, number: int, use: HubUsage, listener: int = 0) -> None:
         self.socket, self.number, self.listener = sock, number, listener
         self.pid, self.uid = self._peer()
-        self.hello: Hello | None = None
+        self.hello: HelloFrame | None = None
         self.began = self.joined = False
         self.sent = 0
         self.handled = 0
         self.now = self.granted = 0
-        self.idle: Idle | None = None
-        self.last_idle: Idle | None = None
+        self.idle: IdleFrame | None = None
+        self.last_idle: IdleFrame | None = None
         self.nodes: set[int] = set()
-        self.end_points: set[int] = set()
+        self.endpoints: set[int] = set()
         self.requests: set[tuple[int, int]] = set()
         self._use = use
         self._queued: list[bytes] = []
@@ -116,7 +116,7 @@ class Link:
 
     # --- in
 
-    def read(self, handle: Callable[[Link, int, bytes], None], flags: int = 0) -> bool:
+    def read(self, handle: Callable[[ProcessLink, int, bytes], None], flags: int = 0) -> bool:
         """Read once and handle the whole frames in it. Return False at the end of the connection.
 
         Raises BlockingIOError when there is nothing to read, and `Violation`.
@@ -130,7 +130,7 @@ class Link:
         self._take(self._rest + data if self._rest else data, handle)
         return True
 
-    def _take(self, data: bytes, handle: Callable[[Link, int, bytes], None]) -> None:
+    def _take(self, data: bytes, handle: Callable[[ProcessLink, int, bytes], None]) -> None:
         at, end, use = 0, len(data), self._use
         longest = use.limits.message_bytes + _FRAME_BESIDE_MESSAGE
         while end - at >= 4:
@@ -158,7 +158,7 @@ class Link:
         self.now = min(max(now, self.now), self.granted)
         return self.handled, self.now
 
-    def believe(self, idle: Idle) -> None:
+    def believe(self, idle: IdleFrame) -> None:
         """Note that the process reports to be idle."""
         _, now = self.moment(idle.handled, idle.now)
         self.idle = self.last_idle = idle._replace(now=now)

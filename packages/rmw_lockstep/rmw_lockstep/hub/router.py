@@ -7,13 +7,22 @@ from dataclasses import dataclass
 from itertools import count
 
 from rmw_lockstep.hub import frames
-from rmw_lockstep.hub.ends import Asked, Client, End, Heard, Moment, Publisher, Server, Subscription
-from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndPoint, Node
-from rmw_lockstep.hub.graph import HUB, Graph
-from rmw_lockstep.hub.limits import Use, Violation
-from rmw_lockstep.hub.link import Link
-from rmw_lockstep.hub.moment import AtOnce
-from rmw_lockstep.qos import TRANSIENT_LOCAL, Qos
+from rmw_lockstep.hub.endpoints import (
+    DeliveredMessage,
+    HubClient,
+    HubEndpoint,
+    HubPublisher,
+    HubServer,
+    HubSubscription,
+    Moment,
+    PendingRequest,
+)
+from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, GraphEndpoint, GraphNode
+from rmw_lockstep.hub.graph import HUB, HubGraph
+from rmw_lockstep.hub.limits import HubUsage, Violation
+from rmw_lockstep.hub.link import ProcessLink
+from rmw_lockstep.hub.moment_counter import MomentCounter
+from rmw_lockstep.qos import TRANSIENT_LOCAL, QosPolicies
 from rmw_lockstep.type_hash import type_hash
 
 #: Requests of other processes that one process may leave unanswered.
@@ -30,28 +39,28 @@ class Route:
 
     node: str
     shared: bool
-    subscriptions: list[Subscription]
-    links: list[Link]
+    subscriptions: list[HubSubscription]
+    links: list[ProcessLink]
 
 
 class Router:
     """Knows every link and the hub's own ends, and forwards frames between them."""
 
-    def __init__(self, use: Use, calendar: Callable[[], int], epoch: int) -> None:
+    def __init__(self, use: HubUsage, calendar: Callable[[], int], epoch: int) -> None:
         """`calendar` is the current calendar time, which stamps the hub's messages (ns)."""
-        self.graph = Graph()
-        self.links: list[Link] = []
+        self.graph = HubGraph()
+        self.links: list[ProcessLink] = []
         self.published = 0
         self._certain = 0
         self._use, self._calendar, self._epoch = use, calendar, epoch
-        self._at_once = AtOnce(self.graph, use.limits)
+        self._at_once = MomentCounter(self.graph, use.limits)
         self._numbers = count(1)
-        self._ends: dict[int, End] = {}
+        self._ends: dict[int, HubEndpoint] = {}
         self._routes: dict[int, Route] = {}
-        self._held: list[tuple[tuple[int, int], Link, bytes]] = []
-        self._asked: list[tuple[tuple[int, int], Server, Asked]] = []
-        self.unserved: list[Asked] = []
-        self._handlers: dict[int, Callable[[Link, bytes], None]] = {
+        self._held: list[tuple[tuple[int, int], ProcessLink, bytes]] = []
+        self._asked: list[tuple[tuple[int, int], HubServer, PendingRequest]] = []
+        self.unserved: list[PendingRequest] = []
+        self._handlers: dict[int, Callable[[ProcessLink, bytes], None]] = {
             ord("I"): self._idle,
             ord("D"): self._data,
             ord("K"): self._kept,
@@ -59,14 +68,14 @@ class Router:
             ord("J"): self._join,
             ord("N"): self._node,
             ord("n"): self._node_gone,
-            ord("E"): self._end_point,
-            ord("e"): self._end_point_gone,
+            ord("E"): self._endpoint,
+            ord("e"): self._endpoint_gone,
             ord("Q"): self._request,
             ord("R"): self._response,
             ord("L"): self._alive,
         }
 
-    def handle(self, link: Link, kind: int, payload: bytes) -> None:
+    def handle(self, link: ProcessLink, kind: int, payload: bytes) -> None:
         """Handle one frame from a process. Raises `Violation`."""
         if not link.began:
             self._hello(link, kind, payload)
@@ -76,33 +85,33 @@ class Router:
             raise Violation("protocol", f"a frame of kind {chr(kind)!r} is not for the hub")
         handler(link, payload)
 
-    def _hello(self, link: Link, kind: int, payload: bytes) -> None:
+    def _hello(self, link: ProcessLink, kind: int, payload: bytes) -> None:
         if kind != ord("H") or link.hello:
             raise Violation("protocol", "a process sends something other than HELLO before it gets WELCOME")
         link.hello = frames.hello(payload)
 
-    def welcome(self, link: Link, now: int) -> None:
+    def welcome(self, link: ProcessLink, now: int) -> None:
         """Let a process that has sent HELLO begin, at the time `now`."""
         link.begin(now, self.published)
         link.queue(frames.to_welcome(link.number, now, self._epoch))
 
-    def _idle(self, link: Link, payload: bytes) -> None:
+    def _idle(self, link: ProcessLink, payload: bytes) -> None:
         link.believe(frames.idle(payload))
 
     # --- the graph
 
-    def _join(self, link: Link, payload: bytes) -> None:
+    def _join(self, link: ProcessLink, payload: bytes) -> None:
         if not link.joined:
             link.joined = True
             for node in self.graph.nodes.values():
                 if node.id >> 32 != link.number:
                     link.queue(frames.to_node(node))
-            for end_point in self.graph.end_points.values():
-                if end_point.process != link.number:
-                    link.queue(frames.to_end_point(end_point))
+            for endpoint in self.graph.endpoints.values():
+                if endpoint.process != link.number:
+                    link.queue(frames.to_endpoint(endpoint))
         link.queue(frames.GRAPH_COMPLETE)
 
-    def _node(self, link: Link, payload: bytes) -> None:
+    def _node(self, link: ProcessLink, payload: bytes) -> None:
         node = frames.node(payload)
         self._new(link, node.id, self.graph.nodes)
         self._use.nodes(len(self.graph.nodes))
@@ -110,69 +119,69 @@ class Router:
         self.graph.add_node(node)
         self._broadcast(frames.to_node(node), link)
 
-    def _node_gone(self, link: Link, payload: bytes) -> None:
+    def _node_gone(self, link: ProcessLink, payload: bytes) -> None:
         number = frames.identity(payload)
         if number not in link.nodes:
             raise Violation("protocol", "a process removes a node that is not its own")
         self._remove_node(link, number)
 
-    def _remove_node(self, link: Link, number: int) -> None:
-        for end_point in self.graph.end_points_of(number):
-            self._remove_end_point(link, end_point.id)
+    def _remove_node(self, link: ProcessLink, number: int) -> None:
+        for endpoint in self.graph.endpoints_of(number):
+            self._remove_endpoint(link, endpoint.id)
         link.nodes.discard(number)
         self.graph.remove_node(number)
         self._broadcast(frames.to_gone(b"n", number), link)
 
-    def _end_point(self, link: Link, payload: bytes) -> None:
-        end_point = frames.end_point(payload)
-        self._new(link, end_point.id, self.graph.end_points)
-        if end_point.node not in link.nodes:
-            raise Violation("protocol", "an end point of a node that is not the process's own")
-        self._use.end_points(len(self.graph.end_points))
-        link.end_points.add(end_point.id)
-        self._add(end_point)
-        self._broadcast(frames.to_end_point(end_point), link)
-        if end_point.kind == SUBSCRIPTION and end_point.qos.durability == TRANSIENT_LOCAL:
-            self._replay(link, end_point)
+    def _endpoint(self, link: ProcessLink, payload: bytes) -> None:
+        endpoint = frames.endpoint(payload)
+        self._new(link, endpoint.id, self.graph.endpoints)
+        if endpoint.node not in link.nodes:
+            raise Violation("protocol", "an endpoint of a node that is not the process's own")
+        self._use.endpoints(len(self.graph.endpoints))
+        link.endpoints.add(endpoint.id)
+        self._add(endpoint)
+        self._broadcast(frames.to_endpoint(endpoint), link)
+        if endpoint.kind == SUBSCRIPTION and endpoint.qos.durability == TRANSIENT_LOCAL:
+            self._replay(link, endpoint)
 
-    def _replay(self, link: Link, subscription: EndPoint) -> None:
+    def _replay(self, link: ProcessLink, subscription: GraphEndpoint) -> None:
         """Send a subscription what was published before, if it requests that. Processes replay their own messages."""
         for writer in self.graph.writers(subscription):
             publisher = self._ends.get(writer.id)
-            if isinstance(publisher, Publisher):
+            if isinstance(publisher, HubPublisher):
                 for source_time, cdr in publisher.history:
                     link.queue(frames.to_data(writer.id, subscription.id, source_time, cdr))
                 link.queue(frames.to_replayed(writer.id, subscription.id))
 
-    def _end_point_gone(self, link: Link, payload: bytes) -> None:
+    def _endpoint_gone(self, link: ProcessLink, payload: bytes) -> None:
         number = frames.identity(payload)
-        if number not in link.end_points:
-            raise Violation("protocol", "a process removes an end point that is not its own")
-        self._remove_end_point(link, number)
+        if number not in link.endpoints:
+            raise Violation("protocol", "a process removes an endpoint that is not its own")
+        self._remove_endpoint(link, number)
 
-    def _remove_end_point(self, link: Link, number: int) -> None:
-        link.end_points.discard(number)
+    def _remove_endpoint(self, link: ProcessLink, number: int) -> None:
+        link.endpoints.discard(number)
         self._remove(number)
         self._broadcast(frames.to_gone(b"e", number), link)
 
-    def _new(self, link: Link, number: int, known: dict[int, Node] | dict[int, EndPoint]) -> None:
+    def _new(self, link: ProcessLink, number: int, known: dict[int, GraphNode] | dict[int, GraphEndpoint]) -> None:
         if number >> 32 != link.number or number in known:
             raise Violation("protocol", "an identity that is not the process's own, or is given twice")
 
-    def _add(self, end_point: EndPoint) -> None:
-        self.graph.add(end_point)
+    def _add(self, endpoint: GraphEndpoint) -> None:
+        self.graph.add(endpoint)
         self._routes.clear()
 
     def _remove(self, number: int) -> None:
         self.graph.remove(number)
         self._routes.clear()
 
-    def _broadcast(self, frame: bytes, origin: Link | None = None) -> None:
+    def _broadcast(self, frame: bytes, origin: ProcessLink | None = None) -> None:
         for link in self.links:
             if link is not origin and link.joined:
                 self._pass_on(origin, link, frame)
 
-    def _pass_on(self, origin: Link | None, to: Link, frame: bytes) -> None:
+    def _pass_on(self, origin: ProcessLink | None, to: ProcessLink, frame: bytes) -> None:
         """Hold what one process sends to another until all are idle: see `deliver`."""
         if origin is None:
             to.queue(frame)
@@ -193,18 +202,18 @@ class Router:
             server.serve(request)
         return bool(held or asked)
 
-    def forget(self, link: Link) -> None:
+    def forget(self, link: ProcessLink) -> None:
         """Remove a process that has ended, and everything it had."""
         self.links.remove(link)
-        for number in tuple(link.end_points):
-            self._remove_end_point(link, number)
+        for number in tuple(link.endpoints):
+            self._remove_endpoint(link, number)
         for number in tuple(link.nodes):
             self._remove_node(link, number)
         self._routes.clear()
 
     # --- messages, requests and responses
 
-    def _data(self, link: Link, payload: bytes) -> None:
+    def _data(self, link: ProcessLink, payload: bytes) -> None:
         data = frames.data(payload)
         self._use.data(len(data.cdr))
         publisher = self._own(link, data.publisher, PUBLISHER)
@@ -214,69 +223,69 @@ class Router:
         route = self._routes.get(publisher.id) or self._route(publisher)
         ordered = link.is_main(data.thread) and not route.shared
         for subscription in route.subscriptions:
-            if data.only in (0, subscription.end_point.id):
+            if data.only in (0, subscription.endpoint.id):
                 stage = self._stage(link, handled)
-                subscription.take(Heard(publisher, route.node, now, stage, handled, ordered, data.cdr))
+                subscription.take(DeliveredMessage(publisher, route.node, now, stage, handled, ordered, data.cdr))
         for other in route.links:
             self._pass_on(link, other, frames.to_data(publisher.id, data.only, data.source_time, data.cdr))
 
-    def _kept(self, link: Link, payload: bytes) -> None:
+    def _kept(self, link: ProcessLink, payload: bytes) -> None:
         """A process has sent much at one moment that nobody else gets."""
         kept = frames.kept(payload)
         sender = self._own(link, kept.sender, PUBLISHER, CLIENT)
         _, now = link.moment(kept.handled, kept.now)
         self._at_once.count(sender, now, kept.number)
 
-    def _replayed(self, link: Link, payload: bytes) -> None:
+    def _replayed(self, link: ProcessLink, payload: bytes) -> None:
         """A process has sent all that its publisher had kept for a subscription that came later."""
         number, subscription = frames.replayed(payload)
         publisher = self._own(link, number, PUBLISHER)
         other = self._link(subscription >> 32)
-        if other is not None and subscription in other.end_points:
+        if other is not None and subscription in other.endpoints:
             self._pass_on(link, other, frames.to_replayed(publisher.id, subscription))
 
-    def _own(self, link: Link, number: int, *kinds: int) -> EndPoint:
-        end_point = self.graph.end_points.get(number) if number in link.end_points else None
-        if end_point is None or end_point.kind not in kinds:
-            raise Violation("protocol", "a process speaks for an end point that is not its own")
-        return end_point
+    def _own(self, link: ProcessLink, number: int, *kinds: int) -> GraphEndpoint:
+        endpoint = self.graph.endpoints.get(number) if number in link.endpoints else None
+        if endpoint is None or endpoint.kind not in kinds:
+            raise Violation("protocol", "a process speaks for an endpoint that is not its own")
+        return endpoint
 
-    def _route(self, publisher: EndPoint) -> Route:
+    def _route(self, publisher: GraphEndpoint) -> Route:
         readers = self.graph.readers(publisher)
         own = [self._ends[reader.id] for reader in readers if reader.process == HUB]
         others = {reader.process for reader in readers} - {publisher.process}
-        subscriptions = [end for end in own if isinstance(end, Subscription)]
+        subscriptions = [end for end in own if isinstance(end, HubSubscription)]
         links = [link for link in self.links if link.number in others]
         node = self.graph.nodes[publisher.node].full_name
         route = Route(node, self._is_shared(publisher, node), subscriptions, links)
         self._routes[publisher.id] = route
         return route
 
-    def _is_shared(self, publisher: EndPoint, node: str) -> bool:
+    def _is_shared(self, publisher: GraphEndpoint, node: str) -> bool:
         rivals = self.graph.of_program(publisher.name, PUBLISHER)
         return any(
             rival.process != publisher.process and self.graph.nodes[rival.node].full_name == node for rival in rivals
         )
 
-    def _request(self, link: Link, payload: bytes) -> None:
+    def _request(self, link: ProcessLink, payload: bytes) -> None:
         call = frames.call(payload)
         self._use.data(len(call.cdr))
         client = self._own(link, call.client, CLIENT)
         moment = self._moment(link, call)
         self._at_once.count(client, moment.now)
         servers = self.graph.servers(client)
-        asked = Asked(client, self.graph.nodes[client.node].full_name, call.number, moment, call.cdr)
+        asked = PendingRequest(client, self.graph.nodes[client.node].full_name, call.number, moment, call.cdr)
         if not servers:
             self.unserved.append(asked)
         for server in servers:
             own = self._ends.get(server.id)
-            if isinstance(own, Server):
+            if isinstance(own, HubServer):
                 self._asked.append((link.order, own, asked))
             elif server.process != link.number:
                 self._ask(link, server, client.id, call.number, call.source_time, call.cdr)
 
     def _ask(
-        self, origin: Link | None, server: EndPoint, client: int, number: int, source_time: int, cdr: bytes
+        self, origin: ProcessLink | None, server: GraphEndpoint, client: int, number: int, source_time: int, cdr: bytes
     ) -> None:
         link = self._link(server.process)
         if link is None:
@@ -286,7 +295,7 @@ class Router:
         link.requests.add((client, number))
         self._pass_on(origin, link, frames.to_request(server.id, client, number, source_time, cdr))
 
-    def _response(self, link: Link, payload: bytes) -> None:
+    def _response(self, link: ProcessLink, payload: bytes) -> None:
         call = frames.call(payload)
         self._use.data(len(call.cdr))
         moment = self._moment(link, call)
@@ -294,18 +303,18 @@ class Router:
             raise Violation("protocol", "a response to what was not requested")
         link.requests.discard((call.client, call.number))
         own = self._ends.get(call.client)
-        if isinstance(own, Client):
+        if isinstance(own, HubClient):
             own.answered(call.number, moment, call.cdr)
             return
         other = self._link(call.client >> 32)
-        if other is not None and call.client in other.end_points:
+        if other is not None and call.client in other.endpoints:
             self._pass_on(link, other, frames.to_response(call.client, call.number, call.source_time, call.cdr))
 
-    def _moment(self, link: Link, call: frames.Call) -> Moment:
+    def _moment(self, link: ProcessLink, call: frames.CallFrame) -> Moment:
         handled, now = link.moment(call.handled, call.now)
         return Moment(now, self._stage(link, handled), handled, link.is_main(call.thread))
 
-    def _stage(self, link: Link, handled: int) -> int:
+    def _stage(self, link: ProcessLink, handled: int) -> int:
         """Return the number of the last publication before a moment of a process.
 
         One process may act on a message that another one has told it of, whether or not it has handled the message
@@ -313,63 +322,63 @@ class Router:
         """
         return max(self._certain, link.stage(handled))
 
-    def _alive(self, link: Link, payload: bytes) -> None:
+    def _alive(self, link: ProcessLink, payload: bytes) -> None:
         publisher = self._own(link, frames.identity(payload), PUBLISHER)
         for other in self._route(publisher).links:
             self._pass_on(link, other, frames.to_gone(b"L", publisher.id))
 
-    def _link(self, number: int) -> Link | None:
+    def _link(self, number: int) -> ProcessLink | None:
         return next((link for link in self.links if link.number == number), None)
 
-    # --- the hub's own ends: see `rmw_lockstep.hub.ends.Post`
+    # --- the hub's own ends: see `rmw_lockstep.hub.endpoints.EndpointHost`
 
-    def new_node(self, name: str, namespace: str = "/") -> Node:
+    def new_node(self, name: str, namespace: str = "/") -> GraphNode:
         """Return a new node of the hub's."""
-        node = Node(next(self._numbers), name, namespace)
+        node = GraphNode(next(self._numbers), name, namespace)
         self.graph.add_node(node)
         self._broadcast(frames.to_node(node))
         return node
 
-    def new_end_point(self, kind: int, node: Node, name: str, type: str, qos: Qos) -> EndPoint:
-        """Return an identity for one of the hub's end points."""
-        return EndPoint(next(self._numbers), kind, node.id, name, type, type_hash(type), qos)
+    def new_endpoint(self, kind: int, node: GraphNode, name: str, type: str, qos: QosPolicies) -> GraphEndpoint:
+        """Return an identity for one of the hub's endpoints."""
+        return GraphEndpoint(next(self._numbers), kind, node.id, name, type, type_hash(type), qos)
 
-    def add_end(self, end: End) -> None:
+    def add_end(self, end: HubEndpoint) -> None:
         """Add it to the graph."""
-        self._ends[end.end_point.id] = end
-        self._add(end.end_point)
-        self._broadcast(frames.to_end_point(end.end_point))
-        if isinstance(end, Publisher):
-            self._replay_nothing(end.end_point)
+        self._ends[end.endpoint.id] = end
+        self._add(end.endpoint)
+        self._broadcast(frames.to_endpoint(end.endpoint))
+        if isinstance(end, HubPublisher):
+            self._replay_nothing(end.endpoint)
 
-    def _replay_nothing(self, publisher: EndPoint) -> None:
+    def _replay_nothing(self, publisher: GraphEndpoint) -> None:
         """A new publisher has kept nothing for the subscriptions that were there before."""
         for reader in self.graph.readers(publisher):
             link = self._link(reader.process)
             if link is not None and reader.qos.durability == TRANSIENT_LOCAL:
                 link.queue(frames.to_replayed(publisher.id, reader.id))
 
-    def remove_end(self, end: End) -> None:
+    def remove_end(self, end: HubEndpoint) -> None:
         """Remove it from the graph."""
-        del self._ends[end.end_point.id]
-        self._remove(end.end_point.id)
-        self._broadcast(frames.to_gone(b"e", end.end_point.id))
+        del self._ends[end.endpoint.id]
+        self._remove(end.endpoint.id)
+        self._broadcast(frames.to_gone(b"e", end.endpoint.id))
 
     @property
     def serves(self) -> bool:
         """Whether the hub itself answers anything."""
-        return any(isinstance(end, Server) for end in self._ends.values())
+        return any(isinstance(end, HubServer) for end in self._ends.values())
 
-    def matched(self, end_point: EndPoint) -> tuple[EndPoint, ...]:
-        """Return the processes' end points that exchange messages with one of the hub's end points."""
+    def matched(self, endpoint: GraphEndpoint) -> tuple[GraphEndpoint, ...]:
+        """Return the processes' endpoints that exchange messages with one of the hub's endpoints."""
         graph = self.graph
-        if end_point.kind == SERVER:
-            clients = graph.of_program(end_point.name, CLIENT)
-            return tuple(client for client in clients if client.type == end_point.type)
-        others = {PUBLISHER: graph.readers, SUBSCRIPTION: graph.writers, CLIENT: graph.servers}[end_point.kind]
-        return tuple(other for other in others(end_point) if other.process != HUB)
+        if endpoint.kind == SERVER:
+            clients = graph.of_program(endpoint.name, CLIENT)
+            return tuple(client for client in clients if client.type == endpoint.type)
+        others = {PUBLISHER: graph.readers, SUBSCRIPTION: graph.writers, CLIENT: graph.servers}[endpoint.kind]
+        return tuple(other for other in others(endpoint) if other.process != HUB)
 
-    def publish(self, publisher: Publisher, cdr: bytes) -> int:
+    def publish(self, publisher: HubPublisher, cdr: bytes) -> int:
         """Queue a message for every process that it is for, or may be for by the time it arrives."""
         self.published += 1
         self._at_once.begin()
@@ -377,19 +386,19 @@ class Router:
             self._certain = self.published
         source_time = self._calendar()
         publisher.history.append((source_time, cdr))
-        frame = frames.to_data(publisher.end_point.id, 0, source_time, cdr)
-        processes = {reader.process for reader in self.graph.readers(publisher.end_point)}
+        frame = frames.to_data(publisher.endpoint.id, 0, source_time, cdr)
+        processes = {reader.process for reader in self.graph.readers(publisher.endpoint)}
         for link in self.links:
             if link.joined and (link.number in processes or link.idle is None):
                 link.queue(frame)
             link.mark(self.published)
         return self.published
 
-    def request(self, client: Client, number: int, cdr: bytes) -> bool:
+    def request(self, client: HubClient, number: int, cdr: bytes) -> bool:
         """Queue a request; return False if it has no server."""
-        servers = self.matched(client.end_point)
+        servers = self.matched(client.endpoint)
         for server in servers:
-            self._ask(None, server, client.end_point.id, number, self._calendar(), cdr)
+            self._ask(None, server, client.endpoint.id, number, self._calendar(), cdr)
         return bool(servers)
 
     def respond(self, client: int, number: int, cdr: bytes) -> None:

@@ -14,27 +14,27 @@ int64_t after(const rmw_time_t & time) {
 }
 
 template<typename Status>
-void count(EndPoint & end_point, Status & status, rmw_event_type_t type) {
+void count(Endpoint & endpoint, Status & status, rmw_event_type_t type) {
   ++status.total_count;
   ++status.total_count_change;
-  end_point.events.raise(type);
+  endpoint.events.raise(type);
 }
 
-void miss_deadline(EndPoint & end_point) {
-  end_point.next_deadline += nanoseconds(end_point.qos.deadline);
-  auto & events = end_point.events;
-  if (end_point.kind == Kind::publisher) count(end_point, events.offered_deadline, RMW_EVENT_OFFERED_DEADLINE_MISSED);
-  else count(end_point, events.requested_deadline, RMW_EVENT_REQUESTED_DEADLINE_MISSED);
+void miss_deadline(Endpoint & endpoint) {
+  endpoint.next_deadline += nanoseconds(endpoint.qos.deadline);
+  auto & events = endpoint.events;
+  if (endpoint.kind == Kind::publisher) count(endpoint, events.offered_deadline, RMW_EVENT_OFFERED_DEADLINE_MISSED);
+  else count(endpoint, events.requested_deadline, RMW_EVENT_REQUESTED_DEADLINE_MISSED);
 }
 
-bool by_hand(const EndPoint & publisher) {
+bool by_hand(const Endpoint & publisher) {
   return publisher.qos.liveliness == RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC;
 }
 
 }  // namespace
 
 // A publisher asserts that it is alive, by publishing or by `assert_liveliness`.
-void Graph::assert_liveliness(EndPoint & publisher) {
+void Graph::assert_liveliness(Endpoint & publisher) {
   if (!by_hand(publisher)) return;
   publisher.asserted = true;
   publisher.alive_until = after(publisher.qos.liveliness_lease_duration);
@@ -44,17 +44,17 @@ void Graph::assert_liveliness(EndPoint & publisher) {
 
 // The same, received by this process's subscriptions.
 void Graph::publisher_is_alive(uint64_t id) {
-  EndPoint * publisher = find(id);
+  Endpoint * publisher = find(id);
   if (!publisher) return;
   publisher->asserted = true;
-  for (EndPoint * other : named(publisher->name))
+  for (Endpoint * other : named(publisher->name))
     if (other->local && other->publishers.count(id)) subscription_got(*other, id);
   notify();
 }
 
 // A subscription gets news of a publisher: it is alive, and its message is in time.
-void Graph::subscription_got(EndPoint & subscription, uint64_t id) {
-  const EndPoint * publisher = find(id);
+void Graph::subscription_got(Endpoint & subscription, uint64_t id) {
+  const Endpoint * publisher = find(id);
   auto known = subscription.publishers.find(id);
   if (!publisher || known == subscription.publishers.end()) return;
   Matched & alive = known->second;
@@ -70,7 +70,7 @@ void Graph::subscription_got(EndPoint & subscription, uint64_t id) {
   subscription.events.raise(RMW_EVENT_LIVELINESS_CHANGED);
 }
 
-void Graph::lose_publisher(EndPoint & subscription, Matched & publisher) {
+void Graph::lose_publisher(Endpoint & subscription, Matched & publisher) {
   publisher.alive = false;
   publisher.until = FOREVER;
   auto & status = subscription.events.liveliness_changed;
@@ -84,25 +84,25 @@ void Graph::lose_publisher(EndPoint & subscription, Matched & publisher) {
 int64_t Graph::next_due() const {
   int64_t next = FOREVER;
   if (!timed_) return next;
-  for (const auto & [_, end_point] : end_points_) {
-    if (!end_point->local) continue;
-    next = std::min({next, end_point->next_deadline, end_point->alive_until});
-    for (const auto & [publisher, alive] : end_point->publishers) next = std::min(next, alive.until);
+  for (const auto & [_, endpoint] : endpoints_) {
+    if (!endpoint->local) continue;
+    next = std::min({next, endpoint->next_deadline, endpoint->alive_until});
+    for (const auto & [publisher, alive] : endpoint->publishers) next = std::min(next, alive.until);
   }
   return next;
 }
 
 void Graph::due(int64_t now) {
   if (!timed_) return;
-  for (auto & [_, end_point] : end_points_) {
-    if (!end_point->local) continue;
-    while (end_point->next_deadline <= now) miss_deadline(*end_point);
-    if (end_point->alive_until <= now) {
-      end_point->alive_until = FOREVER;
-      count(*end_point, end_point->events.liveliness_lost, RMW_EVENT_LIVELINESS_LOST);
+  for (auto & [_, endpoint] : endpoints_) {
+    if (!endpoint->local) continue;
+    while (endpoint->next_deadline <= now) miss_deadline(*endpoint);
+    if (endpoint->alive_until <= now) {
+      endpoint->alive_until = FOREVER;
+      count(*endpoint, endpoint->events.liveliness_lost, RMW_EVENT_LIVELINESS_LOST);
     }
-    for (auto & [publisher, alive] : end_point->publishers)
-      if (alive.until <= now && alive.alive) lose_publisher(*end_point, alive);
+    for (auto & [publisher, alive] : endpoint->publishers)
+      if (alive.until <= now && alive.alive) lose_publisher(*endpoint, alive);
   }
   notify();
 }

@@ -60,17 +60,17 @@ void handle_node(Reader & reader) {
   if (reader.ok()) graph().add(std::move(node));
 }
 
-void handle_end_point(Reader & reader) {
-  auto end_point = std::make_unique<EndPoint>();
-  end_point->id = reader.get<uint64_t>();
-  end_point->kind = static_cast<Kind>(reader.get<uint8_t>());
-  end_point->node = reader.get<uint64_t>();
-  end_point->name = reader.text();
-  end_point->type = reader.text();
-  end_point->hash.version = reader.get<uint8_t>();
-  reader.raw(end_point->hash.value, sizeof end_point->hash.value);
-  end_point->qos = get_qos(reader);
-  if (reader.ok() && !graph().find(end_point->id)) graph().add(std::move(end_point));
+void handle_endpoint(Reader & reader) {
+  auto endpoint = std::make_unique<Endpoint>();
+  endpoint->id = reader.get<uint64_t>();
+  endpoint->kind = static_cast<Kind>(reader.get<uint8_t>());
+  endpoint->node = reader.get<uint64_t>();
+  endpoint->name = reader.text();
+  endpoint->type = reader.text();
+  endpoint->hash.version = reader.get<uint8_t>();
+  reader.raw(endpoint->hash.value, sizeof endpoint->hash.value);
+  endpoint->qos = get_qos(reader);
+  if (reader.ok() && !graph().find(endpoint->id)) graph().add(std::move(endpoint));
 }
 
 void handle_data(Reader & reader) {
@@ -78,7 +78,7 @@ void handle_data(Reader & reader) {
   Message message;
   message.from = publisher;
   message.sent = reader.get<int64_t>();
-  const EndPoint * from = graph().find(publisher);
+  const Endpoint * from = graph().find(publisher);
   if (!reader.ok() || !from) return;
   message.bytes = rest_of(reader);
   graph().deliver(*from, message, only);
@@ -91,7 +91,7 @@ void handle_replayed(Reader & reader) {
 
 // To a server: its identity, the client's, the number. To a client: its identity and the number.
 void handle_call(Reader & reader, Kind kind) {
-  EndPoint * receiver = graph().find(reader.get<uint64_t>());
+  Endpoint * receiver = graph().find(reader.get<uint64_t>());
   Message message;
   if (kind == Kind::server) message.from = reader.get<uint64_t>();
   message.number = reader.get<int64_t>();
@@ -111,12 +111,12 @@ void send_node(const Node & node) {
   send('N', [&](Writer & writer) { writer.put<uint64_t>(node.id).text(node.name).text(node.name_space); });
 }
 
-void send_end_point(const EndPoint & end_point) {
+void send_endpoint(const Endpoint & endpoint) {
   send('E', [&](Writer & writer) {
-    writer.put<uint64_t>(end_point.id).put<uint8_t>(static_cast<uint8_t>(end_point.kind)).put<uint64_t>(end_point.node);
-    writer.text(end_point.name).text(end_point.type).put<uint8_t>(end_point.hash.version);
-    writer.raw(end_point.hash.value, sizeof end_point.hash.value);
-    put_qos(writer, end_point.qos);
+    writer.put<uint64_t>(endpoint.id).put<uint8_t>(static_cast<uint8_t>(endpoint.kind)).put<uint64_t>(endpoint.node);
+    writer.text(endpoint.name).text(endpoint.type).put<uint8_t>(endpoint.hash.version);
+    writer.raw(endpoint.hash.value, sizeof endpoint.hash.value);
+    put_qos(writer, endpoint.qos);
   });
 }
 
@@ -172,7 +172,7 @@ void Graph::handle(const uint8_t * frame, size_t size) {
   switch (frame[0]) {
     case 'N': handle_node(reader); break;
     case 'n': remove_node(reader.get<uint64_t>()); break;
-    case 'E': handle_end_point(reader); break;
+    case 'E': handle_endpoint(reader); break;
     case 'e': remove(reader.get<uint64_t>()); break;
     case 'g': complete_ = 1; break;
     case 'D': handle_data(reader); break;
@@ -208,9 +208,9 @@ void Graph::forget_hub() {
   waiters.clear();
   std::vector<uint64_t> nodes, ends;
   for (auto & [id, node] : nodes_) if (!node->local) nodes.push_back(id);
-  for (auto & [id, end_point] : end_points_) {
-    end_point->announced = false;
-    if (!end_point->local) ends.push_back(id);
+  for (auto & [id, endpoint] : endpoints_) {
+    endpoint->announced = false;
+    if (!endpoint->local) ends.push_back(id);
   }
   for (const uint64_t id : ends) remove(id);
   for (const uint64_t id : nodes) nodes_.erase(id);

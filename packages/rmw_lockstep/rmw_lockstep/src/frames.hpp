@@ -1,7 +1,7 @@
 // What this process and the hub say to one another about the graph: see PROTOCOL.md.
 #pragma once
 
-#include "end_points.hpp"
+#include "endpoints.hpp"
 
 namespace rmw_lockstep {
 
@@ -11,7 +11,7 @@ namespace frames {
 
 void send_join();
 void send_node(const Node & node);
-void send_end_point(const EndPoint & end_point);
+void send_endpoint(const Endpoint & endpoint);
 void send_gone(char kind, uint64_t id);
 void send_alive(uint64_t publisher);
 void send_data(uint64_t publisher, uint64_t only, const Message & message);

@@ -10,8 +10,8 @@ namespace {
 
 int64_t time_of(const rmw_time_t & time) { return nanoseconds(time); }
 
-bool has_times(const EndPoint & end_point) {
-  return time_of(end_point.qos.deadline) != FOREVER || time_of(end_point.qos.liveliness_lease_duration) != FOREVER;
+bool has_times(const Endpoint & endpoint) {
+  return time_of(endpoint.qos.deadline) != FOREVER || time_of(endpoint.qos.liveliness_lease_duration) != FOREVER;
 }
 
 }  // namespace
@@ -42,46 +42,46 @@ void Graph::remove_node(uint64_t id) {
   changed();
 }
 
-EndPoint & Graph::add(std::unique_ptr<EndPoint> owned) {
-  EndPoint & end_point = *owned;
-  end_points_[end_point.id] = std::move(owned);
-  timed_ += has_times(end_point);
-  if (end_point.local) announce(end_point);
-  const auto others = named(end_point.name);
-  by_name_[end_point.name].push_back(&end_point);
-  for (EndPoint * other : others) match(end_point, *other);
+Endpoint & Graph::add(std::unique_ptr<Endpoint> owned) {
+  Endpoint & endpoint = *owned;
+  endpoints_[endpoint.id] = std::move(owned);
+  timed_ += has_times(endpoint);
+  if (endpoint.local) announce(endpoint);
+  const auto others = named(endpoint.name);
+  by_name_[endpoint.name].push_back(&endpoint);
+  for (Endpoint * other : others) match(endpoint, *other);
   changed();
-  return end_point;
+  return endpoint;
 }
 
-void Graph::announce(EndPoint & end_point) {
+void Graph::announce(Endpoint & endpoint) {
   if (!joined_) return;
-  frames::send_end_point(end_point);
-  end_point.announced = true;
+  frames::send_endpoint(endpoint);
+  endpoint.announced = true;
 }
 
 void Graph::remove(uint64_t id) {
-  auto found = end_points_.find(id);
-  if (found == end_points_.end()) return;
-  EndPoint & end_point = *found->second;
-  auto & list = by_name_[end_point.name];
-  list.erase(std::find(list.begin(), list.end(), &end_point));
-  for (EndPoint * other : list) unmatch(*other, end_point);
-  if (list.empty()) by_name_.erase(end_point.name);
-  timed_ -= has_times(end_point);
-  if (end_point.announced) frames::send_gone('e', id);
-  end_points_.erase(found);
+  auto found = endpoints_.find(id);
+  if (found == endpoints_.end()) return;
+  Endpoint & endpoint = *found->second;
+  auto & list = by_name_[endpoint.name];
+  list.erase(std::find(list.begin(), list.end(), &endpoint));
+  for (Endpoint * other : list) unmatch(*other, endpoint);
+  if (list.empty()) by_name_.erase(endpoint.name);
+  timed_ -= has_times(endpoint);
+  if (endpoint.announced) frames::send_gone('e', id);
+  endpoints_.erase(found);
   changed();
 }
 
-EndPoint * Graph::find(uint64_t id) const {
-  auto found = end_points_.find(id);
-  return found == end_points_.end() ? nullptr : found->second.get();
+Endpoint * Graph::find(uint64_t id) const {
+  auto found = endpoints_.find(id);
+  return found == endpoints_.end() ? nullptr : found->second.get();
 }
 
-std::vector<EndPoint *> Graph::named(const std::string & name) const {
+std::vector<Endpoint *> Graph::named(const std::string & name) const {
   auto found = by_name_.find(name);
-  return found == by_name_.end() ? std::vector<EndPoint *>() : found->second;
+  return found == by_name_.end() ? std::vector<Endpoint *>() : found->second;
 }
 
 void Graph::changed() {
@@ -95,13 +95,13 @@ void Graph::changed() {
 
 namespace {
 
-struct Pair { EndPoint & publisher; EndPoint & subscription; };
+struct Pair { Endpoint & publisher; Endpoint & subscription; };
 
-Pair pair_of(EndPoint & one, EndPoint & other) {
+Pair pair_of(Endpoint & one, Endpoint & other) {
   return one.kind == Kind::publisher ? Pair{one, other} : Pair{other, one};
 }
 
-bool connected(const EndPoint & one, const EndPoint & other) {
+bool connected(const Endpoint & one, const Endpoint & other) {
   if (!same_topic(one, other) || one.type != other.type) return false;
   const bool first = one.kind == Kind::publisher;
   return compatible(first ? one.qos : other.qos, first ? other.qos : one.qos);
@@ -109,11 +109,11 @@ bool connected(const EndPoint & one, const EndPoint & other) {
 
 }  // namespace
 
-void Graph::match(EndPoint & one, EndPoint & other) {
+void Graph::match(Endpoint & one, Endpoint & other) {
   if (!same_topic(one, other) || (!one.local && !other.local)) return;
   auto [publisher, subscription] = pair_of(one, other);
   if (publisher.type != subscription.type) {
-    for (EndPoint * end : {&publisher, &subscription}) {
+    for (Endpoint * end : {&publisher, &subscription}) {
       if (!end->local) continue;
       auto & status = end->events.incompatible_type;
       ++status.total_count;
@@ -140,7 +140,7 @@ void Graph::match(EndPoint & one, EndPoint & other) {
   if (publisher.local) replay(publisher, subscription);
 }
 
-void Graph::unmatch(EndPoint & stays, const EndPoint & goes) {
+void Graph::unmatch(Endpoint & stays, const Endpoint & goes) {
   if (!stays.local || !connected(stays, goes)) return;
   matched_changed(stays, -1);
   if (stays.kind != Kind::subscription) return;
@@ -153,28 +153,28 @@ void Graph::unmatch(EndPoint & stays, const EndPoint & goes) {
   stays.publishers.erase(found);
 }
 
-void Graph::matched_changed(EndPoint & end_point, int by) {
-  if (!end_point.local) return;
-  auto & status = end_point.events.matched;
+void Graph::matched_changed(Endpoint & endpoint, int by) {
+  if (!endpoint.local) return;
+  auto & status = endpoint.events.matched;
   if (by > 0) { ++status.total_count; ++status.total_count_change; }
   status.current_count += by;
   status.current_count_change += by;
-  end_point.events.raise(
-      end_point.kind == Kind::publisher ? RMW_EVENT_PUBLICATION_MATCHED : RMW_EVENT_SUBSCRIPTION_MATCHED);
+  endpoint.events.raise(
+      endpoint.kind == Kind::publisher ? RMW_EVENT_PUBLICATION_MATCHED : RMW_EVENT_SUBSCRIPTION_MATCHED);
 }
 
-void Graph::incompatible(EndPoint & end_point, rmw_qos_policy_kind_t policy) {
-  if (!end_point.local) return;
-  auto & status = end_point.events.incompatible_qos;
+void Graph::incompatible(Endpoint & endpoint, rmw_qos_policy_kind_t policy) {
+  if (!endpoint.local) return;
+  auto & status = endpoint.events.incompatible_qos;
   ++status.total_count;
   ++status.total_count_change;
   status.last_policy_kind = policy;
-  end_point.events.raise(end_point.kind == Kind::publisher ? RMW_EVENT_OFFERED_QOS_INCOMPATIBLE
+  endpoint.events.raise(endpoint.kind == Kind::publisher ? RMW_EVENT_OFFERED_QOS_INCOMPATIBLE
                                                            : RMW_EVENT_REQUESTED_QOS_INCOMPATIBLE);
 }
 
 // What a transient-local publisher has kept is sent to a transient-local subscription that joins late.
-void Graph::replay(EndPoint & publisher, const EndPoint & subscription) {
+void Graph::replay(Endpoint & publisher, const Endpoint & subscription) {
   if (!is_transient_local(subscription.qos)) return;
   for (const Message & message : publisher.history) {
     if (message.expires <= lockstep_now()) continue;
@@ -185,27 +185,27 @@ void Graph::replay(EndPoint & publisher, const EndPoint & subscription) {
 }
 
 void Graph::replayed(uint64_t publisher, uint64_t subscription) {
-  EndPoint * end_point = find(subscription);
-  if (!end_point) return;
-  auto found = end_point->publishers.find(publisher);
-  if (found != end_point->publishers.end()) found->second.replays = false;
+  Endpoint * endpoint = find(subscription);
+  if (!endpoint) return;
+  auto found = endpoint->publishers.find(publisher);
+  if (found != endpoint->publishers.end()) found->second.replays = false;
 }
 
-size_t Graph::matched(const EndPoint & end_point) const {
-  const auto others = named(end_point.name);
-  return std::count_if(others.begin(), others.end(), [&](EndPoint * other) { return connected(end_point, *other); });
+size_t Graph::matched(const Endpoint & endpoint) const {
+  const auto others = named(endpoint.name);
+  return std::count_if(others.begin(), others.end(), [&](Endpoint * other) { return connected(endpoint, *other); });
 }
 
-bool Graph::heard_elsewhere(const EndPoint & publisher) const {
+bool Graph::heard_elsewhere(const Endpoint & publisher) const {
   const auto others = named(publisher.name);
-  return std::any_of(others.begin(), others.end(), [&](EndPoint * other) {
+  return std::any_of(others.begin(), others.end(), [&](Endpoint * other) {
     return !other->local && connected(publisher, *other);
   });
 }
 
-bool Graph::server_is_there(const EndPoint & client) const {
+bool Graph::server_is_there(const Endpoint & client) const {
   const auto others = named(client.name);
-  return std::any_of(others.begin(), others.end(), [&](EndPoint * other) {
+  return std::any_of(others.begin(), others.end(), [&](Endpoint * other) {
     return other->kind == Kind::server && other->type == client.type;
   });
 }
@@ -218,7 +218,7 @@ bool Waiter::ready(bool guards_count) const {
       if (auto guard = static_cast<const Guard *>(guards->guard_conditions[i]); guard && guard->triggered) return true;
   auto any = [](size_t count, void * const * items) {
     for (size_t i = 0; i < count; ++i)
-      if (auto end_point = static_cast<const EndPoint *>(items[i]); end_point && !end_point->queue.empty()) return true;
+      if (auto endpoint = static_cast<const Endpoint *>(items[i]); endpoint && !endpoint->queue.empty()) return true;
     return false;
   };
   if (subscriptions && any(subscriptions->subscriber_count, subscriptions->subscribers)) return true;
@@ -226,7 +226,7 @@ bool Waiter::ready(bool guards_count) const {
   if (clients && any(clients->client_count, clients->clients)) return true;
   for (size_t i = 0; events && i < events->event_count; ++i) {
     auto event = static_cast<const rmw_event_t *>(events->events[i]);
-    if (event && static_cast<const EndPoint *>(event->data)->events.pending[event->event_type]) return true;
+    if (event && static_cast<const Endpoint *>(event->data)->events.pending[event->event_type]) return true;
   }
   return false;
 }

@@ -1,4 +1,4 @@
-// All that this process knows of the ROS graph, and what passes between its end points.
+// All that this process knows of the ROS graph, and what passes between its endpoints.
 //
 // Everything is called with the library's lock held (`Lock`).
 #pragma once
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "../lockstep/lockstep.h"
-#include "end_points.hpp"
+#include "endpoints.hpp"
 #include "guards.hpp"
 
 namespace rmw_lockstep {
@@ -54,26 +54,26 @@ public:
   // ---- what there is
   void add(std::unique_ptr<Node> node);
   void remove_node(uint64_t id);
-  EndPoint & add(std::unique_ptr<EndPoint> end_point);
+  Endpoint & add(std::unique_ptr<Endpoint> endpoint);
   void remove(uint64_t id);
   const std::map<uint64_t, std::unique_ptr<Node>> & nodes() const { return nodes_; }
-  const std::map<uint64_t, std::unique_ptr<EndPoint>> & end_points() const { return end_points_; }
-  EndPoint * find(uint64_t id) const;
-  std::vector<EndPoint *> named(const std::string & name) const;
-  size_t matched(const EndPoint & end_point) const;
-  bool server_is_there(const EndPoint & client) const;
+  const std::map<uint64_t, std::unique_ptr<Endpoint>> & endpoints() const { return endpoints_; }
+  Endpoint * find(uint64_t id) const;
+  std::vector<Endpoint *> named(const std::string & name) const;
+  size_t matched(const Endpoint & endpoint) const;
+  bool server_is_there(const Endpoint & client) const;
 
   // ---- messages
-  void publish(EndPoint & publisher, Bytes bytes);
-  void deliver(const EndPoint & publisher, const Message & message, uint64_t only = 0);
-  void request(EndPoint & client, Bytes bytes);
+  void publish(Endpoint & publisher, Bytes bytes);
+  void deliver(const Endpoint & publisher, const Message & message, uint64_t only = 0);
+  void request(Endpoint & client, Bytes bytes);
   void respond(uint64_t client, int64_t number, Bytes bytes);
   void replayed(uint64_t publisher, uint64_t subscription);  // what comes from it now is new
-  void enqueue(EndPoint & receiver, Message message);
-  bool take(EndPoint & receiver, Message & message);
+  void enqueue(Endpoint & receiver, Message message);
+  bool take(Endpoint & receiver, Message & message);
 
   // ---- time
-  void assert_liveliness(EndPoint & publisher);
+  void assert_liveliness(Endpoint & publisher);
   void publisher_is_alive(uint64_t publisher);
   int64_t next_due() const;
   void due(int64_t now);
@@ -85,27 +85,27 @@ public:
 
   // ---- the hub
   void handle(const uint8_t * frame, size_t size);
-  void announce(EndPoint & end_point);
+  void announce(Endpoint & endpoint);
   void join();
   void forget_hub();
 
 private:
   void changed();
-  void match(EndPoint & one, EndPoint & other);
-  void unmatch(EndPoint & stays, const EndPoint & goes);
-  void matched_changed(EndPoint & end_point, int by);
-  void incompatible(EndPoint & end_point, rmw_qos_policy_kind_t policy);
-  void replay(EndPoint & publisher, const EndPoint & subscription);
-  bool heard_elsewhere(const EndPoint & publisher) const;
-  void sent(EndPoint & sender, bool elsewhere);
-  void subscription_got(EndPoint & subscription, uint64_t publisher);
-  void lose_publisher(EndPoint & subscription, Matched & publisher);
+  void match(Endpoint & one, Endpoint & other);
+  void unmatch(Endpoint & stays, const Endpoint & goes);
+  void matched_changed(Endpoint & endpoint, int by);
+  void incompatible(Endpoint & endpoint, rmw_qos_policy_kind_t policy);
+  void replay(Endpoint & publisher, const Endpoint & subscription);
+  bool heard_elsewhere(const Endpoint & publisher) const;
+  void sent(Endpoint & sender, bool elsewhere);
+  void subscription_got(Endpoint & subscription, uint64_t publisher);
+  void lose_publisher(Endpoint & subscription, Matched & publisher);
 
   std::map<uint64_t, std::unique_ptr<Node>> nodes_;
-  std::map<uint64_t, std::unique_ptr<EndPoint>> end_points_;
-  std::unordered_map<std::string, std::vector<EndPoint *>> by_name_;
+  std::map<uint64_t, std::unique_ptr<Endpoint>> endpoints_;
+  std::unordered_map<std::string, std::vector<Endpoint *>> by_name_;
   uint64_t last_id_ = 0;
-  int timed_ = 0;             // end points with a deadline or a lease
+  int timed_ = 0;             // endpoints with a deadline or a lease
   volatile int complete_ = 0;
   bool joined_ = false;
 };

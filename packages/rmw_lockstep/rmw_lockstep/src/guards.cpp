@@ -7,7 +7,7 @@
 namespace rmw_lockstep {
 namespace {
 
-constexpr int FOR_CALLBACK = 2, FOR_END_POINT = 1;
+constexpr int FOR_CALLBACK = 2, FOR_ENDPOINT = 1;
 
 // An executor to which its first node was added.
 constexpr uint64_t BEFORE_FIRST_WAIT = 1;
@@ -39,7 +39,7 @@ void Guard::trigger(uint32_t by) {
 }
 
 void expect_callback() { expected += FOR_CALLBACK; }
-void expect_end_point() { expected += FOR_END_POINT; }
+void expect_endpoint() { expected += FOR_ENDPOINT; }
 
 bool wakes_only_itself(const rmw_guard_conditions_t & guards) {
   int count = 0;

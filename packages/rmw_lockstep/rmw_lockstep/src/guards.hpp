@@ -19,11 +19,11 @@ struct Guard {
   uint64_t expected = 0;
 };
 
-// The calling thread has taken a message, or made an end point. An executor triggers its guard condition twice for each
+// The calling thread has taken a message, or made an endpoint. An executor triggers its guard condition twice for each
 // callback that does not await anything: when it has taken the message, and afterwards (rclpy/executors.py,
-// `_make_handler`). It triggers it once for each end point (rclpy/node.py, `_wake_executor`).
+// `_make_handler`). It triggers it once for each endpoint (rclpy/node.py, `_wake_executor`).
 void expect_callback();
-void expect_end_point();
+void expect_endpoint();
 
 // To be called whenever a thread begins to wait. Whether the executor in this thread has triggered its guard condition,
 // and would find nothing to do if that woke it: it has run callbacks, and whatever it does besides (such as starting a

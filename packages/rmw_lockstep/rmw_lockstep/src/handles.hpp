@@ -1,4 +1,4 @@
-// What publishers, subscriptions, clients and servers have in common as rmw hands them out: their data is an end point.
+// What publishers, subscriptions, clients and servers have in common as rmw hands them out: their data is an endpoint.
 #pragma once
 
 #include "checks.hpp"
@@ -10,7 +10,7 @@
 namespace rmw_lockstep {
 
 template<typename Handle>
-EndPoint & of(const Handle * handle) { return *static_cast<EndPoint *>(handle->data); }
+Endpoint & of(const Handle * handle) { return *static_cast<Endpoint *>(handle->data); }
 
 template<typename Handle>
 auto name_of(Handle & handle) -> decltype((handle.topic_name)) { return handle.topic_name; }
@@ -18,11 +18,11 @@ auto name_of(Handle & handle) -> decltype((handle.topic_name)) { return handle.t
 template<typename Handle>
 auto name_of(Handle & handle) -> decltype((handle.service_name)) { return handle.service_name; }
 
-// An end point of this process, which no graph has yet.
+// An endpoint of this process, which no graph has yet.
 template<typename Type>
-std::unique_ptr<EndPoint> local_end_point(
+std::unique_ptr<Endpoint> local_endpoint(
     Kind kind, const rmw_node_t * node, const Type & type, const char * name, const rmw_qos_profile_t & qos) {
-  auto made = std::make_unique<EndPoint>();
+  auto made = std::make_unique<Endpoint>();
   made->kind = kind;
   made->local = true;
   made->node = static_cast<Node *>(node->data)->id;

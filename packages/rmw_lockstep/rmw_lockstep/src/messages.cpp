@@ -1,4 +1,4 @@
-// How messages, requests and responses get from one end point to another.
+// How messages, requests and responses get from one endpoint to another.
 #include <algorithm>
 
 #include "frames.hpp"
@@ -8,18 +8,18 @@
 namespace rmw_lockstep {
 namespace {
 
-bool bounded(const EndPoint & end_point) { return end_point.qos.history != RMW_QOS_POLICY_HISTORY_KEEP_ALL; }
+bool bounded(const Endpoint & endpoint) { return endpoint.qos.history != RMW_QOS_POLICY_HISTORY_KEEP_ALL; }
 
-void keep_last(std::deque<Message> & messages, const EndPoint & end_point) {
-  while (bounded(end_point) && messages.size() > end_point.qos.depth) messages.pop_front();
+void keep_last(std::deque<Message> & messages, const Endpoint & endpoint) {
+  while (bounded(endpoint) && messages.size() > endpoint.qos.depth) messages.pop_front();
 }
 
-int64_t expiry(const EndPoint & publisher) {
+int64_t expiry(const Endpoint & publisher) {
   const int64_t lifespan = nanoseconds(publisher.qos.lifespan);
   return lifespan == FOREVER ? FOREVER : lockstep_now() + lifespan;
 }
 
-bool accepts(const EndPoint & subscription, const EndPoint & publisher, uint64_t only) {
+bool accepts(const Endpoint & subscription, const Endpoint & publisher, uint64_t only) {
   return subscription.local && subscription.kind == Kind::subscription && (!only || subscription.id == only) &&
          subscription.type == publisher.type && !(subscription.ignores_local && publisher.local) &&
          compatible(publisher.qos, subscription.qos);
@@ -32,14 +32,14 @@ constexpr uint32_t REPORTED = 100;
 constexpr char LOG[] = "/rosout";
 
 // Whether a message is part of the replay that is on its way: taken now, it would come twice, and before older ones.
-bool comes_later(const EndPoint & subscription, const EndPoint & publisher, uint64_t only) {
+bool comes_later(const Endpoint & subscription, const Endpoint & publisher, uint64_t only) {
   const auto found = subscription.publishers.find(publisher.id);
   return !only && found != subscription.publishers.end() && found->second.replays;
 }
 
 }  // namespace
 
-void Graph::publish(EndPoint & publisher, Bytes bytes) {
+void Graph::publish(Endpoint & publisher, Bytes bytes) {
   ++activity;
   Message message{std::move(bytes), publisher.id, ++publisher.last_number, lockstep_calendar(), 0, expiry(publisher)};
   if (is_transient_local(publisher.qos)) {
@@ -57,7 +57,7 @@ void Graph::publish(EndPoint & publisher, Bytes bytes) {
 }
 
 // Without this a node that answers its own messages would be busy for ever, and the hub would not know with what.
-void Graph::sent(EndPoint & sender, bool elsewhere) {
+void Graph::sent(Endpoint & sender, bool elsewhere) {
   if (sender.name == LOG) return;
   lockstep_sent();
   if (elsewhere || !sender.announced) return;
@@ -68,8 +68,8 @@ void Graph::sent(EndPoint & sender, bool elsewhere) {
   sender.kept_here = 0;
 }
 
-void Graph::deliver(const EndPoint & publisher, const Message & message, uint64_t only) {
-  for (EndPoint * other : named(publisher.name)) {
+void Graph::deliver(const Endpoint & publisher, const Message & message, uint64_t only) {
+  for (Endpoint * other : named(publisher.name)) {
     if (!accepts(*other, publisher, only) || comes_later(*other, publisher, only)) continue;
     subscription_got(*other, publisher.id);
     Message copy = message;
@@ -78,11 +78,11 @@ void Graph::deliver(const EndPoint & publisher, const Message & message, uint64_
   }
 }
 
-void Graph::request(EndPoint & client, Bytes bytes) {
+void Graph::request(Endpoint & client, Bytes bytes) {
   ++activity;
   const Message message{std::move(bytes), client.id, ++client.last_number, lockstep_calendar()};
   bool elsewhere = false;
-  for (EndPoint * other : named(client.name)) {
+  for (Endpoint * other : named(client.name)) {
     if (other->kind != Kind::server || other->type != client.type) continue;
     if (other->local) enqueue(*other, message);
     else elsewhere = true;
@@ -96,13 +96,13 @@ void Graph::request(EndPoint & client, Bytes bytes) {
 void Graph::respond(uint64_t client, int64_t number, Bytes bytes) {
   ++activity;
   const Message message{std::move(bytes), client, number, lockstep_calendar()};
-  EndPoint * receiver = find(client);
+  Endpoint * receiver = find(client);
   if (receiver && receiver->local) enqueue(*receiver, message);
   else if (receiver && joined_) frames::send_response(message);
   notify();
 }
 
-void Graph::enqueue(EndPoint & receiver, Message message) {
+void Graph::enqueue(Endpoint & receiver, Message message) {
   ++activity;
   message.received = lockstep_calendar();
   receiver.queue.push_back(std::move(message));
@@ -110,7 +110,7 @@ void Graph::enqueue(EndPoint & receiver, Message message) {
   receiver.listener.tell();
 }
 
-bool Graph::take(EndPoint & receiver, Message & message) {
+bool Graph::take(Endpoint & receiver, Message & message) {
   while (!receiver.queue.empty()) {
     message = std::move(receiver.queue.front());
     receiver.queue.pop_front();

@@ -25,7 +25,7 @@ inline bool compatible(const rmw_qos_profile_t & offered, const rmw_qos_profile_
 }
 
 // Replaces "system default", "best available" and "unspecified" by actual values; `peers` are the profiles of the
-// current end points at the other end.
+// current endpoints at the other end.
 void settle(rmw_qos_profile_t & profile, bool of_subscription, const std::vector<rmw_qos_profile_t> & peers);
 
 }  // namespace rmw_lockstep

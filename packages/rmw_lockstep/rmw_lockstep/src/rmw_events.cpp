@@ -8,15 +8,15 @@ using namespace rmw_lockstep;
 
 namespace {
 
-rmw_ret_t init_event(rmw_event_t * event, const char * identifier, void * end_point, rmw_event_type_t type) {
+rmw_ret_t init_event(rmw_event_t * event, const char * identifier, void * endpoint, rmw_event_type_t type) {
   REQUIRE(event);
   if (!is_ours(identifier)) {
-    RMW_SET_ERROR_MSG("the end point is of another middleware");
+    RMW_SET_ERROR_MSG("the endpoint is of another middleware");
     return RMW_RET_INCORRECT_RMW_IMPLEMENTATION;
   }
   if (!rmw_event_type_is_supported(type)) UNSUPPORTED("this type of event");
   event->implementation_identifier = IDENTIFIER;
-  event->data = end_point;
+  event->data = endpoint;
   event->event_type = type;
   return RMW_RET_OK;
 }
@@ -55,7 +55,7 @@ void hand_over(Events & events, rmw_event_type_t type, void * out) {
   }
 }
 
-EndPoint & of(const rmw_event_t * event) { return *static_cast<EndPoint *>(event->data); }
+Endpoint & of(const rmw_event_t * event) { return *static_cast<Endpoint *>(event->data); }
 
 }  // namespace
 

@@ -54,8 +54,8 @@ rmw_ret_t all_names(const rmw_node_t * node, rcutils_allocator_t * allocator, rm
   Names names;
   {
     Lock lock;
-    for (const auto & [_, end_point] : graph().end_points())
-      if (topics ? end_point->is_topic() : end_point->kind == Kind::server) names[end_point->name].insert(end_point->type);
+    for (const auto & [_, endpoint] : graph().endpoints())
+      if (topics ? endpoint->is_topic() : endpoint->kind == Kind::server) names[endpoint->name].insert(endpoint->type);
   }
   return give(names, allocator, out);
 }
@@ -83,8 +83,8 @@ rmw_ret_t names_of(
     Lock lock;
     for (const auto & [id, other] : graph().nodes())
       if (other->name == name && other->name_space == name_space) nodes.insert(id);
-    for (const auto & [_, end_point] : graph().end_points())
-      if (end_point->kind == kind && nodes.count(end_point->node)) names[end_point->name].insert(end_point->type);
+    for (const auto & [_, endpoint] : graph().endpoints())
+      if (endpoint->kind == kind && nodes.count(endpoint->node)) names[endpoint->name].insert(endpoint->type);
   }
   if (!nodes.empty()) return give(names, allocator, out);
   RMW_SET_ERROR_MSG("there is no such node");
@@ -102,33 +102,33 @@ rmw_ret_t count(const rmw_node_t * node, const char * name, size_t * number, Kin
   }
   Lock lock;
   *number = 0;
-  for (const EndPoint * end_point : graph().named(name)) *number += end_point->kind == kind;
+  for (const Endpoint * endpoint : graph().named(name)) *number += endpoint->kind == kind;
   return RMW_RET_OK;
 }
 
-struct Named { const EndPoint * end_point; std::string node, name_space; };
+struct Named { const Endpoint * endpoint; std::string node, name_space; };
 
 rmw_ret_t describe(const Named & named, rcutils_allocator_t * allocator, rmw_topic_endpoint_info_t * info) {
-  const EndPoint & end_point = *named.end_point;
+  const Endpoint & endpoint = *named.endpoint;
   uint8_t gid[RMW_GID_STORAGE_SIZE];
-  write_gid(end_point.id, gid);
-  const auto type = end_point.kind == Kind::publisher ? RMW_ENDPOINT_PUBLISHER : RMW_ENDPOINT_SUBSCRIPTION;
+  write_gid(endpoint.id, gid);
+  const auto type = endpoint.kind == Kind::publisher ? RMW_ENDPOINT_PUBLISHER : RMW_ENDPOINT_SUBSCRIPTION;
   for (const rmw_ret_t result : {
            rmw_topic_endpoint_info_set_node_name(info, named.node.c_str(), allocator),
            rmw_topic_endpoint_info_set_node_namespace(info, named.name_space.c_str(), allocator),
-           rmw_topic_endpoint_info_set_topic_type(info, end_point.type.c_str(), allocator),
-           rmw_topic_endpoint_info_set_topic_type_hash(info, &end_point.hash),
+           rmw_topic_endpoint_info_set_topic_type(info, endpoint.type.c_str(), allocator),
+           rmw_topic_endpoint_info_set_topic_type_hash(info, &endpoint.hash),
            rmw_topic_endpoint_info_set_endpoint_type(info, type),
            rmw_topic_endpoint_info_set_gid(info, gid, sizeof gid),
-           rmw_topic_endpoint_info_set_qos_profile(info, &end_point.qos)})
+           rmw_topic_endpoint_info_set_qos_profile(info, &endpoint.qos)})
     if (result != RMW_RET_OK) return result;
   return RMW_RET_OK;
 }
 
-Named with_node(const EndPoint & end_point) {
-  const auto found = graph().nodes().find(end_point.node);
-  if (found == graph().nodes().end()) return {&end_point, "_NODE_NAME_UNKNOWN_", "_NODE_NAMESPACE_UNKNOWN_"};
-  return {&end_point, found->second->name, found->second->name_space};
+Named with_node(const Endpoint & endpoint) {
+  const auto found = graph().nodes().find(endpoint.node);
+  if (found == graph().nodes().end()) return {&endpoint, "_NODE_NAME_UNKNOWN_", "_NODE_NAMESPACE_UNKNOWN_"};
+  return {&endpoint, found->second->name, found->second->name_space};
 }
 
 rmw_ret_t infos(
@@ -145,8 +145,8 @@ rmw_ret_t infos(
   if (result != RMW_RET_OK) return result;
   Lock lock;
   std::vector<Named> found;
-  for (const EndPoint * end_point : graph().named(topic))
-    if (end_point->kind == kind) found.push_back(with_node(*end_point));
+  for (const Endpoint * endpoint : graph().named(topic))
+    if (endpoint->kind == kind) found.push_back(with_node(*endpoint));
   if (found.empty()) return RMW_RET_OK;
   result = rmw_topic_endpoint_info_array_init_with_size(out, found.size(), allocator);
   for (size_t i = 0; result == RMW_RET_OK && i < found.size(); ++i)

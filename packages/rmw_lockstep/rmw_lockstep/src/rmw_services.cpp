@@ -6,7 +6,7 @@ using namespace rmw_lockstep;
 namespace {
 
 // Null, with rmw's error set, if something is missing or wrong.
-std::unique_ptr<EndPoint> end_point_of(
+std::unique_ptr<Endpoint> endpoint_of(
     Kind kind, const rmw_node_t * node, const rosidl_service_type_support_t * support, const char * name,
     const rmw_qos_profile_t * qos) {
   REQUIRE_OR_NULL(node);
@@ -15,7 +15,7 @@ std::unique_ptr<EndPoint> end_point_of(
   REQUIRE_OR_NULL(qos);
   ServiceType type;
   if (!is_ours(node->implementation_identifier) || !valid_name("service", name, *qos) || !find_type(support, type)) return nullptr;
-  auto made = local_end_point(kind, node, type, name, *qos);
+  auto made = local_endpoint(kind, node, type, name, *qos);
   made->callbacks = type.request;
   made->answer_callbacks = type.response;
   settle(made->qos, false, {});
@@ -27,17 +27,17 @@ template<typename Handle>
 Handle * create(
     Kind kind, Handle * (*allocate)(), const rmw_node_t * node, const rosidl_service_type_support_t * support,
     const char * name, const rmw_qos_profile_t * qos) {
-  auto made = end_point_of(kind, node, support, name, qos);
+  auto made = endpoint_of(kind, node, support, name, qos);
   if (!made) return nullptr;
   Handle * handle = named(allocate(), name);
   Lock lock;
   made->id = graph().new_id();
-  expect_end_point();
+  expect_endpoint();
   handle->data = &graph().add(std::move(made));
   return handle;
 }
 
-rmw_ret_t take_call(EndPoint & end_point, Callbacks callbacks, rmw_service_info_t * info, void * out, bool * taken) {
+rmw_ret_t take_call(Endpoint & endpoint, Callbacks callbacks, rmw_service_info_t * info, void * out, bool * taken) {
   REQUIRE(info);
   REQUIRE(out);
   REQUIRE(taken);
@@ -45,7 +45,7 @@ rmw_ret_t take_call(EndPoint & end_point, Callbacks callbacks, rmw_service_info_
   {
     Lock lock;
     expect_callback();
-    *taken = graph().take(end_point, message);
+    *taken = graph().take(endpoint, message);
   }
   if (!*taken) return RMW_RET_OK;
   info->source_timestamp = message.sent;

@@ -7,12 +7,12 @@ using namespace rmw_lockstep;
 
 namespace {
 
-std::unique_ptr<EndPoint> end_point_of(
+std::unique_ptr<Endpoint> endpoint_of(
     Kind kind, const rmw_node_t * node, const MessageType & type, const char * topic, const rmw_qos_profile_t & qos) {
   std::vector<rmw_qos_profile_t> peers;
-  for (const EndPoint * other : graph().named(topic))
+  for (const Endpoint * other : graph().named(topic))
     if (other->is_topic() && other->kind != kind) peers.push_back(other->qos);
-  auto made = local_end_point(kind, node, type, topic, qos);
+  auto made = local_endpoint(kind, node, type, topic, qos);
   made->id = graph().new_id();
   made->callbacks = type.callbacks;
   settle(made->qos, kind == Kind::subscription, peers);
@@ -42,9 +42,9 @@ Handle * create(
   handle->options = *options;
   handle->can_loan_messages = false;
   Lock lock;
-  auto made = end_point_of(kind, node, type, topic, *qos);
+  auto made = endpoint_of(kind, node, type, topic, *qos);
   made->ignores_local = ignores_local(*options);
-  expect_end_point();
+  expect_endpoint();
   handle->data = &graph().add(std::move(made));
   return handle;
 }

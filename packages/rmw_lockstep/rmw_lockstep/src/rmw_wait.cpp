@@ -69,7 +69,7 @@ void wait_until(Waiter & waiter, int64_t deadline) {
   while (!waiter.ready() && lockstep_now() < deadline) {
     if (lockstep_virtual()) {
       lockstep_wait(&waiter.thread, deadline);
-    } else {  // nothing else reports when a deadline of the end points has passed
+    } else {  // nothing else reports when a deadline of the endpoints has passed
       lockstep_wait(&waiter.thread, std::min(deadline, graph().next_due()));
       graph().due(lockstep_now());
     }
@@ -87,7 +87,7 @@ void rest(Waiter & waiter, int64_t deadline) {
 
 void keep_ready(size_t count, void ** items) {
   for (size_t i = 0; i < count; ++i)
-    if (auto end_point = static_cast<EndPoint *>(items[i]); end_point && end_point->queue.empty()) items[i] = nullptr;
+    if (auto endpoint = static_cast<Endpoint *>(items[i]); endpoint && endpoint->queue.empty()) items[i] = nullptr;
 }
 
 // Keeps what is ready, and sets everything else to null.
@@ -99,7 +99,7 @@ void keep_what_is_ready(Waiter & waiter) {
   if (auto events = waiter.events)
     for (size_t i = 0; i < events->event_count; ++i)
       if (auto event = static_cast<rmw_event_t *>(events->events[i]))
-        if (!static_cast<EndPoint *>(event->data)->events.pending[event->event_type]) events->events[i] = nullptr;
+        if (!static_cast<Endpoint *>(event->data)->events.pending[event->event_type]) events->events[i] = nullptr;
 }
 
 // Whether anything is ready.

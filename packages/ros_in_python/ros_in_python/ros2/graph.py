@@ -238,7 +238,7 @@ class GraphView:
         """Return when a node has discovered every client that was created here so far, or after `KNOWN` seconds.
 
         A server drops the answer to a client that it has not discovered, and a client can see that it has found
-        its server but not the reverse. End points are announced in the order of their creation, so the answer to a
+        its server but not the reverse. Endpoints are announced in the order of their creation, so the answer to a
         client created last proves that the others are known. The question, for the node's parameter names, has no
         effect and is asked again until it is answered.
         """

@@ -30,7 +30,7 @@ from ros_in_python.turtlesim.messages import (
     TeleportAbsolute,
     TeleportRelative,
 )
-from ros_in_python.turtlesim.world import World
+from ros_in_python.turtlesim.world import TurtleWorld
 
 # No message type is imported here: whatever has the fields will do.
 
@@ -51,22 +51,22 @@ def fill_color(message: Message, color: ColorReport) -> Message:
     return message
 
 
-def spawn(world: World, request: Any) -> list[Event]:
+def spawn(world: TurtleWorld, request: Any) -> list[Event]:
     """Spawn a turtle; `request` has the fields of turtlesim/srv/Spawn."""
     return world.spawn(request.x, request.y, request.theta, request.name)
 
 
-def set_pen(world: World, turtle: str, request: Any) -> list[Event]:
+def set_pen(world: TurtleWorld, turtle: str, request: Any) -> list[Event]:
     """Set a pen; `request` has the fields of turtlesim/srv/SetPen."""
     return world.set_pen(turtle, request.r, request.g, request.b, request.width, request.off)
 
 
-def teleport_absolute(world: World, turtle: str, request: Any) -> list[Event]:
+def teleport_absolute(world: TurtleWorld, turtle: str, request: Any) -> list[Event]:
     """Teleport a turtle; `request` has the fields of turtlesim/srv/TeleportAbsolute."""
     return world.teleport_absolute(turtle, request.x, request.y, request.theta)
 
 
-def teleport_relative(world: World, turtle: str, request: Any) -> list[Event]:
+def teleport_relative(world: TurtleWorld, turtle: str, request: Any) -> list[Event]:
     """Teleport a turtle; `request` has the fields of turtlesim/srv/TeleportRelative."""
     return world.teleport_relative(turtle, request.linear, request.angular)
 
@@ -81,7 +81,7 @@ class Interface:
     `perform` publishes and logs the events that a request has led to.
     """
 
-    def __init__(self, node: Node, world: World, perform: Callable[[list[Event]], None]) -> None:
+    def __init__(self, node: Node, world: TurtleWorld, perform: Callable[[list[Event]], None]) -> None:
         self._node = node
         self._world = world
         self._perform = perform
@@ -100,7 +100,7 @@ class Interface:
         node = self._node
         self._poses[turtle] = node.create_publisher(Pose, f"{turtle}/pose", DEPTH)
         self._colors[turtle] = node.create_publisher(Color, f"{turtle}/color_sensor", DEPTH)
-        requests: list[tuple[str, type, Callable[[World, str, Any], list[Event]]]] = [
+        requests: list[tuple[str, type, Callable[[TurtleWorld, str, Any], list[Event]]]] = [
             ("set_pen", SetPen, set_pen),
             ("teleport_absolute", TeleportAbsolute, teleport_absolute),
             ("teleport_relative", TeleportRelative, teleport_relative),
@@ -150,7 +150,9 @@ class Interface:
         self._perform(self._world.kill(request.name))
         return response
 
-    def _answer(self, act: Callable[[World, str, Any], list[Event]], turtle: str, request: Any, response: Any) -> Any:
+    def _answer(
+        self, act: Callable[[TurtleWorld, str, Any], list[Event]], turtle: str, request: Any, response: Any
+    ) -> Any:
         self._perform(act(self._world, turtle, request))
         return response
 

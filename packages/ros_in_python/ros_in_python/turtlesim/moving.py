@@ -28,7 +28,7 @@ LONGEST_S = 30.0
 
 
 @dataclass(frozen=True)
-class Schedule:
+class AnimationSchedule:
     """Spans of ticks in which something moves, and when (s) each is shown; `faster` times as fast as it was."""
 
     spans: tuple[tuple[int, int], ...]
@@ -50,7 +50,7 @@ class Schedule:
         return time / self.faster
 
 
-def timeline(tracks: Sequence[Sequence[TrackSample]]) -> Schedule:
+def timeline(tracks: Sequence[Sequence[TrackSample]]) -> AnimationSchedule:
     """Return the timeline of these tracks, of which at least one moves."""
     spans = _joined(sorted(span for track in tracks for span in _moving(track)))
     starts, time = [], 0.0
@@ -59,7 +59,7 @@ def timeline(tracks: Sequence[Sequence[TrackSample]]) -> Schedule:
             time += min(LONGEST_WAIT_S, (first - spans[index - 1][1]) * DT)
         starts.append(time)
         time += (last - first) * DT
-    return Schedule(tuple(spans), tuple(starts), max(1, math.ceil(time / LONGEST_S)))
+    return AnimationSchedule(tuple(spans), tuple(starts), max(1, math.ceil(time / LONGEST_S)))
 
 
 def _moving(track: Sequence[TrackSample]) -> list[tuple[int, int]]:
@@ -226,14 +226,14 @@ def _lengths(samples: Sequence[TrackSample]) -> list[float]:
     return lengths
 
 
-def _drawing(samples: Sequence[TrackSample], times: Schedule) -> list[tuple[float, str]]:
+def _drawing(samples: Sequence[TrackSample], times: AnimationSchedule) -> list[tuple[float, str]]:
     """A dash as long as the trail, pushed along it."""
     whole = math.ceil(_lengths(samples)[-1]) + _pen(samples).width
     drawn = list(zip((times.shown(sample.tick) for sample in samples), _lengths(samples), strict=True))
     return [(time, f"stroke-dashoffset:{coord(whole - done)}") for time, done in thinned(drawn, 1.0)]
 
 
-def _driving(samples: Sequence[TrackSample], times: Schedule, size: float) -> list[tuple[float, str]]:
+def _driving(samples: Sequence[TrackSample], times: AnimationSchedule, size: float) -> list[tuple[float, str]]:
     frames = []
     for sample in samples:
         x, y = _position(sample.x, sample.y, size)
@@ -312,7 +312,7 @@ def _axes(world: WorldPicture, key: str) -> str:
     return f'<g class="{key}i" font-size="14">{"".join(texts)}<text x="{_LEFT}" y="20" font-size="15">{text}</text></g>'
 
 
-def _words(world: WorldPicture, times: Schedule, error: float) -> str:
+def _words(world: WorldPicture, times: AnimationSchedule, error: float) -> str:
     pace = "at the original speed" if times.faster == 1 else f"{times.faster} times the original speed"
     return (
         f"{caption(world)}. The way is shown within {coord(error, 2)} units, {pace}, "

@@ -15,7 +15,7 @@ from std_srvs.srv import Empty, Trigger
 from ros_in_python.spinning import spin_until_stopped
 from ros_in_python.turtlesim.events import TICK_NS, Event, LogLevel, LogLine, TurtleKilled, TurtleSpawned
 from ros_in_python.turtlesim.interface import DEPTH, Interface
-from ros_in_python.turtlesim.world import World
+from ros_in_python.turtlesim.world import TurtleWorld
 from ros_in_python.turtlesim.world_picture import BLUE, picture_of
 
 #: A simulated clock that moves on by more than this at once has been set, and time has not passed.
@@ -55,7 +55,7 @@ class Turtlesim:
     def __init__(self) -> None:
         self.node = Node("turtlesim")
         self._declare_parameters()
-        self._world = World()
+        self._world = TurtleWorld()
         self._pacing = Pacing()
         self._commands: dict[str, Subscription] = {}
         self._interface = Interface(self.node, self._world, self._perform)

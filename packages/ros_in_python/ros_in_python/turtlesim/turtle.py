@@ -59,7 +59,7 @@ class Rotation:
     cancel_requested: bool = False
 
 
-class Turtle:
+class SimulatedTurtle:
     """A turtle with its pen. `y` is kept downwards from the upper edge, as turtlesim does."""
 
     def __init__(self, name: str, x: float, y: float, theta: float) -> None:

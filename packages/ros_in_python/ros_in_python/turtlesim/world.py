@@ -8,13 +8,13 @@ import re
 from ros_in_python.turtlesim.canvas import Canvas
 from ros_in_python.turtlesim.events import CENTRE, SIDE, Event, LogLevel, LogLine, TurtleKilled, TurtleSpawned, single
 from ros_in_python.turtlesim.trail import Track, Trail
-from ros_in_python.turtlesim.turtle import AbsoluteTeleport, RelativeTeleport, Turtle
+from ros_in_python.turtlesim.turtle import AbsoluteTeleport, RelativeTeleport, SimulatedTurtle
 
 # A turtle's name begins the names of its topics, so it must be good for one.
 _NAME = re.compile(r"/?[A-Za-z]\w{0,40}(/[A-Za-z]\w{0,40}){0,2}", re.ASCII)
 
 
-class World:
+class TurtleWorld:
     """Turtles by name, the canvas they share and the trail they leave.
 
     Every request returns the events that follow from it. Lengths in units, angles in rad, y up, times in ns of one
@@ -23,7 +23,7 @@ class World:
     """
 
     def __init__(self) -> None:
-        self.turtles: dict[str, Turtle] = {}
+        self.turtles: dict[str, SimulatedTurtle] = {}
         self.canvas = Canvas()
         self.trail = Trail()
         #: The turtles' tracks since the last wipe, by name; one that is gone keeps its track.
@@ -48,7 +48,7 @@ class World:
             text = f"A turtle named [{name}] already exists. Choose another name, or call /kill with this one first."
             return [LogLine(LogLevel.ERROR, text)]
         name = name or self._free_name()
-        self.turtles[name] = Turtle(name, x, y, theta)
+        self.turtles[name] = SimulatedTurtle(name, x, y, theta)
         self.tracks.pop(name, None)
         text = f"Spawning turtle [{name}] at x=[{x:f}], y=[{y:f}], theta=[{theta:f}]"
         return [TurtleSpawned(name), LogLine(LogLevel.INFO, text), *_outside(name, x, y)]
@@ -144,7 +144,7 @@ class World:
             self._track(turtle)
         return events
 
-    def _track(self, turtle: Turtle) -> None:
+    def _track(self, turtle: SimulatedTurtle) -> None:
         track = self.tracks.setdefault(turtle.name, Track())
         track.add(self._ticks, turtle.x, turtle.y, turtle.theta, turtle.pen)
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from ros_in_python.turtlesim.events import SIDE, Pen
 from ros_in_python.turtlesim.trail import Point, Stroke, Track, TrackSample, moves
-from ros_in_python.turtlesim.world import World
+from ros_in_python.turtlesim.world import TurtleWorld
 
 Color = tuple[int, int, int]
 
@@ -119,7 +119,7 @@ class WorldPicture:
             raise ValueError(f"not a picture of a turtles' world: {error!r}") from error
 
 
-def picture_of(world: World, background: Color) -> WorldPicture:
+def picture_of(world: TurtleWorld, background: Color) -> WorldPicture:
     """Return the world as it is now."""
     turtles = sorted(world.turtles.values(), key=lambda turtle: turtle.name)
     return WorldPicture(

@@ -15,15 +15,15 @@ from matplotlib.colors import to_rgb
 from ros_in_python.turtlesim.events import SIDE, TICK_NS, Pen
 from ros_in_python.turtlesim.moving import COATS
 from ros_in_python.turtlesim.picture import draw, save
-from ros_in_python.turtlesim.world import World
+from ros_in_python.turtlesim.world import TurtleWorld
 from ros_in_python.turtlesim.world_picture import BLUE, StrokePicture, TurtlePicture, WorldPicture, picture_of
 
 RED = (255, 0, 0)
 
 
-def driven(seconds: float) -> World:
+def driven(seconds: float) -> TurtleWorld:
     """Return a world after the course's circle controller has driven turtle1 for so long."""
-    world = World()
+    world = TurtleWorld()
     world.start()
     for n in range(int(seconds / 0.016)):
         if n % 6 == 0:

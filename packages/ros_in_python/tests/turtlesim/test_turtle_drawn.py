@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from ros_in_python.turtlesim.canvas import Canvas
 from ros_in_python.turtlesim.events import CENTRE, SIDE, TICK_NS, ColorReport, Pen
 from ros_in_python.turtlesim.trail import MAX_POINTS, TOLERANCE, Point, Stroke, Trail
-from ros_in_python.turtlesim.world import World
+from ros_in_python.turtlesim.world import TurtleWorld
 
 WHITE = (255, 255, 255)
 RED = Pen(255, 0, 0, 3)
@@ -49,13 +49,13 @@ def test_lines_from_beyond_the_canvas_are_cut_off_at_its_edge() -> None:
     assert painted(canvas) == {(column, row) for column in range(47) for row in range(89, 92)}
 
 
-def colors(world: World, ticks: range) -> list[tuple[int, int, int]]:
+def colors(world: TurtleWorld, ticks: range) -> list[tuple[int, int, int]]:
     reports = [event for n in ticks for event in world.tick(n * TICK_NS) if isinstance(event, ColorReport)]
     return [(each.r, each.g, each.b) for each in reports]
 
 
 def test_the_colour_sensor_sees_white_ahead_and_the_pen_where_it_has_been() -> None:
-    world = World()
+    world = TurtleWorld()
     world.start()
     world.set_pen("turtle1", 10, 20, 30, 3, 0)
     world.command("turtle1", 10.0, None, 0.0, 0)
@@ -68,7 +68,7 @@ def test_the_colour_sensor_sees_white_ahead_and_the_pen_where_it_has_been() -> N
 
 
 def test_the_colour_sensor_looks_before_the_tick_s_own_line_is_drawn() -> None:
-    world = World()
+    world = TurtleWorld()
     world.start()
     world.set_pen("turtle1", 10, 20, 30, 3, 0)
     world.tick(0)
@@ -78,7 +78,7 @@ def test_the_colour_sensor_looks_before_the_tick_s_own_line_is_drawn() -> None:
 
 
 def test_a_lifted_pen_draws_nothing_and_keeps_its_colour() -> None:
-    world = World()
+    world = TurtleWorld()
     world.start()
     world.tick(0)
     world.set_pen("turtle1", 1, 2, 3, 9, 1)
@@ -93,7 +93,7 @@ def test_a_width_of_zero_means_one() -> None:
 
 
 def test_a_straight_drive_is_one_line_and_a_teleport_a_corner() -> None:
-    world = World()
+    world = TurtleWorld()
     world.start()
     world.tick(0)
     world.command("turtle1", 2.0, None, 0.0, 0)
@@ -107,7 +107,7 @@ def test_a_straight_drive_is_one_line_and_a_teleport_a_corner() -> None:
 
 
 def test_another_pen_begins_another_stroke() -> None:
-    world = World()
+    world = TurtleWorld()
     world.start()
     world.tick(0)
     world.command("turtle1", 1.0, None, 0.0, 0)
@@ -144,7 +144,7 @@ def test_a_thinned_stroke_passes_near_every_point_it_was_drawn_through(ways: lis
 
 
 def test_a_lap_of_a_circle_takes_few_points() -> None:
-    world = World()
+    world = TurtleWorld()
     world.start()
     for n in range(394):
         world.command("turtle1", 2.0, None, 1.0, n * TICK_NS)

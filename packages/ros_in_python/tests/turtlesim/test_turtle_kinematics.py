@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from turtle_oracle import OracleTurtle, W, apart, circle
 
 from ros_in_python.turtlesim.events import Event, LogLevel, LogLine, PoseReport
-from ros_in_python.turtlesim.world import World
+from ros_in_python.turtlesim.world import TurtleWorld
 
 TICK_MS = 16
 NEAR = 1e-5
@@ -24,7 +24,7 @@ class Driven:
     """A world whose clock the test advances, 16 ms per tick."""
 
     def __init__(self) -> None:
-        self.world = World()
+        self.world = TurtleWorld()
         self.world.start()
         assert self.world.tick(0) == []
         self.now_ms = 0
@@ -165,7 +165,7 @@ def test_one_command_moves_for_62_ticks() -> None:
 
 
 def test_a_command_holds_at_exactly_one_second_and_not_after() -> None:
-    world = World()
+    world = TurtleWorld()
     world.start()
     world.tick(0)
     world.command("turtle1", 1.0, None, 0.0, 0)
@@ -174,7 +174,7 @@ def test_a_command_holds_at_exactly_one_second_and_not_after() -> None:
 
 
 def test_the_first_tick_only_begins_the_count() -> None:
-    world = World()
+    world = TurtleWorld()
     world.start()
     assert world.tick(0) == []
     assert pose_of(world.tick(0)).x == pytest.approx(5.544445, abs=5e-7)

@@ -9,13 +9,13 @@ from turtlesim.srv import SetPen, Spawn, TeleportAbsolute, TeleportRelative
 from ros_in_python.turtlesim import interface
 from ros_in_python.turtlesim.events import TICK_NS, ColorReport, Pen, PoseReport
 from ros_in_python.turtlesim.node import Pacing
-from ros_in_python.turtlesim.world import World
+from ros_in_python.turtlesim.world import TurtleWorld
 
 
 @pytest.fixture
-def world() -> World:
+def world() -> TurtleWorld:
     """A world with turtle1 in the middle, past its first tick."""
-    world = World()
+    world = TurtleWorld()
     world.start()
     world.tick(0)
     return world
@@ -30,7 +30,7 @@ def test_a_color_message_is_filled_completely() -> None:
     assert interface.fill_color(Color(), ColorReport("turtle1", 1, 2, 3)) == Color(r=1, g=2, b=3)
 
 
-def test_service_requests_ask_for_what_their_fields_say(world: World) -> None:
+def test_service_requests_ask_for_what_their_fields_say(world: TurtleWorld) -> None:
     interface.spawn(world, Spawn.Request(x=1.0, y=2.0, theta=0.5, name="bob"))
     interface.set_pen(world, "bob", SetPen.Request(r=1, g=2, b=3, width=4, off=0))
     interface.teleport_absolute(world, "turtle1", TeleportAbsolute.Request(x=3.0, y=4.0, theta=0.0))
@@ -41,7 +41,7 @@ def test_service_requests_ask_for_what_their_fields_say(world: World) -> None:
     assert (poses["turtle1"].x, poses["turtle1"].y) == pytest.approx((4.0, 4.0), abs=1e-6)
 
 
-def test_a_place_that_is_not_finite_is_refused_by_the_world(world: World) -> None:
+def test_a_place_that_is_not_finite_is_refused_by_the_world(world: TurtleWorld) -> None:
     request = Spawn.Request(x=float("inf"))
     assert "not finite" in str(interface.spawn(world, request))
 

@@ -36,7 +36,7 @@ struct Listener {
   void set(rmw_event_callback_t function, const void * data);
 };
 
-// What has happened to an end point of this process, in the structures in which rmw returns it.
+// What has happened to an endpoint of this process, in the structures in which rmw returns it.
 struct Events {
   std::array<bool, RMW_EVENT_INVALID> pending{};
   std::array<Listener, RMW_EVENT_INVALID> listeners{};
@@ -55,7 +55,7 @@ struct Events {
 // what it has kept for late joiners is still on its way, and with it all that it publishes meanwhile.
 struct Matched { bool asserted = false, alive = false; int64_t until = INT64_MAX; bool replays = false; };
 
-struct EndPoint {
+struct Endpoint {
   uint64_t id = 0;
   Kind kind = Kind::publisher;
   uint64_t node = 0;
@@ -83,11 +83,11 @@ struct EndPoint {
   bool is_topic() const { return kind == Kind::publisher || kind == Kind::subscription; }
 };
 
-inline bool same_topic(const EndPoint & one, const EndPoint & other) {
+inline bool same_topic(const Endpoint & one, const Endpoint & other) {
   return one.is_topic() && other.is_topic() && one.kind != other.kind && one.name == other.name;
 }
 
-// The 16 bytes by which ROS 2 distinguishes end points.
+// The 16 bytes by which ROS 2 distinguishes endpoints.
 void write_gid(uint64_t id, uint8_t * gid);
 uint64_t id_of(const uint8_t * gid);
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 
-from rmw_lockstep.hub.frames import PUBLISHER, EndPoint
-from rmw_lockstep.hub.graph import Graph
-from rmw_lockstep.hub.limits import Limits, Reason, Violation
+from rmw_lockstep.hub.frames import PUBLISHER, GraphEndpoint
+from rmw_lockstep.hub.graph import HubGraph
+from rmw_lockstep.hub.limits import HubLimits, Reason, Violation
 
 #: A topic or service with less than this part of what is allowed is not what the program is busy with.
 SHARE = 20
@@ -15,23 +15,23 @@ SHARE = 20
 NAMED = 3
 
 
-class AtOnce:
+class MomentCounter:
     """Counts the messages and requests of all processes at the current moment, by their topics and services."""
 
-    def __init__(self, graph: Graph, limits: Limits) -> None:
+    def __init__(self, graph: HubGraph, limits: HubLimits) -> None:
         """`graph` tells who listens to what is sent."""
         self._graph, self._limit = graph, limits.at_once
         self._now = 0
         self._total = 0
         self._sent: Counter[str] = Counter()
-        self._senders: dict[str, EndPoint] = {}
+        self._senders: dict[str, GraphEndpoint] = {}
 
     def begin(self) -> None:
         """Count from 0: the hub has published something, which the program may answer."""
         self._total = 0
         self._sent.clear()
 
-    def count(self, sender: EndPoint, now: int, number: int = 1) -> None:
+    def count(self, sender: GraphEndpoint, now: int, number: int = 1) -> None:
         """Count what was sent at the time `now` (ns). Raises `Violation` when it is too much."""
         if now != self._now:
             self._now = now

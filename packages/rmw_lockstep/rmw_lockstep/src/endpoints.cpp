@@ -1,4 +1,4 @@
-#include "end_points.hpp"
+#include "endpoints.hpp"
 
 #include <string.h>
 

@@ -6,11 +6,11 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
-from rmw_lockstep.hub.frames import EndPoint, Node
-from rmw_lockstep.qos import KEEP_ALL, TRANSIENT_LOCAL, Qos
+from rmw_lockstep.hub.frames import GraphEndpoint, GraphNode
+from rmw_lockstep.qos import KEEP_ALL, TRANSIENT_LOCAL, QosPolicies
 
 
-class Heard(NamedTuple):
+class DeliveredMessage(NamedTuple):
     """A message that arrived from a process.
 
     `now` is the time of the process (ns). `stage` is the number of the hub's last publication that the process had
@@ -19,7 +19,7 @@ class Heard(NamedTuple):
     same node's name.
     """
 
-    publisher: EndPoint
+    publisher: GraphEndpoint
     node: str
     now: int
     stage: int
@@ -29,7 +29,7 @@ class Heard(NamedTuple):
 
 
 class Moment(NamedTuple):
-    """When a process sent something: see `Heard`. `main` tells whether its main thread sent it."""
+    """When a process sent something: see `DeliveredMessage`. `main` tells whether its main thread sent it."""
 
     now: int
     stage: int
@@ -37,77 +37,79 @@ class Moment(NamedTuple):
     main: bool
 
 
-class Asked(NamedTuple):
+class PendingRequest(NamedTuple):
     """A request that arrived from a process; `node` is the full name of the client's node."""
 
-    client: EndPoint
+    client: GraphEndpoint
     node: str
     number: int
     moment: Moment
     cdr: bytes
 
 
-class Post(Protocol):
+class EndpointHost(Protocol):
     """What the ends need from the hub."""
 
-    def publish(self, publisher: Publisher, cdr: bytes) -> int: ...
-    def request(self, client: Client, number: int, cdr: bytes) -> bool: ...
+    def publish(self, publisher: HubPublisher, cdr: bytes) -> int: ...
+    def request(self, client: HubClient, number: int, cdr: bytes) -> bool: ...
     def respond(self, client: int, number: int, cdr: bytes) -> None: ...
-    def matched(self, end_point: EndPoint) -> tuple[EndPoint, ...]: ...
-    def add_end(self, end: End) -> None: ...
-    def remove_end(self, end: End) -> None: ...
-    def new_end_point(self, kind: int, node: Node, name: str, type: str, qos: Qos) -> EndPoint: ...
+    def matched(self, endpoint: GraphEndpoint) -> tuple[GraphEndpoint, ...]: ...
+    def add_end(self, end: HubEndpoint) -> None: ...
+    def remove_end(self, end: HubEndpoint) -> None: ...
+    def new_endpoint(self, kind: int, node: GraphNode, name: str, type: str, qos: QosPolicies) -> GraphEndpoint: ...
 
 
-class End:
-    """One of the hub's end points."""
+class HubEndpoint:
+    """One of the hub's endpoints."""
 
-    def __init__(self, post: Post, end_point: EndPoint) -> None:
-        self.end_point = end_point
+    def __init__(self, post: EndpointHost, endpoint: GraphEndpoint) -> None:
+        self.endpoint = endpoint
         self._post = post
         post.add_end(self)
 
     @property
-    def matched(self) -> tuple[EndPoint, ...]:
-        """The processes' end points that it exchanges messages with."""
-        return self._post.matched(self.end_point)
+    def matched(self) -> tuple[GraphEndpoint, ...]:
+        """The processes' endpoints that it exchanges messages with."""
+        return self._post.matched(self.endpoint)
 
     def close(self) -> None:
         """Remove it from the graph."""
         self._post.remove_end(self)
 
 
-class Publisher(End):
+class HubPublisher(HubEndpoint):
     """Publishes serialized messages. It keeps those that a later subscription will get, as its QoS says."""
 
-    def __init__(self, post: Post, end_point: EndPoint) -> None:
-        keeps = end_point.qos.durability == TRANSIENT_LOCAL
-        depth = None if end_point.qos.history == KEEP_ALL else max(1, end_point.qos.depth)
+    def __init__(self, post: EndpointHost, endpoint: GraphEndpoint) -> None:
+        keeps = endpoint.qos.durability == TRANSIENT_LOCAL
+        depth = None if endpoint.qos.history == KEEP_ALL else max(1, endpoint.qos.depth)
         self.history: deque[tuple[int, bytes]] = deque(maxlen=depth if keeps else 0)
-        super().__init__(post, end_point)
+        super().__init__(post, endpoint)
 
     def publish(self, cdr: bytes) -> int:
-        """Queue a message, and return its number among everything the hub has published: see `Heard.stage`."""
+        """Queue a message; return its number among all that the hub has published: see `DeliveredMessage.stage`."""
         return self._post.publish(self, cdr)
 
 
-class Subscription(End):
+class HubSubscription(HubEndpoint):
     """Keeps messages in the order in which they arrived, or passes them to `take`."""
 
-    def __init__(self, post: Post, end_point: EndPoint, take: Callable[[Heard], None] | None = None) -> None:
-        self.heard: list[Heard] = []
+    def __init__(
+        self, post: EndpointHost, endpoint: GraphEndpoint, take: Callable[[DeliveredMessage], None] | None = None
+    ) -> None:
+        self.heard: list[DeliveredMessage] = []
         self.take = take or self.heard.append
-        super().__init__(post, end_point)
+        super().__init__(post, endpoint)
 
 
-class Client(End):
+class HubClient(HubEndpoint):
     """Calls a service. Responses are in `answers`, by the number that `call` returned, and their times in `moments`."""
 
-    def __init__(self, post: Post, end_point: EndPoint) -> None:
+    def __init__(self, post: EndpointHost, endpoint: GraphEndpoint) -> None:
         self.answers: dict[int, bytes] = {}
         self.moments: dict[int, Moment] = {}
         self._number = 0
-        super().__init__(post, end_point)
+        super().__init__(post, endpoint)
 
     def call(self, cdr: bytes) -> int | None:
         """Queue a request and return its number; None when there is no such service."""
@@ -120,26 +122,28 @@ class Client(End):
         self.answers[number] = cdr
 
 
-class Server(End):
+class HubServer(HubEndpoint):
     """Answers requests by calling `answer` with the serialized request, which returns the serialized response.
 
     Without `answer` requests are kept in `asked`, in the order in which they arrived, for `respond`. Both happen only
     when the whole program is idle: what it does meanwhile does not depend on how fast the hub is.
     """
 
-    def __init__(self, post: Post, end_point: EndPoint, answer: Callable[[bytes], bytes] | None = None) -> None:
-        self.asked: list[Asked] = []
+    def __init__(
+        self, post: EndpointHost, endpoint: GraphEndpoint, answer: Callable[[bytes], bytes] | None = None
+    ) -> None:
+        self.asked: list[PendingRequest] = []
         self._answer = answer
-        super().__init__(post, end_point)
+        super().__init__(post, endpoint)
 
-    def serve(self, asked: Asked) -> None:
+    def serve(self, asked: PendingRequest) -> None:
         """Take one request."""
         if self._answer:
             self.respond(asked, self._answer(asked.cdr))
         else:
             self.asked.append(asked)
 
-    def respond(self, asked: Asked, cdr: bytes) -> None:
+    def respond(self, asked: PendingRequest, cdr: bytes) -> None:
         """Queue the response to a request."""
         self._post.respond(asked.client.id, asked.number, cdr)
 
@@ -147,24 +151,24 @@ class Server(End):
 class HubNode:
     """One of the hub's nodes."""
 
-    def __init__(self, post: Post, node: Node) -> None:
+    def __init__(self, post: EndpointHost, node: GraphNode) -> None:
         self.node = node
         self._post = post
 
-    def publisher(self, topic: str, type_name: str, qos: Qos) -> Publisher:
+    def publisher(self, topic: str, type_name: str, qos: QosPolicies) -> HubPublisher:
         """Return a new publisher of messages such as `std_msgs/msg/String`."""
-        return Publisher(self._post, self._post.new_end_point(0, self.node, topic, type_name, qos))
+        return HubPublisher(self._post, self._post.new_endpoint(0, self.node, topic, type_name, qos))
 
     def subscription(
-        self, topic: str, type_name: str, qos: Qos, take: Callable[[Heard], None] | None = None
-    ) -> Subscription:
+        self, topic: str, type_name: str, qos: QosPolicies, take: Callable[[DeliveredMessage], None] | None = None
+    ) -> HubSubscription:
         """Return a new subscription."""
-        return Subscription(self._post, self._post.new_end_point(1, self.node, topic, type_name, qos), take)
+        return HubSubscription(self._post, self._post.new_endpoint(1, self.node, topic, type_name, qos), take)
 
-    def server(self, service: str, type_name: str, answer: Callable[[bytes], bytes] | None = None) -> Server:
+    def server(self, service: str, type_name: str, answer: Callable[[bytes], bytes] | None = None) -> HubServer:
         """Return a new server of a service such as `std_srvs/srv/Trigger`."""
-        return Server(self._post, self._post.new_end_point(2, self.node, service, type_name, Qos()), answer)
+        return HubServer(self._post, self._post.new_endpoint(2, self.node, service, type_name, QosPolicies()), answer)
 
-    def client(self, service: str, type_name: str) -> Client:
+    def client(self, service: str, type_name: str) -> HubClient:
         """Return a new client of a service."""
-        return Client(self._post, self._post.new_end_point(3, self.node, service, type_name, Qos()))
+        return HubClient(self._post, self._post.new_endpoint(3, self.node, service, type_name, QosPolicies()))
