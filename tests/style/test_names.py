@@ -9,7 +9,7 @@ from tests.tree import ROOT
 
 #: Folders whose classes are product code. Course code, templates and tests may use any names.
 PRODUCT = ("grader", "spinbook", "packages")
-NOT_PRODUCT = {"tests", "kinds", "template", "build"}
+NOT_PRODUCT = {"tests", "kinds", "template"}
 
 #: Names that stand for several things, and why each may.
 EXCEPTIONS: dict[str, str] = {
