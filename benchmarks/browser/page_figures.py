@@ -19,7 +19,7 @@ from pathlib import Path
 from playwright.sync_api import Browser, BrowserContext, Page, Response
 
 ROOT = Path(__file__).parents[2]
-sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "site")]
+sys.path[:0] = [str(ROOT / "tests" / "support"), str(ROOT / "tests" / "spinbook" / "site")]
 
 from browser import chromium  # noqa: E402
 from small_course import served  # noqa: E402

@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[2]
 EXERCISE = "joint_velocity"
 FILE = f"{EXERCISE}.py"
 SOLUTIONS = ROOT / "solutions" / EXERCISE
-HOSTILE = ROOT / "tests" / "hostile"
+HOSTILE = ROOT / "tests" / "grader" / "hostile"
 
 sys.path.append(str(HOSTILE))
 from odd_files import ODD_FILES, OddFile  # noqa: E402
@@ -47,7 +47,7 @@ LAST = (
 @dataclass(frozen=True)
 class Expected:
     """What a grade must be. `fails` are exactly the checks that fail, where that is known; the rest is as in
-    tests/hostile/submissions.md.
+    tests/grader/hostile/submissions.md.
     """
 
     outcomes: tuple[str, ...] = ("graded",)

@@ -39,7 +39,7 @@ HERE = Path(__file__).parent
 COURSE = HERE.parents[1]
 PROGRAMS = HERE / "programs"
 
-sys.path.append(str(COURSE / "tests"))
+sys.path.append(str(COURSE / "tests" / "support"))
 from busy_loops import busy  # noqa: E402
 
 #: Of this one every program is graded.

@@ -1,6 +1,6 @@
 """Compares two values of a message's fields: numbers, texts, lists and nested messages, as plain data.
 
-The rules, each with a test module of its own in tests/checking/comparator:
+The rules, each with a test module of its own in tests/grader/checking/comparator:
 
 - **Floats** are equal within a tolerance, absolute or relative to the larger of the two, whichever allows more. A
   difference of exactly the tolerance is allowed.

@@ -15,7 +15,7 @@ from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Options
 from grader.recording.recording import Recording, likewise
-from grader.sandbox.program import Isolation, Program
+from grader.sandbox.program import Isolation, ProgramSpec
 from grader.scenario.command_line import ARGUMENTS, arguments
 from grader.scenario.scenario import Companion, Scenario
 from grader.submission.reading import Submission
@@ -200,5 +200,5 @@ class ScenarioRunner:
         )
 
 
-def _companion(one: Companion) -> Program:
-    return Program(one.file, {one.file: one.text.encode()}, (*one.arguments, *ARGUMENTS), STUDENT_ENVIRONMENT)
+def _companion(one: Companion) -> ProgramSpec:
+    return ProgramSpec(one.file, {one.file: one.text.encode()}, (*one.arguments, *ARGUMENTS), STUDENT_ENVIRONMENT)

@@ -22,7 +22,7 @@ from grader.scenario.scenario import (
     Kill,
     Leave,
     Message,
-    ProgramArguments,
+    Program,
     SendGoal,
     StartProgram,
     Step,
@@ -61,7 +61,7 @@ class Script:
         if scenario.world:
             self._world = RunningWorld(ends, self._schedule, scenario.world, publishers, publish)
 
-    def _plan_program(self, one: ProgramArguments) -> None:
+    def _plan_program(self, one: Program) -> None:
         team = self._team
         assert team
         if one.starts > 0:

@@ -2,7 +2,7 @@
 
 server = ForkServer()  # once in a worker, before the processes that grade are forked
 ...
-with server.start(Program("node.py", {"node.py": source}, hub=socket), isolation) as student:
+with server.start(ProgramSpec("node.py", {"node.py": source}, hub=socket), isolation) as student:
     ...
 """
 
@@ -10,7 +10,7 @@ from grader.sandbox.fork_server import ForkServer, SandboxedProgram
 from grader.sandbox.isolation import available, choose
 from grader.sandbox.middleware import MiddlewareUnavailable, require_middleware, to_be_compiled
 from grader.sandbox.monitor import ProcessExit, ProgramOutput
-from grader.sandbox.program import Isolation, Limits, Program, SandboxError, SandboxUnavailable
+from grader.sandbox.program import Isolation, Limits, ProgramSpec, SandboxError, SandboxUnavailable
 
 __all__ = [
     "ForkServer",
@@ -18,8 +18,8 @@ __all__ = [
     "Limits",
     "MiddlewareUnavailable",
     "ProcessExit",
-    "Program",
     "ProgramOutput",
+    "ProgramSpec",
     "SandboxError",
     "SandboxUnavailable",
     "SandboxedProgram",

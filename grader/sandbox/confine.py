@@ -9,7 +9,7 @@ from pathlib import Path
 
 from grader.sandbox import filesystem, landlock, seccomp, syscalls
 from grader.sandbox.filesystem import USER_ID
-from grader.sandbox.program import Isolation, Limits, Paths, Program, apply_limits
+from grader.sandbox.program import Isolation, Limits, Paths, ProgramSpec, apply_limits
 
 _DESCRIPTORS = 1024
 
@@ -27,7 +27,7 @@ class StartRequest:
         options: the same for bubblewrap, ready for it.
     """
 
-    program: Program
+    program: ProgramSpec
     isolation: Isolation
     limits: Limits
     core: int | None

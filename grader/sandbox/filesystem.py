@@ -14,7 +14,7 @@ from typing import Literal
 import groundwork
 import rmw_lockstep
 from grader.sandbox.middleware import library_folder
-from grader.sandbox.program import HUB, SUBMISSION, Paths, Program
+from grader.sandbox.program import HUB, SUBMISSION, Paths, ProgramSpec
 from interface_compiler import activation
 
 HOME = "/home/student"
@@ -146,7 +146,7 @@ def write_file(folder: Path, name: str, content: bytes) -> None:
     path.chmod(0o444)
 
 
-def environment(program: Program, paths: Paths) -> dict[str, str]:
+def environment(program: ProgramSpec, paths: Paths) -> dict[str, str]:
     """Return a program's whole environment: what Python and ROS 2 need, its private folders, and what it was given."""
     needed = {name: os.environ[name] for name in (*RUNTIME_VARIABLES, "LD_PRELOAD") if name in os.environ}
     hub = {"RMW_LOCKSTEP_SOCKET": paths.hub} if paths.hub else {}

@@ -18,7 +18,7 @@ from grader.sandbox.confine import StartRequest
 from grader.sandbox.isolation import forget
 from grader.sandbox.middleware import variables
 from grader.sandbox.monitor import Monitor, ProcessExit, ProgramOutput
-from grader.sandbox.program import START_REQUEST, Isolation, Limits, Program, SandboxError
+from grader.sandbox.program import START_REQUEST, Isolation, Limits, ProgramSpec, SandboxError
 
 _START_S = 30.0
 _DEATH_S = 30.0
@@ -164,7 +164,7 @@ class ForkServer:
             self._zygote.preload(module)
 
     def start(
-        self, program: Program, isolation: Isolation, limits: Limits | None = None, core: int | None = None
+        self, program: ProgramSpec, isolation: Isolation, limits: Limits | None = None, core: int | None = None
     ) -> SandboxedProgram:
         """Start a student's program in a new sandbox, without a network.
 
@@ -256,7 +256,7 @@ class _Zygote:
             self._process.wait()
 
 
-def _root(program: Program, isolation: Isolation, limits: Limits) -> tuple[tuple[filesystem.Mount, ...], bytes]:
+def _root(program: ProgramSpec, isolation: Isolation, limits: Limits) -> tuple[tuple[filesystem.Mount, ...], bytes]:
     """Return what builds the root of a program's sandbox: steps, or options for bubblewrap."""
     if isolation not in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
         return (), b""

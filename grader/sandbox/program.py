@@ -43,7 +43,7 @@ class Isolation(str, Enum):
 
 
 @dataclass(frozen=True)
-class Program:
+class ProgramSpec:
     """A student's program.
 
     Attributes:

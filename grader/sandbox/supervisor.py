@@ -14,14 +14,14 @@ from typing import NoReturn
 from grader.sandbox import bubblewrap, filesystem, landlock, namespaces, processes, syscalls
 from grader.sandbox import program as limits
 from grader.sandbox.confine import StartRequest, confine
-from grader.sandbox.program import HUB, SUBMISSION, Isolation, Paths, Program
+from grader.sandbox.program import HUB, SUBMISSION, Isolation, Paths, ProgramSpec
 
 
 @dataclass(frozen=True)
 class StudentToRun:
     """What a freshly made student process has to run."""
 
-    program: Program
+    program: ProgramSpec
     paths: Paths
 
 

@@ -9,7 +9,7 @@ import sys
 
 from grader.sandbox import landlock
 from grader.sandbox.fork_server import ForkServer
-from grader.sandbox.program import Isolation, Program, SandboxError
+from grader.sandbox.program import Isolation, ProgramSpec, SandboxError
 
 _WORD = "works"
 _PROGRAM = f"import rclpy.exceptions, sys\nprint({_WORD!r})\n"
@@ -21,7 +21,7 @@ def main(level: Isolation) -> str | None:
         return "the kernel has no Landlock (Linux 5.13 and newer have it, unless it is switched off)"
     try:
         # Not preloaded: this also shows that Python itself can be started in there.
-        program = Program("trial.py", {"trial.py": _PROGRAM.encode()}, preloaded=False)
+        program = ProgramSpec("trial.py", {"trial.py": _PROGRAM.encode()}, preloaded=False)
         with ForkServer(preload=()) as fork_server, fork_server.start(program, level) as student:
             end = student.wait(20.0)
             text = student.output().text.strip()

@@ -23,7 +23,7 @@ from grader import preloaded
 from grader.sandbox import callers, filesystem, heap, middleware, seccomp, syscalls, uncaught
 from grader.sandbox import middleware as type_support
 from grader.sandbox.middleware import choosable
-from grader.sandbox.program import START_REQUEST, Paths, Program
+from grader.sandbox.program import START_REQUEST, Paths, ProgramSpec
 from grader.sandbox.supervisor import StudentToRun, refuse, supervise
 from rmw_lockstep import IDENTIFIER
 
@@ -32,7 +32,7 @@ from rmw_lockstep import IDENTIFIER
 CORES_SHOWN = 4
 
 
-def run_program(program: Program, paths: Paths) -> None:
+def run_program(program: ProgramSpec, paths: Paths) -> None:
     """Run a program as `__main__` in this process; return or raise SystemExit as the program does.
 
     It first connects to the hub, if there is one. So a program that ended without a connection has run none of the

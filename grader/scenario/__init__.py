@@ -2,7 +2,7 @@
 
 from grader.exercise.exercise import Qos
 from grader.scenario.models import JointChain, Turtle
-from grader.scenario.scenario import Companion, Message, ProgramArguments, Scenario
+from grader.scenario.scenario import Companion, Message, Program, Scenario
 from grader.scenario.servers import ActionServer, Server, aborts, never_ends, no_reply, rejects, reply, succeeds
 from grader.scenario.steps import at, before_start
 from grader.scenario.times import every, uneven
@@ -13,7 +13,7 @@ __all__ = [
     "Companion",
     "JointChain",
     "Message",
-    "ProgramArguments",
+    "Program",
     "Qos",
     "Scenario",
     "Server",

@@ -137,7 +137,7 @@ class StartProgram(Step):
 
 
 @dataclass(frozen=True)
-class ProgramArguments:
+class Program:
     """One of a submission's several programs, by its file: when it starts and when it is killed (s after the start)."""
 
     file: str
@@ -199,7 +199,7 @@ class Scenario:
     servers: tuple[Server | ActionServer, ...] = ()
     world: World | None = None
     qos: dict[str, Qos] = field(default_factory=dict)
-    programs: tuple[ProgramArguments, ...] = ()
+    programs: tuple[Program, ...] = ()
     companions: tuple[Companion, ...] = ()
     steps: tuple[Step, ...] = ()
     line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
@@ -222,7 +222,7 @@ class Scenario:
             servers: Server | ActionServer | Iterable[Server | ActionServer] = (),
             world: World | None = None,
             qos: dict[str, Qos] = ...,
-            programs: ProgramArguments | Iterable[ProgramArguments] = (),
+            programs: Program | Iterable[Program] = (),
             companions: Companion | Iterable[Companion] = (),
             steps: tuple[Step, ...] = (),
             line: int = 0,

@@ -10,7 +10,7 @@ from typing import Any
 from grader.exercise.exercise import Qos
 from grader.scenario import scenario as steps
 from grader.scenario.code import AuthorCode
-from grader.scenario.scenario import Companion, Message, ProgramArguments, Scenario
+from grader.scenario.scenario import Companion, Message, Program, Scenario
 from grader.scenario.servers import ActionServer, GoalScript, Reply, Server
 from grader.scenario.world import World, restored
 
@@ -33,7 +33,7 @@ _CLASSES: dict[str, Any] = {
         *_STEPS,
         Companion,
         Message,
-        ProgramArguments,
+        Program,
         Scenario,
         ActionServer,
         GoalScript,

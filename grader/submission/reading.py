@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grader.exercise.exercise import Exercise
-from grader.sandbox.program import Program
+from grader.sandbox.program import ProgramSpec
 from grader.submission.archive import Contents, content_of, folder_contents
 from grader.submission.code import Code, code_of, code_of_files, code_of_python
 from grader.submission.file_kinds import MOST_BYTES_OF, can_be_read, kind_of, kind_of_content
@@ -32,7 +32,7 @@ class Submission:
     digest: str
     file_name: str
     source: str
-    program: Program | None
+    program: ProgramSpec | None
     problem: str = ""
     warning: str = ""
     notes: tuple[str, ...] = ()
@@ -197,7 +197,7 @@ def _folder(given: str, path: Path, exercise: Exercise) -> Submission:
 def of_code(name: str, code: Code, exercise: Exercise, digest: str = "") -> Submission:
     """The submission of a program that has been read."""
     digest = digest or _digest(code.source.encode(errors="replace"))
-    program = Program(code.main, code.files)
+    program = ProgramSpec(code.main, code.files)
     newer = newer_than_this(code.python)
     return Submission(name, digest, exercise.file_name, code.source, program, notes=code.notes, newer_python=newer)
 
@@ -214,7 +214,7 @@ def _executable(given: str, exercise: Exercise) -> Submission:
     if isinstance(found, str):
         raise NoSubmission(found)
     source = found.script.read_bytes()
-    program = Program(
+    program = ProgramSpec(
         str(found.script), environment={"PYTHONPATH": found.python_path}, readonly=found.folders, preloaded=False
     )
     return Submission(given, found.digest(), found.script.name, source.decode(errors="replace"), program)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Recording
 from grader.runner.program import Task
-from grader.sandbox.program import Isolation, Limits, Program
+from grader.sandbox.program import Isolation, Limits, ProgramSpec
 from grader.scenario.scenario import Scenario
 from grader.submission.places import is_launcher
 
@@ -36,7 +36,7 @@ class RunJob:
 
     exercise: Exercise
     scenario: Scenario
-    program: Program
+    program: ProgramSpec
     isolation: Isolation
     limits: Limits
     source: str
@@ -45,9 +45,9 @@ class RunJob:
     pace: float | None = None
     data_bytes: int = 8_000_000
     """What the program may publish in all messages together."""
-    programs: tuple[Program, ...] = ()
+    programs: tuple[ProgramSpec, ...] = ()
     """The programs of a submission with several, instead of `program`."""
-    companions: tuple[Program, ...] = ()
+    companions: tuple[ProgramSpec, ...] = ()
     """The author's own programs."""
 
     @property
@@ -61,7 +61,7 @@ class RunJob:
         from grader.runner.run import run
         from rmw_lockstep.hub import HubLimits
 
-        def start(program: Program, hub: Path) -> SandboxedProgram:
+        def start(program: ProgramSpec, hub: Path) -> SandboxedProgram:
             return fork_server.start(replace(program, hub=hub), self.isolation, self.limits, self.core)
 
         ready()

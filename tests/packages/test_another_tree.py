@@ -29,9 +29,8 @@ def test_a_copy_runs_its_own_code_in_every_process(tmp_path: Path) -> None:
     for name in copied:
         copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
         copy(ROOT / name, tmp_path / name, **({"ignore": without} if copy is shutil.copytree else {}))
-    (tmp_path / "tests").mkdir()
-    for file in (ROOT / "tests").glob("*.py"):
-        shutil.copy(file, tmp_path / "tests")
+    shutil.copytree(ROOT / "tests" / "support", tmp_path / "tests" / "support", ignore=without)
+    shutil.copy(ROOT / "tests" / "conftest.py", tmp_path / "tests")
     (tmp_path / "spinbook" / "__init__.py").write_text('"""Another version."""\n\n__version__ = "99.0"\n')
     (tmp_path / "tests" / "test_version.py").write_text(TEST)
 

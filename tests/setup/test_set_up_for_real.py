@@ -125,7 +125,7 @@ def test_a_sourced_ros_is_used_alone_and_an_environment_with_wheels_makes_way_fo
     run = make(folder, ros, "-n", "test")
     pytest_line = next(line for line in run.stdout.splitlines() if line.startswith("PYTEST"))
     tried = subprocess.run(
-        ["sh", "-c", f"{pytest_line} tests/chapter {ROS2}/test_ros2_pub.py {ROS2}/test_ros2_interface.py"],
+        ["sh", "-c", f"{pytest_line} tests/spinbook/chapter {ROS2}/test_ros2_pub.py {ROS2}/test_ros2_interface.py"],
         cwd=folder,
         env=ros,
         capture_output=True,

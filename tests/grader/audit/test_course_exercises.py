@@ -1,0 +1,104 @@
+"""The course's own exercises pass their audit."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from quiet_audit import Silence
+from removing import remove_check
+
+from grader.audit.audit import audit
+from grader.audit.result import Audit
+from grader.exercise import load
+from grader.grading import Options
+from grader.workers import WorkerPool
+
+ROOT = Path(__file__).parents[3]
+
+#: Every exercise of the course, and the one that a new course begins with.
+COURSES = (ROOT, ROOT / "spinbook" / "new" / "template")
+EXERCISES = [file.parent for course in COURSES for file in sorted(course.glob("exercises/*/exercise.toml"))]
+
+#: Audited by every `make test`. The other exercises' solutions are graded by tests/grader/grading.
+ALWAYS = {"joint_velocity", "speed_limit"}
+
+
+def to_fix(result: Audit) -> str:
+    """Return what there is to fix, as text."""
+    return "\n".join(f"{problem.problem}\n    {problem.place}\n    {problem.fix}" for problem in result.problems)
+
+
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("folder", [f for f in EXERCISES if f.name in ALWAYS], ids=lambda folder: folder.name)
+def test_every_mistake_is_caught_by_the_checks_that_it_names(
+    folder: Path, workers_with_interfaces: WorkerPool, cache: Path
+) -> None:
+    result = audit(load(folder), Options(), workers_with_interfaces, Silence(), quick=True, most=0)
+    assert not result.problems, to_fix(result)
+
+
+@pytest.mark.soak
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize("folder", EXERCISES, ids=lambda folder: folder.name)
+def test_each_mistake_loses_exactly_the_checks_that_it_names(
+    folder: Path, workers_with_interfaces: WorkerPool, cache: Path
+) -> None:
+    """All of them, both ways; right solutions get full marks, and the starter nothing: `spinbook audit --solutions`."""
+    result = audit(load(folder), Options(), workers_with_interfaces, Silence(), most=0, seeds=1)
+    assert not result.problems, to_fix(result)
+
+
+@pytest.mark.soak
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize("folder", EXERCISES, ids=lambda folder: folder.name)
+def test_the_whole_audit_finds_nothing_to_fix(folder: Path, workers_with_interfaces: WorkerPool, cache: Path) -> None:
+    result = audit(load(folder), Options(), workers_with_interfaces, Silence())
+    assert not result.problems, to_fix(result)
+    assert result.score >= 0.95
+
+
+@pytest.mark.soak
+@pytest.mark.timeout(3600)
+def test_joint_velocity_has_enough_mutants(workers_with_interfaces: WorkerPool, cache: Path) -> None:
+    result = audit(load(ROOT / "exercises" / "joint_velocity"), Options(), workers_with_interfaces, Silence())
+    assert result.different >= 150
+
+
+#: Check of joint_velocity -> its file, and a mistake that no other check catches.
+REMOVED = {
+    "test_names_in_the_order_of_the_message": ("checks.py", "sorted_names"),
+    "test_frame_is_copied": ("hidden_checks.py", "forgets_the_frame"),
+    "test_publisher_restarts": ("hidden_checks.py", "leaves_out_jumps"),
+}
+
+CAN_NOT_FAIL = '''
+
+@check(points=7, hint="Publish joints.", depends=[test_publishes_velocities])
+def test_some_joints(chapter: Run) -> None:
+    """There are some joints in it."""
+    assert len(chapter.sent) >= len(chapter.received) - 1000, "some joints were expected"
+'''
+
+
+@pytest.mark.soak
+@pytest.mark.timeout(3600)
+def test_a_weak_copy_of_joint_velocity_is_reported_check_by_check(
+    tmp_path: Path, workers_with_interfaces: WorkerPool, cache: Path
+) -> None:
+    for folder in ("exercises", "solutions"):
+        shutil.copytree(ROOT / folder / "joint_velocity", tmp_path / folder / "joint_velocity")
+    folder = tmp_path / "exercises" / "joint_velocity"
+    for check, (file, _) in REMOVED.items():
+        remove_check(folder / file, check)
+    with (folder / "checks.py").open("a", encoding="utf-8") as checks:
+        checks.write(CAN_NOT_FAIL)
+    reported = to_fix(audit(load(folder), Options(), workers_with_interfaces, Silence()))
+    for check, (_, mistake) in REMOVED.items():
+        assert f"the mistake mistakes/{mistake} (" in reported
+        assert f"is to be caught by {check}: there is no such check" in reported
+    assert "no mutant and no mistake fails test_some_joints: can it fail at all?" in reported
+    assert "leaves out answer.header = message.header" in reported or "drops the frame" in reported, (
+        "a mutant that survives now"
+    )

@@ -1,0 +1,78 @@
+"""`spinbook lint` checks exercises, too: it reports each fault with file, line and what to do, and runs no node."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from prepared_python import run_prepared
+from small_exercise import SmallExercise
+
+from grader.checking.proofreader import rules_that_the_task_lacks
+
+#: A sentence of the small exercise on which a hidden check is based.
+RULE = "Publish nothing on /numbers or /clock."
+EXERCISES = Path(__file__).parents[3] / "exercises"
+
+COURSE = """title = "Small"
+chapters = ["chapters/one.md"]
+
+[package]
+name = "small"
+"""
+
+
+def linted(small: SmallExercise) -> tuple[int, str]:
+    """Return the exit code and the output of `spinbook lint` in the exercise's course."""
+    (small.course / "course.toml").write_text(COURSE)
+    (small.course / "chapters").mkdir()
+    (small.course / "chapters" / "one.md").write_text("# One\n\nNothing to run.\n")
+    run = run_prepared("spinbook", "lint", cwd=small.course)
+    return run.returncode, run.stdout + run.stderr
+
+
+def test_an_exercise_without_faults(small: SmallExercise) -> None:
+    code, output = linted(small)
+    assert (code, "0 errors" in output) == (0, True), output
+
+
+def test_every_fault_is_reported_with_file_and_line(small: SmallExercise) -> None:
+    small.change("exercises/doubler/checks.py", "def test_once(", "def test_twice_the_number(")
+    small.change("solutions/doubler/mistakes.md", "Caught by: test_twice_the_number", "Caught by: test_no_such_check")
+    small.change("solutions/doubler/solution.py", "        # END SOLUTION\n", "")
+    code, output = linted(small)
+    assert code == 1
+    for fault in (
+        "exercises/doubler/checks.py:20: error: there are two checks called test_twice_the_number; the other is in lin",
+        "solutions/doubler/solution.py:12: error: BEGIN SOLUTION without an END SOLUTION after it",
+        "mistakes.md:12: error: adds_two is to be caught by test_no_such_check, and there is no such check",
+        "exercises/doubler/exercise.toml:3: error: the checks give 7 points together (checks.py 5, hidden_checks.py 2)",
+        "mistakes.md:23: error: twice is to be caught by test_once",
+    ):
+        assert fault in output, output
+
+
+def test_a_scenario_that_is_not_there_is_reported_with_those_that_are(small: SmallExercise) -> None:
+    small.change("exercises/doubler/hidden_checks.py", "(negative: Run)", "(negativ: Run)")
+    code, output = linted(small)
+    assert code == 1
+    assert "test_nothing_below_zero asks for the scenario negativ, which scenarios.py does not have" in output
+    assert "Its scenarios are: positive, negative, any." in output
+
+
+def test_a_rule_that_the_task_does_not_state_is_reported_with_its_line(small: SmallExercise) -> None:
+    hidden = small.course / "exercises" / "doubler" / "hidden_checks.py"
+    [line] = [number for number, text in enumerate(hidden.read_text().splitlines(), 1) if RULE in text]
+    small.change("exercises/doubler/task.md", "Publish nothing on `/numbers` or `/clock`.", "Quite another sentence.")
+
+    code, output = linted(small)
+
+    assert code == 1
+    assert f"hidden_checks.py:{line}: error: a check is based on a sentence that is not in task.md: “{RULE}”" in output
+
+
+@pytest.mark.parametrize("folder", sorted(EXERCISES.iterdir()), ids=lambda folder: folder.name)
+def test_the_task_of_each_exercise_states_the_rules_of_its_checks(folder: Path) -> None:
+    task = (folder / "task.md").read_text(encoding="utf-8")
+    faults = rules_that_the_task_lacks(task, [folder / "checks.py", folder / "hidden_checks.py"])
+    assert [str(fault) for fault in faults] == []

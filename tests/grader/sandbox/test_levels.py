@@ -1,0 +1,171 @@
+"""The strongest level that works is chosen, and if none does, the reasons are given."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+from sandbox_runner import reason_against
+
+from grader.sandbox import (
+    ForkServer,
+    Isolation,
+    ProgramSpec,
+    SandboxError,
+    SandboxUnavailable,
+    available,
+    choose,
+    isolation,
+)
+
+NOTHING_WORKS = {
+    Isolation.BUBBLEWRAP: "bubblewrap (bwrap) is not installed",
+    Isolation.NAMESPACES: "this machine allows no user namespaces",
+    Isolation.LANDLOCK: "the kernel has no Landlock",
+}
+
+
+@pytest.fixture
+def reasons(monkeypatch: pytest.MonkeyPatch) -> dict[Isolation, str]:
+    """The reasons against each level, for a test to set: the trials themselves are tested below."""
+    found: dict[Isolation, str] = {}
+    monkeypatch.setattr(isolation, "_reason_against", found.get)
+    return found
+
+
+def test_the_strongest_that_works_is_chosen(reasons: dict[Isolation, str]) -> None:
+    assert choose() is Isolation.BUBBLEWRAP
+    for best, following in zip(list(Isolation), list(Isolation)[1:3], strict=False):
+        reasons[best] = NOTHING_WORKS[best]
+        assert choose() is following
+
+
+def test_where_nothing_works_it_is_refused_with_every_reason(reasons: dict[Isolation, str]) -> None:
+    reasons.update(NOTHING_WORKS)
+
+    with pytest.raises(SandboxUnavailable) as refusal:
+        choose()
+
+    for reason in NOTHING_WORKS.values():
+        assert reason in str(refusal.value)
+    assert "--isolation none" in str(refusal.value)
+
+
+def test_no_sandbox_is_used_only_where_it_is_asked_for(reasons: dict[Isolation, str]) -> None:
+    reasons.update(NOTHING_WORKS)
+
+    assert choose(Isolation.NONE) is Isolation.NONE
+
+
+def test_a_level_that_was_asked_for_is_not_replaced_by_another(reasons: dict[Isolation, str]) -> None:
+    reasons[Isolation.LANDLOCK] = NOTHING_WORKS[Isolation.LANDLOCK]
+
+    with pytest.raises(SandboxUnavailable, match=r"'landlock' does not work .* the kernel has no Landlock"):
+        choose(Isolation.LANDLOCK)
+
+
+def test_each_level_has_really_been_tried() -> None:
+    found = available()
+
+    assert set(found) == set(Isolation)
+    assert found[Isolation.NONE] is None
+    assert all(reason is None or len(reason) > 10 for reason in found.values())
+
+
+@pytest.fixture
+def tried(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, reasons_of_trials: dict[Isolation, str]) -> list[Isolation]:
+    """The levels that have been tried, in order; no earlier results are stored."""
+    found: list[Isolation] = []
+    monkeypatch.setenv("SPINBOOK_CACHE", str(tmp_path))
+
+    def trial(level: Isolation) -> str | None:
+        found.append(level)
+        return reasons_of_trials.get(level)
+
+    monkeypatch.setattr(isolation, "_tried", trial)
+    return found
+
+
+@pytest.fixture
+def reasons_of_trials() -> dict[Isolation, str]:
+    """The reasons against a level when it is tried."""
+    return {}
+
+
+def test_a_level_that_has_worked_is_not_tried_again_until_something_changes(
+    tried: list[Isolation], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert [choose(), choose()] == [Isolation.BUBBLEWRAP] * 2
+    assert tried == [Isolation.BUBBLEWRAP]
+
+    monkeypatch.setenv("AMENT_PREFIX_PATH", "/opt/ros/another")
+    choose()
+    assert tried == [Isolation.BUBBLEWRAP] * 2
+
+
+def test_a_level_that_did_not_work_is_tried_each_time(
+    tried: list[Isolation], reasons_of_trials: dict[Isolation, str]
+) -> None:
+    reasons_of_trials[Isolation.BUBBLEWRAP] = NOTHING_WORKS[Isolation.BUBBLEWRAP]
+
+    assert [choose(), choose()] == [Isolation.NAMESPACES] * 2
+    assert tried == [Isolation.BUBBLEWRAP, Isolation.NAMESPACES, Isolation.BUBBLEWRAP]
+
+
+def test_a_sandbox_that_could_not_be_made_has_its_level_tried_again(tried: list[Isolation], tmp_path: Path) -> None:
+    choose()
+
+    program = ProgramSpec("node.py", {"node.py": b"print('never')"}, hub=tmp_path / "no such hub")
+    with ForkServer(preload=()) as fork_server, pytest.raises(SandboxError):
+        fork_server.start(program, Isolation.NONE)
+
+    assert not isolation.has_worked(Isolation.BUBBLEWRAP)
+
+
+def test_without_bubblewrap_that_level_is_told_to_be_absent(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", "/nowhere")
+    isolation._tried.cache_clear()
+    try:
+        assert "not installed" in str(available()[Isolation.BUBBLEWRAP])
+        with pytest.raises(SandboxUnavailable, match="bwrap"):
+            choose(Isolation.BUBBLEWRAP)
+    finally:
+        isolation._tried.cache_clear()
+
+
+def test_where_a_machine_refuses_user_namespaces_landlock_is_what_is_left() -> None:
+    if reason := reason_against(Isolation.LANDLOCK, rootless=os.geteuid() == 0):
+        pytest.skip(f"landlock: {reason}")
+    code = f"""
+import os, sys
+sys.path[:0] = {[str(Path(__file__).parent), str(Path(__file__).parents[3])]!r}
+from grader.sandbox import SandboxUnavailable, available, choose, seccomp, syscalls
+from sandbox_runner import become_nobody
+if os.geteuid() == 0:
+    become_nobody(sys.argv[1])
+# What containers do by default: unshare(2) is refused, and nothing else that matters here.
+for name in set(seccomp._FORBIDDEN) - {{'unshare'}}:
+    del seccomp._FORBIDDEN[name]
+del seccomp._ABSENT['memfd_create']
+syscalls.prctl(syscalls.PR_SET_NO_NEW_PRIVS, 1)
+seccomp.install(seccomp.program())
+print(choose())
+print(*available().values(), sep='\\n')
+"""
+    with tempfile.TemporaryDirectory(prefix="nobody-") as home:
+        said = subprocess.run([sys.executable, "-c", code, home], capture_output=True, text=True, check=False)
+
+    chosen, bubblewrap, namespaces, landlock, none = said.stdout.splitlines() or [said.stderr] * 5
+    assert chosen == "landlock", said.stderr
+    assert "allows no user namespaces" in bubblewrap
+    assert "allows no user namespaces" in namespaces
+    assert landlock == none == "None"
+
+
+def test_the_names_are_those_of_the_command_line() -> None:
+    assert [str(one) for one in Isolation] == ["bubblewrap", "namespaces", "landlock", "none"]
+    assert f"{Isolation.NONE}" == "none"

@@ -1,0 +1,155 @@
+"""Pages run their own nodes: in a real Chromium, from a plain server with a strict content security policy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from browser import Opened, opened
+from playwright.sync_api import Browser, expect
+from small_course import SmallCourse
+
+from grader.exercise import load
+from grader.exercise.mistakes import mistake_of
+from spinbook.browser.files import can_run
+
+pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
+
+ROOT = Path(__file__).parents[3]
+#: Pyodide starts in a few seconds; on a busy machine, in many.
+DEADLINE_MS = 120_000
+
+
+def requested(shown: Opened, address: str) -> list[str]:
+    """Return what loading the page again requests from the server."""
+    asked: list[str] = []
+    shown.page.on("request", lambda request: asked.append(request.url.removeprefix(address)))
+    shown.page.reload(wait_until="networkidle")
+    return asked
+
+
+def test_nothing_is_loaded_before_run(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html") as shown:
+        asked = requested(shown, address)
+        assert "/_static/run.js" in asked
+        assert not [path for path in asked if path.startswith("/run/")]
+        assert shown.faults == []
+
+
+def test_a_page_runs_its_nodes(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html") as shown:
+        page = shown.page
+        cell = page.locator(".cell-node")
+        log, bar = cell.get_by_role("log"), page.get_by_role("region", name="Running nodes")
+
+        page.get_by_role("button", name="Run talker.py").click()
+        expect(log).to_contain_text("[INFO] [talker]: number 3", timeout=DEADLINE_MS)
+        expect(log).to_contain_text("[WARN] [talker]: SAFETY: two")
+        expect(cell.locator(".cell_output")).to_be_hidden()
+        expect(bar).to_contain_text("talker")
+        assert shown.violations() == []
+
+        code = cell.get_by_role("textbox")
+        before = code.inner_text()
+        code.evaluate("field => field.textContent = field.textContent.replace('number', 'edited')")
+        code.dispatch_event("input")
+        page.get_by_role("button", name="Run talker.py").click()
+        expect(log).to_contain_text("[talker]: edited 3", timeout=DEADLINE_MS)
+        expect(bar.get_by_role("listitem")).to_have_count(1)
+
+        bar.get_by_role("button", name="Stop talker").click()
+        expect(cell.get_by_role("status")).to_have_text("talker ended with 0.", timeout=DEADLINE_MS)
+        expect(bar).to_be_hidden()
+
+        page.reload()
+        page.get_by_role("button", name="Run talker.py").click()
+        expect(log).to_contain_text("[talker]: edited 3", timeout=DEADLINE_MS)
+        page.get_by_role("button", name="Reset talker").click()
+        assert code.inner_text() == before
+        expect(cell.locator(".cell_output")).to_be_visible()
+        page.get_by_role("button", name="Stop all nodes").click()
+        expect(bar).to_be_hidden(timeout=DEADLINE_MS)
+
+        failing = page.locator(".cell-snippet").first
+        failing.get_by_role("button", name="Run cell 2", exact=True).click()
+        expect(failing.get_by_role("log")).to_contain_text("ZeroDivisionError", timeout=DEADLINE_MS)
+        assert "spinbook" not in failing.get_by_role("log").inner_text()
+
+        page.get_by_role("button", name="Run all above cell 3").click()
+        expect(page.locator("#said")).to_have_text("Ran 2 cells above.", timeout=DEADLINE_MS)
+        expect(log).to_contain_text("[talker]: number 3")
+        page.get_by_role("button", name="Node graph").click()
+        expect(page.get_by_role("region", name="Node graph")).to_contain_text("talker", timeout=DEADLINE_MS)
+        assert shown.violations() == []
+        assert shown.faults == []
+
+
+@pytest.mark.soak
+def test_a_course_that_was_run_once_runs_without_a_network(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html") as shown:
+        page = shown.page
+        page.get_by_role("button", name="Run talker.py").click()
+        log = page.locator(".cell-node").get_by_role("log")
+        expect(log).to_contain_text("[talker]: number 3", timeout=DEADLINE_MS)
+
+        assert shown.faults == []
+
+        page.context.set_offline(True)
+        page.reload()
+        assert "A publisher sends messages." in page.inner_text("main")
+        page.get_by_role("button", name="Run talker.py").click()
+        expect(log).to_contain_text("[talker]: number 3", timeout=DEADLINE_MS)
+        page.goto(f"{address}/chapters/02-more.html")
+        assert "Words only." in page.inner_text("main")
+
+
+def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str, tmp_path: Path) -> None:
+    solutions = ROOT / "solutions" / "joint_velocity"
+    with opened(browser, f"{address}/exercises/joint_velocity.html", width=390) as shown:
+        page = shown.page
+        page.get_by_role("button", name="Edit and check the starter here").click()
+        total = page.locator(".check-total")
+
+        def check(file: Path, comes_to: str) -> None:
+            page.get_by_label("A file to continue with").set_input_files(file)
+            expect(page.get_by_role("textbox", name="Code of joint_velocity.py")).to_contain_text(file.read_text()[:40])
+            page.get_by_role("button", name="Check joint_velocity.py").click()
+            expect(total).to_have_text(comes_to, timeout=DEADLINE_MS)
+
+        wrong = tmp_path / "degrees.py"
+        wrong.write_text(f"# Degrees.\n{mistake_of(load(ROOT / 'exercises' / 'joint_velocity'), 'degrees').source}")
+        check(wrong, "9 of 11 public checks, 28 of 41 points")
+        expect(page.locator(".check-failed")).to_contain_text("Every velocity is in degrees.")
+        assert shown.violations() == []
+        assert not shown.scrolls_sideways()
+        check(solutions / "right" / "several_threads.py", "11 of 11 public checks, 41 of 41 points")
+        check(solutions / "solution.py", "11 of 11 public checks, 41 of 41 points")
+        expect(page.locator(".check-result")).to_contain_text("This is a preview, not your grade")
+
+        with page.expect_download() as download:
+            page.get_by_role("button", name="Download your joint_velocity.py").click()
+        assert download.value.suggested_filename == "joint_velocity.py"
+        assert Path(download.value.path()).read_text() == (solutions / "solution.py").read_text()
+
+        page.reload()
+        page.get_by_role("button", name="Edit and check the starter here").click()
+        draft = page.get_by_role("textbox", name="Code of joint_velocity.py")
+        expect(draft).to_contain_text((solutions / "solution.py").read_text()[:40])
+
+        page.get_by_label("A file to continue with").set_input_files(solutions / "right" / "numpy_arrays.py")
+        page.get_by_role("button", name="Check joint_velocity.py").click()
+        expect(page.locator(".check-message")).to_contain_text("imports numpy", timeout=DEADLINE_MS)
+        assert shown.faults == []
+
+
+def test_the_documentation_counts_the_files_that_run_nodes(built: SmallCourse) -> None:
+    in_folder = len(list((built.site / "run").iterdir()))
+    assert (built.site / "offline.js").is_file()
+    text = (ROOT / "docs" / "running-in-the-browser.md").read_text(encoding="utf-8")
+    assert f"{in_folder + 1} files ({in_folder} in `run/`, and the service worker)" in text
+
+
+def test_a_page_from_a_file_says_that_it_can_not_run(browser: Browser, built: SmallCourse) -> None:
+    with opened(browser, built.site / "chapters" / "01-talk.html") as shown:
+        shown.page.get_by_role("button", name="Run talker.py").click()
+        expect(shown.page.locator("#said")).to_have_text("Nodes can't run in a page that is opened from a file.")

@@ -1,0 +1,185 @@
+"""`%check` in a notebook shows the public checks' results for the exercise's cell, and never blocks the kernel.
+
+What is shown of different mistakes is in test_shown_results.py.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import threading
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+from notebook_kernel import Kernel, Shown
+from process_tree import beneath, command_of
+from small_class import wait_until
+
+from grader.exercise import load
+from grader.submission.code import Code
+from spinbook.kernel import check_cell
+from spinbook.kernel.process import CellFailed, KeptProcess, Status
+from submit.conftest import PUBLIC, node_cell, solution
+
+CHECK = "%check joint_velocity"
+
+
+def shown_of(kernel: Kernel, code: str, check: str = CHECK) -> Shown:
+    kernel.run(node_cell(code))
+    return kernel.run(check)
+
+
+def texts(shown: Shown) -> tuple[str, str]:
+    """Return (plain text with single spaces, HTML) of a check."""
+    assert not shown.error, shown.error
+    assert len(shown.pictures) == 1
+    return " ".join(shown.pictures[0]["text/plain"].split()), shown.pictures[0]["text/html"]
+
+
+def test_a_cell_that_was_not_run_is_asked_for(kernel: Kernel) -> None:
+    shown = kernel.run("%check joint_velocity")
+
+    assert shown.error == "Run the cell that begins with %%node joint_velocity first. Then run this one again."
+
+
+def test_a_right_cell_passes_every_public_check(kernel: Kernel) -> None:
+    text, html = texts(shown_of(kernel, solution()))
+
+    assert re.search(rf"\b{PUBLIC} of {PUBLIC} public checks, (\d+) of \1 points\.", text)
+    assert html.count('class="sb-passed"') == PUBLIC
+    assert "data:image/svg+xml;base64," in html
+    assert "Next: hand in. Type %submit joint_velocity into a new cell" in text
+
+
+def test_a_program_that_can_not_start_is_reported_with_its_line(kernel: Kernel) -> None:
+    broken = solution().replace("def main", "def main(:\n    pass\n\n\ndef other", 1)
+
+    text, html = texts(shown_of(kernel, broken))
+
+    line = 1 + next(i for i, line in enumerate(broken.split("\n"), start=1) if "def main(:" in line)
+    for message in (text, html):
+        assert "Your program did not start: SyntaxError" in message
+        assert f"line {line}" in message, "lines are counted as in the cell, the one with %%node included"
+
+
+def test_lines_are_those_of_the_cell_files_have_their_own_names_and_what_was_printed_is_shown(kernel: Kernel) -> None:
+    broken = solution().replace("def main():\n", "def main():\n    print('one two three')\n    1 / 0\n", 1)
+
+    text, html = texts(shown_of(kernel, broken))
+
+    line = 1 + next(i for i, line in enumerate(broken.split("\n"), start=1) if "1 / 0" in line)
+    for message in (text, html.replace("&#34;", '"')):
+        assert "What your program printed" in message
+        assert "one two three" in message
+        assert f'File "joint_velocity.py", line {line}, in main' in message
+        assert "/submission" not in message
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize(
+    ("before", "message"),
+    [
+        ("    rclpy.spin(node)", "Your program created its node, then computed for 6 s and did not spin it."),
+        ("    rclpy.init()", "Your program computed for 6 s and created no node. Is there an endless loop before it?"),
+    ],
+)
+def test_a_loop_before_the_spin_is_named_as_such(kernel: Kernel, before: str, message: str) -> None:
+    line = next(line for line in solution().split("\n") if line.strip() == before.strip())
+    looping = solution().replace(line, line.replace(before.strip(), f"while True: pass\n{line}"), 1)
+
+    text, _ = texts(shown_of(kernel, looping))
+
+    assert message in text
+
+
+def test_a_loop_without_end_is_reported_and_the_kernel_goes_on(kernel: Kernel) -> None:
+    looping = solution().replace("answer = JointState()", "while True: pass")
+    assert looping != solution()
+
+    text, html = texts(shown_of(kernel, looping))
+
+    for message in (text, html):
+        assert "Is there an endless loop?" in message
+    assert kernel.run("print(6 * 7)").text == "42\n"
+
+
+def checks_of(kernel: Kernel) -> list[psutil.Process]:
+    """Return the check processes that run in this kernel."""
+    return [one for one in beneath(psutil.Process(kernel.process_id)) if "spinbook.submit.program" in command_of(one)]
+
+
+def test_a_check_ends_with_its_bound_and_leaves_nothing_behind(kernel: Kernel) -> None:
+    shown = shown_of(kernel, solution(), "%check joint_velocity --seconds 0.05")
+
+    assert "did not finish within 0.05 s and was stopped" in shown.error
+    assert checks_of(kernel) == []
+
+
+def test_stop_ends_a_check_in_the_midst_and_leaves_nothing_behind(kernel: Kernel) -> None:
+    kernel.run(node_cell(solution().replace("answer = JointState()", "while True: pass")))
+    started: list[psutil.Process] = []
+
+    def press() -> None:
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline:
+            found = [child for check in checks_of(kernel) for child in [check, *beneath(check)]]
+            if any("grader.sandbox.zygote" in " ".join(command_of(child)) for child in found):
+                started.extend(found)
+                break
+            time.sleep(0.01)
+        os.kill(kernel.process_id, signal.SIGINT)
+
+    pressing = threading.Thread(target=press)
+    pressing.start()
+    shown = kernel.run(CHECK)
+    pressing.join()
+
+    assert "The check was interrupted" in shown.error
+    assert len(started) > 1, "it was stopped while it had processes of its own"
+    assert psutil.wait_procs(started, timeout=60)[1] == []
+    assert checks_of(kernel) == []
+    assert kernel.run("print(6 * 7)").text == "42\n"
+
+
+def test_a_check_that_has_no_time_to_end_leaves_no_temporary_file(
+    handed_out: Path, temporary_files: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def until_it_runs(process: KeptProcess, timeout_s: float) -> Status:
+        wait_until(lambda: any("spinbook-hub-" in folder for folder, _, _ in os.walk(temporary_files)))
+        return process.status
+
+    monkeypatch.setattr(KeptProcess, "wait", until_it_runs)
+    monkeypatch.setattr(check_cell, "_GRACE", (0.0, 0.0))
+    endless = solution().replace("answer = JointState()", "while True: pass")
+    code = Code({"joint_velocity.py": endless.encode()}, "joint_velocity.py", endless)
+    with pytest.raises(CellFailed, match="did not finish within 1 s"):
+        check_cell.checked(handed_out / "exercises" / "joint_velocity", code, 1)
+    assert list(temporary_files.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("%check", "the following arguments are required: exercise"),
+        ("%check no_such", "There is no exercise 'no_such' here. There are: joint_velocity."),
+        ("%check joint_velocity --seconds soon", "invalid float value: 'soon'"),
+    ],
+)
+def test_bad_usage_is_reported_in_words(kernel: Kernel, line: str, message: str) -> None:
+    assert message in kernel.run(line).error
+
+
+def test_an_exercise_that_is_damaged_is_reported_as_such(kernel: Kernel, handed_out: Path) -> None:
+    public = load(handed_out / "exercises" / "joint_velocity").public_file
+    content = public.read_bytes()
+    try:
+        public.write_bytes(content[:1000])
+        error = shown_of(kernel, solution()).error
+    finally:
+        public.write_bytes(content)
+
+    assert "The exercise is at fault, not your code." in error
+    assert "Take it from the course's handout again." in error

@@ -1,0 +1,44 @@
+"""`%submit` submits the cell as it was run last, even if the notebook has not been saved."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from notebook_kernel import Kernel
+
+from grader.submission.upload import unpack
+
+ROOT = Path(__file__).parents[3]
+CODE = "import rclpy\nrclpy.init()\nrclpy.spin(rclpy.create_node('joint_velocity'))\n"
+
+
+@pytest.fixture(scope="module")
+def kernel(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Kernel]:
+    folder = tmp_path_factory.mktemp("student")
+    for part in ("exercises", "solutions"):
+        shutil.copytree(ROOT / part / "joint_velocity", folder / part / "joint_velocity")
+    kernel = Kernel(folder)
+    yield kernel
+    kernel.shut_down()
+
+
+def test_a_cell_that_was_not_run_is_asked_for(kernel: Kernel) -> None:
+    shown = kernel.run("%submit joint_velocity")
+    assert "Run the cell that begins with %%node joint_velocity first" in shown.error
+    assert not list(kernel.folder.glob("*.zip"))
+
+
+def test_the_cell_is_checked_and_handed_in_as_it_was_run(kernel: Kernel) -> None:
+    kernel.run(f"%%node joint_velocity --seconds 0.1\n{CODE}")
+    shown = kernel.run("%submit joint_velocity --student 'Ada L'")
+    assert not shown.error, shown.error
+    assert "Handed in: the cell %%node joint_velocity as you ran it at " in shown.text
+    assert "This is a self-check, not your grade." in shown.text
+    assert "Upload this file: joint_velocity-submission.zip" in shown.text
+    upload = unpack((kernel.folder / "joint_velocity-submission.zip").read_bytes())
+    assert upload.faults == ()
+    assert upload.files["joint_velocity.py"].decode().strip() == CODE.strip()
+    assert (upload.record["student"], upload.record["self_check"]["score"]) == ("Ada L", 0)
