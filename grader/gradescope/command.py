@@ -19,7 +19,7 @@ from grader.exercise.loading import COURSE, NoExercise, find, load
 from grader.grading.reference import solution_file
 from grader.sandbox.program import Isolation
 from interface_compiler import activation
-from interface_compiler.building import DEFINITIONS
+from interface_compiler.prefix_builder import DEFINITIONS
 from interface_compiler.wheel import record, zipped
 
 #: Where this software's own source is: the folder with pyproject.toml.

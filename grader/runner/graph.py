@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from grader.recording.recording import Endpoint, EndPointKind
 from grader.recording.types import OWN_SERVICES
-from rmw_lockstep.hub import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, GraphEndpoint, Hub
+from rmw_lockstep.hub import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndpointFrame, Hub
 from rmw_lockstep.hub.graph import HubGraph
 from rmw_lockstep.qos import INFINITE, KEEP_ALL
 
@@ -43,7 +43,7 @@ def end_points(graph: HubGraph, ours: Callable[[int], bool] = _nobody) -> tuple[
     return tuple(sorted(found, key=lambda one: (one.topic, one.kind, one.node)))
 
 
-def _recorded(endpoint: GraphEndpoint, node: str) -> Endpoint | None:
+def _recorded(endpoint: EndpointFrame, node: str) -> Endpoint | None:
     kind, name, type_name = _KINDS[endpoint.kind], endpoint.name, endpoint.type
     if name.endswith(SEND_GOAL) and endpoint.kind in (SERVER, CLIENT):
         kind = "action server" if endpoint.kind == SERVER else "action client"

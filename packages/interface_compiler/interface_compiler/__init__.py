@@ -5,9 +5,9 @@ grammar     the lines of a definition, read one by one
 checks      everything that can be wrong in definitions, found before anything is generated
 prefixes    installed packages and their interfaces
 toolchain   whether gcc and Python.h are there, and what to install if not
-generating  runs ROS's code generators
-compiling   runs gcc over what they wrote
-building    makes a prefix of packages, in a process of its own
+generators  runs ROS's code generators
+gcc         runs gcc over what they wrote
+prefix_builder  makes a prefix of packages, in a process of its own
 store       compiled packages, kept for as long as nothing changes
 activation  lets this process and its children import compiled packages
 near        what was compiled for a project before

@@ -17,14 +17,14 @@ from importlib import metadata
 from pathlib import Path
 
 from interface_compiler import checks, prefixes, toolchain
-from interface_compiler.building import DEFINITIONS
 from interface_compiler.definition import CompileError, Definition, DefinitionError, by_package
+from interface_compiler.prefix_builder import DEFINITIONS
 from interface_compiler.prefixes import PYTHON, RESOURCES
 
 #: Wheels whose version affects the generated code.
 _WHEELS = ("ros-rosidl-adapter", "ros-rosidl-generator-py", "ros-rosidl-typesupport-fastrtps-c", "ros-fastcdr")
 #: The files of this folder that decide it, too.
-_OWN = ("generating.py", "compiling.py", "building.py", "dispatch.cpp.in", "limited_api.h")
+_OWN = ("generators.py", "gcc.py", "prefix_builder.py", "dispatch.cpp.in", "limited_api.h")
 #: Prefixes that a store keeps: notebooks that are open may still use one of an earlier text.
 _KEPT = 8
 
@@ -141,7 +141,7 @@ def _compile(definitions: Sequence[Definition], found: dict[str, str], prefix: P
 
 
 def _run_compiler(prefix: Path, packages: Sequence[str]) -> None:
-    command = [sys.executable, "-m", "interface_compiler.building", str(prefix), *packages]
+    command = [sys.executable, "-m", "interface_compiler.prefix_builder", str(prefix), *packages]
     environment = {**os.environ, "PYTHONPATH": _python_path()}
     done = subprocess.run(command, capture_output=True, text=True, errors="replace", env=environment, check=False)
     if done.returncode == 0:

@@ -16,7 +16,7 @@ DESCRIBE = """
 import sys
 from pathlib import Path
 from interface_compiler import prefixes
-from interface_compiler.generating import GeneratedSources, describe
+from interface_compiler.generators import DefinitionFolder, describe
 out = Path(sys.argv[1])
 for package in sys.argv[2:]:
     for path, text in prefixes.definitions_of(package, Path(sys.prefix)).items():
@@ -24,7 +24,7 @@ for package in sys.argv[2:]:
         (out / "in" / package / path).write_text(text)
     known = {name: prefix / "share" / name for name, prefix in prefixes.packages([Path(sys.prefix)]).items()}
     del known[package]
-    describe(GeneratedSources(package, out / "in" / package, out / package, known), out)
+    describe(DefinitionFolder(package, out / "in" / package, out / package, known), out)
 """
 
 

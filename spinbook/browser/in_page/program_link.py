@@ -206,7 +206,7 @@ def _encoded(frame: Frame, data: bytes, moment: tuple[int, int, int]) -> Iterato
     if op == "hello":
         yield "J", b""
     elif op == "node":
-        yield "N", frames.to_node(frames.GraphNode(_id(frame["key"]), frame["name"], frame["namespace"]))[_HEADER:]
+        yield "N", frames.to_node(frames.NodeFrame(_id(frame["key"]), frame["name"], frame["namespace"]))[_HEADER:]
     elif op == "endpoint":
         yield "E", frames.to_endpoint(_endpoint(frame))[_HEADER:]
     elif op == "node_gone":
@@ -233,7 +233,7 @@ def _key(number: int) -> str:
     return f"{number >> 32}.{number & 0xFFFFFFFF}"
 
 
-def _endpoint(frame: Frame) -> frames.GraphEndpoint:
+def _endpoint(frame: Frame) -> frames.EndpointFrame:
     given = frame["qos"]
     qos = QosPolicies(
         given["history"] or KEEP_LAST,
@@ -246,7 +246,7 @@ def _endpoint(frame: Frame) -> frames.GraphEndpoint:
         given["lease"] or INFINITE,
     )
     kind = _KINDS.index(frame["kind"])
-    return frames.GraphEndpoint(
+    return frames.EndpointFrame(
         _id(frame["gid"]), kind, _id(frame["node"]), frame["topic"], frame["type"], NO_HASH, qos
     )  # fmt: skip
 

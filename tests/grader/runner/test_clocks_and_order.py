@@ -21,7 +21,7 @@ from grader.runner.message_order import (
     without_order,
 )
 from grader.scenario.scenario import SECOND, START
-from rmw_lockstep.hub import DeliveredMessage, GraphEndpoint, Moment, PendingRequest, QosPolicies
+from rmw_lockstep.hub import DeliveredMessage, EndpointFrame, Moment, PendingRequest, QosPolicies
 
 BEGAN = 1_000 * SECOND + 7
 
@@ -54,7 +54,7 @@ MAIN, OTHER = True, False
 
 
 def heard(cdr: bytes, main: bool, now: int = 5, process: int = 1, node: str = "/node") -> tuple[int, DeliveredMessage]:
-    publisher = GraphEndpoint(process << 32 | 1, 0, process << 32 | 2, "/out", "a/msg/B", bytes(33), QosPolicies())
+    publisher = EndpointFrame(process << 32 | 1, 0, process << 32 | 2, "/out", "a/msg/B", bytes(33), QosPolicies())
     return 0, DeliveredMessage(publisher, node, now, 1, 1, main, cdr)
 
 
@@ -89,7 +89,7 @@ def test_only_messages_of_one_moment_can_be_without_an_order() -> None:
 
 
 def asked(cdr: bytes, main: bool, now: int = 5, process: int = 1, node: str = "/node") -> PendingRequest:
-    client = GraphEndpoint(process << 32 | 1, 0, process << 32 | 2, "/add", "a/srv/B", bytes(33), QosPolicies())
+    client = EndpointFrame(process << 32 | 1, 0, process << 32 | 2, "/add", "a/srv/B", bytes(33), QosPolicies())
     return PendingRequest(client, node, 1, Moment(now, 1, 1, main), cdr)
 
 

@@ -10,7 +10,7 @@ from rmw_lockstep.hub.endpoints import (
     Moment,
     PendingRequest,
 )
-from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, GraphEndpoint, GraphNode
+from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndpointFrame, NodeFrame
 from rmw_lockstep.hub.hub import BEGIN, EPOCH, SOCKET, TICK_S, Hub
 from rmw_lockstep.hub.limits import HubLimits, Violation
 from rmw_lockstep.qos import QosPolicies
@@ -25,8 +25,7 @@ __all__ = [
     "SUBSCRIPTION",
     "TICK_S",
     "DeliveredMessage",
-    "GraphEndpoint",
-    "GraphNode",
+    "EndpointFrame",
     "Hub",
     "HubClient",
     "HubLimits",
@@ -35,6 +34,7 @@ __all__ = [
     "HubServer",
     "HubSubscription",
     "Moment",
+    "NodeFrame",
     "PendingRequest",
     "QosPolicies",
     "Violation",

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
-from rmw_lockstep.hub.frames import GraphEndpoint, GraphNode
+from rmw_lockstep.hub.frames import EndpointFrame, NodeFrame
 from rmw_lockstep.qos import KEEP_ALL, TRANSIENT_LOCAL, QosPolicies
 
 
@@ -19,7 +19,7 @@ class DeliveredMessage(NamedTuple):
     same node's name.
     """
 
-    publisher: GraphEndpoint
+    publisher: EndpointFrame
     node: str
     now: int
     stage: int
@@ -40,7 +40,7 @@ class Moment(NamedTuple):
 class PendingRequest(NamedTuple):
     """A request that arrived from a process; `node` is the full name of the client's node."""
 
-    client: GraphEndpoint
+    client: EndpointFrame
     node: str
     number: int
     moment: Moment
@@ -53,22 +53,22 @@ class EndpointHost(Protocol):
     def publish(self, publisher: HubPublisher, cdr: bytes) -> int: ...
     def request(self, client: HubClient, number: int, cdr: bytes) -> bool: ...
     def respond(self, client: int, number: int, cdr: bytes) -> None: ...
-    def matched(self, endpoint: GraphEndpoint) -> tuple[GraphEndpoint, ...]: ...
+    def matched(self, endpoint: EndpointFrame) -> tuple[EndpointFrame, ...]: ...
     def add_end(self, end: HubEndpoint) -> None: ...
     def remove_end(self, end: HubEndpoint) -> None: ...
-    def new_endpoint(self, kind: int, node: GraphNode, name: str, type: str, qos: QosPolicies) -> GraphEndpoint: ...
+    def new_endpoint(self, kind: int, node: NodeFrame, name: str, type: str, qos: QosPolicies) -> EndpointFrame: ...
 
 
 class HubEndpoint:
     """One of the hub's endpoints."""
 
-    def __init__(self, post: EndpointHost, endpoint: GraphEndpoint) -> None:
+    def __init__(self, post: EndpointHost, endpoint: EndpointFrame) -> None:
         self.endpoint = endpoint
         self._post = post
         post.add_end(self)
 
     @property
-    def matched(self) -> tuple[GraphEndpoint, ...]:
+    def matched(self) -> tuple[EndpointFrame, ...]:
         """The processes' endpoints that it exchanges messages with."""
         return self._post.matched(self.endpoint)
 
@@ -80,7 +80,7 @@ class HubEndpoint:
 class HubPublisher(HubEndpoint):
     """Publishes serialized messages. It keeps those that a later subscription will get, as its QoS says."""
 
-    def __init__(self, post: EndpointHost, endpoint: GraphEndpoint) -> None:
+    def __init__(self, post: EndpointHost, endpoint: EndpointFrame) -> None:
         keeps = endpoint.qos.durability == TRANSIENT_LOCAL
         depth = None if endpoint.qos.history == KEEP_ALL else max(1, endpoint.qos.depth)
         self.history: deque[tuple[int, bytes]] = deque(maxlen=depth if keeps else 0)
@@ -95,7 +95,7 @@ class HubSubscription(HubEndpoint):
     """Keeps messages in the order in which they arrived, or passes them to `take`."""
 
     def __init__(
-        self, post: EndpointHost, endpoint: GraphEndpoint, take: Callable[[DeliveredMessage], None] | None = None
+        self, post: EndpointHost, endpoint: EndpointFrame, take: Callable[[DeliveredMessage], None] | None = None
     ) -> None:
         self.heard: list[DeliveredMessage] = []
         self.take = take or self.heard.append
@@ -105,7 +105,7 @@ class HubSubscription(HubEndpoint):
 class HubClient(HubEndpoint):
     """Calls a service. Responses are in `answers`, by the number that `call` returned, and their times in `moments`."""
 
-    def __init__(self, post: EndpointHost, endpoint: GraphEndpoint) -> None:
+    def __init__(self, post: EndpointHost, endpoint: EndpointFrame) -> None:
         self.answers: dict[int, bytes] = {}
         self.moments: dict[int, Moment] = {}
         self._number = 0
@@ -130,7 +130,7 @@ class HubServer(HubEndpoint):
     """
 
     def __init__(
-        self, post: EndpointHost, endpoint: GraphEndpoint, answer: Callable[[bytes], bytes] | None = None
+        self, post: EndpointHost, endpoint: EndpointFrame, answer: Callable[[bytes], bytes] | None = None
     ) -> None:
         self.asked: list[PendingRequest] = []
         self._answer = answer
@@ -151,7 +151,7 @@ class HubServer(HubEndpoint):
 class HubNode:
     """One of the hub's nodes."""
 
-    def __init__(self, post: EndpointHost, node: GraphNode) -> None:
+    def __init__(self, post: EndpointHost, node: NodeFrame) -> None:
         self.node = node
         self._post = post
 

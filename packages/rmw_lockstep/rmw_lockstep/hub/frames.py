@@ -59,7 +59,7 @@ class HelloFrame:
 
 
 @dataclass(frozen=True)
-class GraphNode:
+class NodeFrame:
     """A node of some process."""
 
     id: int
@@ -73,7 +73,7 @@ class GraphNode:
 
 
 @dataclass(frozen=True)
-class GraphEndpoint:
+class EndpointFrame:
     """A publisher, subscription, server or client of some process."""
 
     id: int
@@ -152,7 +152,7 @@ def hello(payload: bytes) -> HelloFrame:
     return HelloFrame(version, pid, parent, bool(timed))
 
 
-def node(payload: bytes) -> GraphNode:
+def node(payload: bytes) -> NodeFrame:
     """Decode a NODE."""
     (number,) = _first(_ID, payload)
     name, at = _string(payload, _ID.size)
@@ -160,10 +160,10 @@ def node(payload: bytes) -> GraphNode:
     _end(payload, at)
     _check(_NODE_NAME, name, "a node's name")
     _check(_NAMESPACE, namespace, "a namespace")
-    return GraphNode(number, name, namespace)
+    return NodeFrame(number, name, namespace)
 
 
-def endpoint(payload: bytes) -> GraphEndpoint:
+def endpoint(payload: bytes) -> EndpointFrame:
     """Decode an ENDPOINT."""
     number, kind, owner = _first(_ENDPOINT, payload)
     if kind > CLIENT:
@@ -175,7 +175,7 @@ def endpoint(payload: bytes) -> GraphEndpoint:
     _check(_TOPIC, name, "the name of a topic or service")
     _check(_TYPE, type_name, "a type")
     qos = QosPolicies(*_QOS.unpack_from(payload, at + HASH_BYTES))
-    return GraphEndpoint(number, kind, owner, name, type_name, bytes(payload[at : at + HASH_BYTES]), qos)
+    return EndpointFrame(number, kind, owner, name, type_name, bytes(payload[at : at + HASH_BYTES]), qos)
 
 
 def identity(payload: bytes) -> int:
@@ -267,12 +267,12 @@ def to_welcome(process: int, now: int, epoch: int) -> bytes:
     return frame(b"W", _WELCOME.pack(VERSION, process, now, epoch))
 
 
-def to_node(what: GraphNode) -> bytes:
+def to_node(what: NodeFrame) -> bytes:
     """Encode a NODE."""
     return frame(b"N", _ID.pack(what.id) + _text(what.name) + _text(what.namespace))
 
 
-def to_endpoint(what: GraphEndpoint) -> bytes:
+def to_endpoint(what: EndpointFrame) -> bytes:
     """Encode an ENDPOINT."""
     qos = what.qos
     policies = _QOS.pack(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, GraphEndpoint, GraphNode
+from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndpointFrame, NodeFrame
 from rmw_lockstep.qos import compatible
 
 #: The number of the hub among the processes.
@@ -15,26 +15,26 @@ class HubGraph:
     """Nodes and endpoints by their identities."""
 
     def __init__(self) -> None:
-        self.nodes: dict[int, GraphNode] = {}
-        self.endpoints: dict[int, GraphEndpoint] = {}
-        self._by_name: dict[str, list[GraphEndpoint]] = {}
-        self._readers: dict[int, tuple[GraphEndpoint, ...]] = {}
+        self.nodes: dict[int, NodeFrame] = {}
+        self.endpoints: dict[int, EndpointFrame] = {}
+        self._by_name: dict[str, list[EndpointFrame]] = {}
+        self._readers: dict[int, tuple[EndpointFrame, ...]] = {}
 
-    def add_node(self, node: GraphNode) -> None:
+    def add_node(self, node: NodeFrame) -> None:
         """Add a node."""
         self.nodes[node.id] = node
 
-    def remove_node(self, number: int) -> GraphNode:
+    def remove_node(self, number: int) -> NodeFrame:
         """Remove a node; the caller has to remove the endpoints that it still had."""
         return self.nodes.pop(number)
 
-    def add(self, endpoint: GraphEndpoint) -> None:
+    def add(self, endpoint: EndpointFrame) -> None:
         """Add an endpoint."""
         self.endpoints[endpoint.id] = endpoint
         self._by_name.setdefault(endpoint.name, []).append(endpoint)
         self._readers.clear()
 
-    def remove(self, number: int) -> GraphEndpoint:
+    def remove(self, number: int) -> EndpointFrame:
         """Remove an endpoint."""
         endpoint = self.endpoints.pop(number)
         same_name = self._by_name[endpoint.name]
@@ -44,7 +44,7 @@ class HubGraph:
         self._readers.clear()
         return endpoint
 
-    def readers(self, publisher: GraphEndpoint) -> tuple[GraphEndpoint, ...]:
+    def readers(self, publisher: EndpointFrame) -> tuple[EndpointFrame, ...]:
         """Return the subscriptions that get what `publisher` sends. Cached until a change: each message needs it."""
         found = self._readers.get(publisher.id)
         if found is None:
@@ -52,32 +52,32 @@ class HubGraph:
             self._readers[publisher.id] = found
         return found
 
-    def writers(self, subscription: GraphEndpoint) -> tuple[GraphEndpoint, ...]:
+    def writers(self, subscription: EndpointFrame) -> tuple[EndpointFrame, ...]:
         """Return the publishers that `subscription` gets messages from."""
         return tuple(e for e in self._named(subscription, PUBLISHER) if compatible(e.qos, subscription.qos))
 
-    def servers(self, client: GraphEndpoint) -> tuple[GraphEndpoint, ...]:
+    def servers(self, client: EndpointFrame) -> tuple[EndpointFrame, ...]:
         """Return the servers that get the requests of `client`."""
         return tuple(self._named(client, SERVER))
 
-    def endpoints_of(self, node: int) -> tuple[GraphEndpoint, ...]:
+    def endpoints_of(self, node: int) -> tuple[EndpointFrame, ...]:
         """Return the endpoints of a node."""
         return tuple(e for e in self.endpoints.values() if e.node == node)
 
-    def program_nodes(self) -> tuple[GraphNode, ...]:
+    def program_nodes(self) -> tuple[NodeFrame, ...]:
         """Return the nodes that are not the hub's own, by name."""
         return tuple(sorted((n for n in self.nodes.values() if n.id >> 32 != HUB), key=lambda n: n.full_name))
 
     def program_endpoints(
         self, kinds: Iterable[int] = (PUBLISHER, SUBSCRIPTION, SERVER, CLIENT)
-    ) -> list[GraphEndpoint]:
+    ) -> list[EndpointFrame]:
         """Return the endpoints that are not the hub's own."""
         return [e for e in self.endpoints.values() if e.process != HUB and e.kind in kinds]
 
-    def of_program(self, name: str, kind: int) -> list[GraphEndpoint]:
+    def of_program(self, name: str, kind: int) -> list[EndpointFrame]:
         """Return the program's own endpoints of this kind and name."""
         return [e for e in self._by_name.get(name, ()) if e.kind == kind and e.process != HUB]
 
-    def _named(self, other: GraphEndpoint, kind: int) -> list[GraphEndpoint]:
+    def _named(self, other: EndpointFrame, kind: int) -> list[EndpointFrame]:
         """Return the endpoints of this kind with the same name and type."""
         return [e for e in self._by_name.get(other.name, ()) if e.kind == kind and e.type == other.type]

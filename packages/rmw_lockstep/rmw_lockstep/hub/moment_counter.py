@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from rmw_lockstep.hub.frames import PUBLISHER, GraphEndpoint
+from rmw_lockstep.hub.frames import PUBLISHER, EndpointFrame
 from rmw_lockstep.hub.graph import HubGraph
 from rmw_lockstep.hub.limits import HubLimits, Reason, Violation
 
@@ -24,14 +24,14 @@ class MomentCounter:
         self._now = 0
         self._total = 0
         self._sent: Counter[str] = Counter()
-        self._senders: dict[str, GraphEndpoint] = {}
+        self._senders: dict[str, EndpointFrame] = {}
 
     def begin(self) -> None:
         """Count from 0: the hub has published something, which the program may answer."""
         self._total = 0
         self._sent.clear()
 
-    def count(self, sender: GraphEndpoint, now: int, number: int = 1) -> None:
+    def count(self, sender: EndpointFrame, now: int, number: int = 1) -> None:
         """Count what was sent at the time `now` (ns). Raises `Violation` when it is too much."""
         if now != self._now:
             self._now = now

@@ -17,7 +17,7 @@ from rmw_lockstep.hub.endpoints import (
     Moment,
     PendingRequest,
 )
-from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, GraphEndpoint, GraphNode
+from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndpointFrame, NodeFrame
 from rmw_lockstep.hub.graph import HUB, HubGraph
 from rmw_lockstep.hub.limits import HubUsage, Violation
 from rmw_lockstep.hub.link import ProcessLink
@@ -144,7 +144,7 @@ class Router:
         if endpoint.kind == SUBSCRIPTION and endpoint.qos.durability == TRANSIENT_LOCAL:
             self._replay(link, endpoint)
 
-    def _replay(self, link: ProcessLink, subscription: GraphEndpoint) -> None:
+    def _replay(self, link: ProcessLink, subscription: EndpointFrame) -> None:
         """Send a subscription what was published before, if it requests that. Processes replay their own messages."""
         for writer in self.graph.writers(subscription):
             publisher = self._ends.get(writer.id)
@@ -164,11 +164,11 @@ class Router:
         self._remove(number)
         self._broadcast(frames.to_gone(b"e", number), link)
 
-    def _new(self, link: ProcessLink, number: int, known: dict[int, GraphNode] | dict[int, GraphEndpoint]) -> None:
+    def _new(self, link: ProcessLink, number: int, known: dict[int, NodeFrame] | dict[int, EndpointFrame]) -> None:
         if number >> 32 != link.number or number in known:
             raise Violation("protocol", "an identity that is not the process's own, or is given twice")
 
-    def _add(self, endpoint: GraphEndpoint) -> None:
+    def _add(self, endpoint: EndpointFrame) -> None:
         self.graph.add(endpoint)
         self._routes.clear()
 
@@ -244,13 +244,13 @@ class Router:
         if other is not None and subscription in other.endpoints:
             self._pass_on(link, other, frames.to_replayed(publisher.id, subscription))
 
-    def _own(self, link: ProcessLink, number: int, *kinds: int) -> GraphEndpoint:
+    def _own(self, link: ProcessLink, number: int, *kinds: int) -> EndpointFrame:
         endpoint = self.graph.endpoints.get(number) if number in link.endpoints else None
         if endpoint is None or endpoint.kind not in kinds:
             raise Violation("protocol", "a process speaks for an endpoint that is not its own")
         return endpoint
 
-    def _route(self, publisher: GraphEndpoint) -> Route:
+    def _route(self, publisher: EndpointFrame) -> Route:
         readers = self.graph.readers(publisher)
         own = [self._ends[reader.id] for reader in readers if reader.process == HUB]
         others = {reader.process for reader in readers} - {publisher.process}
@@ -261,7 +261,7 @@ class Router:
         self._routes[publisher.id] = route
         return route
 
-    def _is_shared(self, publisher: GraphEndpoint, node: str) -> bool:
+    def _is_shared(self, publisher: EndpointFrame, node: str) -> bool:
         rivals = self.graph.of_program(publisher.name, PUBLISHER)
         return any(
             rival.process != publisher.process and self.graph.nodes[rival.node].full_name == node for rival in rivals
@@ -285,7 +285,7 @@ class Router:
                 self._ask(link, server, client.id, call.number, call.source_time, call.cdr)
 
     def _ask(
-        self, origin: ProcessLink | None, server: GraphEndpoint, client: int, number: int, source_time: int, cdr: bytes
+        self, origin: ProcessLink | None, server: EndpointFrame, client: int, number: int, source_time: int, cdr: bytes
     ) -> None:
         link = self._link(server.process)
         if link is None:
@@ -332,16 +332,16 @@ class Router:
 
     # --- the hub's own ends: see `rmw_lockstep.hub.endpoints.EndpointHost`
 
-    def new_node(self, name: str, namespace: str = "/") -> GraphNode:
+    def new_node(self, name: str, namespace: str = "/") -> NodeFrame:
         """Return a new node of the hub's."""
-        node = GraphNode(next(self._numbers), name, namespace)
+        node = NodeFrame(next(self._numbers), name, namespace)
         self.graph.add_node(node)
         self._broadcast(frames.to_node(node))
         return node
 
-    def new_endpoint(self, kind: int, node: GraphNode, name: str, type: str, qos: QosPolicies) -> GraphEndpoint:
+    def new_endpoint(self, kind: int, node: NodeFrame, name: str, type: str, qos: QosPolicies) -> EndpointFrame:
         """Return an identity for one of the hub's endpoints."""
-        return GraphEndpoint(next(self._numbers), kind, node.id, name, type, type_hash(type), qos)
+        return EndpointFrame(next(self._numbers), kind, node.id, name, type, type_hash(type), qos)
 
     def add_end(self, end: HubEndpoint) -> None:
         """Add it to the graph."""
@@ -351,7 +351,7 @@ class Router:
         if isinstance(end, HubPublisher):
             self._replay_nothing(end.endpoint)
 
-    def _replay_nothing(self, publisher: GraphEndpoint) -> None:
+    def _replay_nothing(self, publisher: EndpointFrame) -> None:
         """A new publisher has kept nothing for the subscriptions that were there before."""
         for reader in self.graph.readers(publisher):
             link = self._link(reader.process)
@@ -369,7 +369,7 @@ class Router:
         """Whether the hub itself answers anything."""
         return any(isinstance(end, HubServer) for end in self._ends.values())
 
-    def matched(self, endpoint: GraphEndpoint) -> tuple[GraphEndpoint, ...]:
+    def matched(self, endpoint: EndpointFrame) -> tuple[EndpointFrame, ...]:
         """Return the processes' endpoints that exchange messages with one of the hub's endpoints."""
         graph = self.graph
         if endpoint.kind == SERVER:

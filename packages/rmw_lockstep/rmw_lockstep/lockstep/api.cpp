@@ -1,10 +1,10 @@
 // What lockstep.h offers to whoever speaks over the connection.
 #include <errno.h>
 
-#include "polling.hpp"
+#include "poll_loop.hpp"
 #include "real.hpp"
 #include "signals.hpp"
-#include "sleeping.hpp"
+#include "sleep.hpp"
 
 using namespace lockstep;
 
@@ -22,7 +22,7 @@ LOCKSTEP_API void lockstep_sent_output() { core().sent_output(); }
 LOCKSTEP_API void lockstep_sent() { discount_readings(); }
 LOCKSTEP_API void lockstep_settle_signals() { signals().settle(); }
 LOCKSTEP_API uint64_t lockstep_sleeps() { return sleeps; }
-LOCKSTEP_API void lockstep_looked(int in_vain) { polling.look(in_vain); }
+LOCKSTEP_API void lockstep_looked(int in_vain) { poll_loop.look(in_vain); }
 
 LOCKSTEP_API int64_t lockstep_now() { return virtual_time() ? core().now() : real::now(CLOCK_MONOTONIC); }
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "polling.hpp"
+#include "poll_loop.hpp"
 #include "real.hpp"
-#include "sleeping.hpp"
+#include "sleep.hpp"
 
 namespace lockstep {
 namespace {
@@ -54,7 +54,7 @@ constexpr int OK = 0, INVALID_ARGUMENT = 11;  // of rcutils/types/rcutils_ret.h
 
 int read_for_ros(clockid_t clock, int64_t * now) {
   if (!now) return INVALID_ARGUMENT;
-  polling.forget();
+  poll_loop.forget();
   *now = virtual_time() ? moment(clock) : real::now(clock);
   return OK;
 }
@@ -64,7 +64,7 @@ int read_for_ros(clockid_t clock, int64_t * now) {
 void discount_reading() { if (readings) --readings; }
 void discount_readings() { readings -= std::min(readings, READINGS); }
 
-void looked_in_vain() {
+void poll_found_nothing() {
   if (looked_at != core().now()) { looked_at = core().now(); looks = 0; }
   if (looks < MOST_LOOKS) ++looks;
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "real.hpp"
-#include "sleeping.hpp"
+#include "sleep.hpp"
 
 namespace lockstep {
 namespace {
@@ -75,7 +75,7 @@ int wait_until(pthread_cond_t * condition, pthread_mutex_t * mutex, int64_t dead
   Sleeper sleeper;
   sleeper.deadline = deadline;
   sleeper.condition = condition;
-  Asleep asleep(sleeper);
+  SleepScope asleep(sleeper);
   const int result = sleeper.awake ? 0 : real::pthread_cond_wait()(condition, mutex);
   return result == 0 && sleeper.awake && sleeper.due ? ETIMEDOUT : result;
 }

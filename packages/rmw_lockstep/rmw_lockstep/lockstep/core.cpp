@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "bytes.hpp"
-#include "polling.hpp"
+#include "poll_loop.hpp"
 #include "real.hpp"
 #include "signals.hpp"
 
@@ -142,7 +142,7 @@ bool Core::nudge(const Sleeper & sleeper) {
 }
 
 bool Core::may_lengthen(const Sleeper & sleeper) const {
-  return sleeper.period && sleeper.period <= LONGEST_SLEEP / 2 && !has_own_pace_ && polling.can_wait();
+  return sleeper.period && sleeper.period <= LONGEST_SLEEP / 2 && !has_own_pace_ && poll_loop.can_wait();
 }
 
 // Something happens that threads may look for. At one moment, those with a higher number look after this `thread`.
@@ -153,7 +153,7 @@ void Core::shorten_sleeps(pid_t thread) {
 
 void Core::sent_output() {
   sent_output_ = true;
-  has_own_pace_ |= polling.in_vain();
+  has_own_pace_ |= poll_loop.is_fruitless();
 }
 
 // ---- idle

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "real.hpp"
-#include "sleeping.hpp"
+#include "sleep.hpp"
 
 namespace lockstep {
 namespace {
@@ -30,7 +30,7 @@ int poll_until(const pollfd * files, nfds_t count, int64_t deadline, const sigse
   const timespec now{0, 0};
   const int ready = real::ppoll()(out.data(), count, &now, mask);
   if (ready) return ready;
-  if (deadline <= core().now()) { looked_in_vain(); return 0; }
+  if (deadline <= core().now()) { poll_found_nothing(); return 0; }
   out.push_back({event.get(), POLLIN, 0});
   Sleeper sleeper;
   sleeper.deadline = deadline;
@@ -40,7 +40,7 @@ int poll_until(const pollfd * files, nfds_t count, int64_t deadline, const sigse
   sleeper.file_count = count;
   int found, fault;
   {
-    Asleep asleep(sleeper);
+    SleepScope asleep(sleeper);
     found = real::ppoll()(out.data(), out.size(), nullptr, mask);
     fault = errno;
   }
@@ -53,7 +53,7 @@ int poll_until(const pollfd * files, nfds_t count, int64_t deadline, const sigse
 
 // Pass on what the real call has found. `waits`: it would have waited for as long as there is nothing.
 int without_waiting(int found, bool waits) {
-  if (virtual_time() && found == 0 && !waits) looked_in_vain();
+  if (virtual_time() && found == 0 && !waits) poll_found_nothing();
   return found;
 }
 

@@ -7,7 +7,7 @@
 
 #include "real.hpp"
 #include "signals.hpp"
-#include "sleeping.hpp"
+#include "sleep.hpp"
 
 namespace lockstep {
 namespace {
@@ -42,16 +42,16 @@ int wait_for(sem_t * semaphore, int64_t deadline) {
   ++inside.waiting;
   int result = -1;
   {
-    Asleep asleep(sleeper);
+    SleepScope asleep(sleeper);
     while (result < 0) {
       if (sleeper.awake) {
         result = sleeper.due ? ETIMEDOUT : EINTR;
       } else if (inside.value == 0) {
         if (futex_wait(inside.value, 0, sleeper.semaphore_shared) == EINTR) result = EINTR;
       } else {
-        asleep.rise();  // before the semaphore is taken: it must not look taken with this thread asleep
+        asleep.leave();  // before the semaphore is taken: it must not look taken with this thread asleep
         if (real::sem_trywait()(semaphore) == 0) result = 0;
-        else asleep.fall();
+        else asleep.enter();
       }
     }
   }

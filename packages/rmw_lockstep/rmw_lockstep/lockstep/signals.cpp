@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "real.hpp"
-#include "sleeping.hpp"
+#include "sleep.hpp"
 
 namespace lockstep {
 namespace {

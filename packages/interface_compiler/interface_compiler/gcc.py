@@ -16,7 +16,7 @@ from pathlib import Path
 
 from interface_compiler import toolchain
 from interface_compiler.definition import CompileError
-from interface_compiler.generating import GeneratedCode
+from interface_compiler.generators import GeneratedCode
 from interface_compiler.prefixes import PYTHON
 
 #: The wheels' libraries that the code calls, and those whose headers it includes.

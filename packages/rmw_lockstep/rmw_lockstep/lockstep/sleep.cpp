@@ -1,5 +1,5 @@
 // sleep(3), nanosleep(2) and their kin.
-#include "sleeping.hpp"
+#include "sleep.hpp"
 
 #include <errno.h>
 #include <linux/futex.h>
@@ -21,7 +21,7 @@ int sleep_until(int64_t deadline, bool holds_interpreter) {
   sleeper.deadline = deadline;
   sleeper.period = holds_interpreter ? 0 : deadline - core().now();
   sleeper.holds_interpreter = holds_interpreter;
-  Asleep asleep(sleeper);
+  SleepScope asleep(sleeper);
   while (!sleeper.awake)
     if (futex_wait(sleeper.awake, 0) == EINTR && !sleeper.awake) return EINTR;
   return sleeper.interrupted ? EINTR : 0;

@@ -18,14 +18,14 @@ inline int64_t steady(clockid_t clock, int64_t moment) {
 }
 
 // Is in the core's list of sleepers for as long as it lives.
-class Asleep {
+class SleepScope {
 public:
-  explicit Asleep(Sleeper & sleeper) : sleeper_(sleeper) { fall(); }
-  ~Asleep() { rise(); }
-  Asleep(const Asleep &) = delete;
-  Asleep & operator=(const Asleep &) = delete;
-  void fall() { if (!in_) { core().lock(); core().fall_asleep(sleeper_); core().unlock(); in_ = true; } }
-  void rise() { if (in_) { core().lock(); core().wake_up(sleeper_); core().unlock(); in_ = false; } }
+  explicit SleepScope(Sleeper & sleeper) : sleeper_(sleeper) { enter(); }
+  ~SleepScope() { leave(); }
+  SleepScope(const SleepScope &) = delete;
+  SleepScope & operator=(const SleepScope &) = delete;
+  void enter() { if (!in_) { core().lock(); core().fall_asleep(sleeper_); core().unlock(); in_ = true; } }
+  void leave() { if (in_) { core().lock(); core().wake_up(sleeper_); core().unlock(); in_ = false; } }
 
 private:
   Sleeper & sleeper_;
@@ -36,7 +36,7 @@ private:
 int sleep_until(int64_t deadline, bool holds_interpreter = false);
 
 // The thread has looked at files without waiting, and nothing was there: see clock.cpp.
-void looked_in_vain();
+void poll_found_nothing();
 
 // Discount the last reading of the clock: it was not the program's own, and is random.
 void discount_reading();

@@ -1,16 +1,16 @@
-#include "polling.hpp"
+#include "poll_loop.hpp"
 
 namespace lockstep {
 
-thread_local Polling polling;
+thread_local PollLoop poll_loop;
 
-void Polling::look(bool in_vain) {
+void PollLoop::look(bool in_vain) {
   const bool goes_on = in_vain && sleeps - slept_ <= 1;
-  looks_ = goes_on ? looks_ + (sleeps != slept_) : 0;
+  polls_ = goes_on ? polls_ + (sleeps != slept_) : 0;
   slept_ = sleeps;
 }
 
-bool Polling::can_wait() const { return in_vain() && sleeps == slept_; }
+bool PollLoop::can_wait() const { return is_fruitless() && sleeps == slept_; }
 
 void lengthen(Sleeper & sleeper, int64_t now) {
   sleeper.begin = now;

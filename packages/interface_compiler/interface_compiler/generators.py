@@ -33,7 +33,7 @@ class GeneratedCode:
 
 
 @dataclass(frozen=True)
-class GeneratedSources:
+class DefinitionFolder:
     """One package's definitions: `folder/{msg,srv,action}/…`, and `share` for their installed files.
 
     `known` are the folders of the other packages' shared files, by package.
@@ -50,7 +50,7 @@ class GeneratedSources:
         return sorted(file.relative_to(self.folder) for file in files)
 
 
-def generate(sources: GeneratedSources, work: Path, python: Path, templates: Path) -> GeneratedCode:
+def generate(sources: DefinitionFolder, work: Path, python: Path, templates: Path) -> GeneratedCode:
     """Write the code of a package, and its .idl files and type descriptions into its share folder.
 
     Args:
@@ -73,7 +73,7 @@ def generate(sources: GeneratedSources, work: Path, python: Path, templates: Pat
     return generated
 
 
-def describe(sources: GeneratedSources, work: Path) -> None:
+def describe(sources: DefinitionFolder, work: Path) -> None:
     """Write only the .idl files and the type descriptions, with their hashes, into a package's share folder."""
     _read_each_idl_once()
     with contextlib.redirect_stdout(io.StringIO()):
@@ -81,7 +81,7 @@ def describe(sources: GeneratedSources, work: Path) -> None:
         _Generators(sources, GeneratedCode(sources.package, work, work, work), work, work).describe()
 
 
-def _write_idl(sources: GeneratedSources) -> None:
+def _write_idl(sources: DefinitionFolder) -> None:
     from rosidl_adapter import convert_to_idl
 
     for interface in sources.interfaces():
@@ -94,7 +94,7 @@ def _write_idl(sources: GeneratedSources) -> None:
 class _Generators:
     """Calls the generators one after another. Each reads its arguments from a JSON file."""
 
-    def __init__(self, sources: GeneratedSources, generated: GeneratedCode, work: Path, templates: Path) -> None:
+    def __init__(self, sources: DefinitionFolder, generated: GeneratedCode, work: Path, templates: Path) -> None:
         self._sources, self._generated, self._work, self._templates = sources, generated, work, templates
         idl = [interface.with_suffix(".idl").as_posix() for interface in sources.interfaces()]
         self._common = {

@@ -1,4 +1,4 @@
-"""Makes packages in a prefix, in a process of its own: `python -m interface_compiler.building PREFIX PACKAGE …`.
+"""Makes packages in a prefix, in a process of its own: `python -m interface_compiler.prefix_builder PREFIX PACKAGE …`.
 
 The generators change global state and import many modules, which a notebook's kernel should not keep.
 """
@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from interface_compiler import checks, prefixes
-from interface_compiler.compiling import Dependency, compile_package
 from interface_compiler.definition import CompileError, read_folder
-from interface_compiler.generating import GeneratedCode, GeneratedSources, generate
+from interface_compiler.gcc import Dependency, compile_package
+from interface_compiler.generators import DefinitionFolder, GeneratedCode, generate
 from interface_compiler.prefixes import PYTHON, RESOURCES
 
 #: Where a prefix keeps the definitions that it was made from.
@@ -42,7 +42,7 @@ def build(prefix: Path, package: str) -> None:
     wheels = Path(sys.prefix)
     places = prefixes.packages([prefix, *prefixes.installed()])
     known = {name: places[name] / "share" / name for name in places if name != package}
-    sources = GeneratedSources(package, prefix / DEFINITIONS / package, prefix / "share" / package, known)
+    sources = DefinitionFolder(package, prefix / DEFINITIONS / package, prefix / "share" / package, known)
     definitions = [item for item in read_folder(prefix / DEFINITIONS)[0] if item.package == package]
     needed = sorted(checks.dependencies(definitions)[package])
     with tempfile.TemporaryDirectory(prefix=f"{package}-") as temporary:
@@ -55,7 +55,7 @@ def build(prefix: Path, package: str) -> None:
     _write_index(prefix, sources, needed)
 
 
-def _used(sources: GeneratedSources, needed: Sequence[str]) -> list[str]:
+def _used(sources: DefinitionFolder, needed: Sequence[str]) -> list[str]:
     """Return the packages whose types this one uses, including those inside nested types."""
     used = set(needed)
     for interface in sources.interfaces():
@@ -84,7 +84,7 @@ def _copy_headers(generated: GeneratedCode, prefix: Path) -> None:
             shutil.copyfile(header, copy)
 
 
-def _write_index(prefix: Path, sources: GeneratedSources, needed: Sequence[str]) -> None:
+def _write_index(prefix: Path, sources: DefinitionFolder, needed: Sequence[str]) -> None:
     """Write what makes the package known to ament: its markers, and its package.xml."""
     files = [file for item in sources.interfaces() for file in (item.as_posix(), item.with_suffix(".idl").as_posix())]
     markers = {
