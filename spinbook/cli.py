@@ -18,8 +18,8 @@ from spinbook.problem import SpinbookError
 
 @dataclass(frozen=True)
 class Verb:
-    """A verb: its click command as `module:name`, and one line for `spinbook --help`. `needs` is a module without which
-    the verb can only show its help.
+    """A verb: its click command as `module:name`, and one line for `spinbook --help`. Without the module `needs`, the
+    verb can only show its help.
     """
 
     command: str
@@ -100,7 +100,7 @@ class Verbs(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Refuse a verb whose `needs` are missing, unless only its help is wanted."""
+        """Refuse a verb whose `needs` is missing, unless only its help was requested."""
         name, command, rest = super().resolve_command(ctx, args)
         needed = VERBS[name].needs if name in VERBS else ""
         if name and needed and not set(rest) & {"-h", "--help"} and importlib.util.find_spec(needed) is None:
@@ -159,8 +159,8 @@ def spinbook() -> None:
 
 
 def main() -> None:
-    """Run `spinbook` as a program; bad input is reported in words and exits with 1, bad usage with 2."""
-    atexit.register(gc.freeze)  # the last to be called: what the system takes back anyway needs no collecting
+    """Run `spinbook` as a program; invalid input prints a message and exits with 1, wrong usage with 2."""
+    atexit.register(gc.freeze)  # runs last: the system frees the memory anyway, so there is nothing to collect
     try:
         spinbook()
     except SpinbookError as error:

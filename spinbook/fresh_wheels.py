@@ -28,8 +28,7 @@ def load_fresh_wheels() -> None:
 
 
 def _libraries() -> list[Path]:
-    """Return the wheels' shared libraries; of several copies with one name, the first: loaded twice, some would
-    abort."""
+    """Return the wheels' shared libraries, of several copies the first: some abort when they are loaded twice."""
     found: dict[str, Path] = {}
     for distribution in distributions():
         if not distribution.name.lower().startswith(("ros-", "ros_", "rosidl_", "rosgraph_", "rmw_")):

@@ -66,5 +66,5 @@ def _titles(course: Course) -> dict[str, str]:
         try:
             titles[name] = load(course.root / "exercises" / name).title
         except ExerciseError:
-            continue  # its page is called by its name
+            continue  # the page uses its name
     return titles

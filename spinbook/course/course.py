@@ -47,7 +47,7 @@ class Course:
     glossary: Path | None = None
     """The file whose headings are the course's terms."""
     site: str = ""
-    """Where the website is published; empty where course.toml does not say and it can't be known."""
+    """Where the website is published; empty if neither course.toml nor the repository says so."""
 
     @property
     def build_folder(self) -> Path:
@@ -67,7 +67,7 @@ class Course:
 
 
 def names_of(chapters: Sequence[Path]) -> dict[Path, str]:
-    """Return file -> a name that no other of these files has: its own, with as many of its folders as it takes."""
+    """Map each file to a unique name: its own, with as many of its folders as that takes."""
     names = {chapter: _name(chapter, 0) for chapter in chapters}
     for folders in range(1, max((len(chapter.parts) for chapter in chapters), default=1)):
         taken = Counter(name.lower() for name in names.values())
@@ -137,7 +137,7 @@ def read_course(root: Path) -> Course:
 
 
 def _site(given: str, repository: str) -> str:
-    """Return the website's address with a slash at its end: as given, or that of the repository's GitHub Pages."""
+    """Return the website's address, ending in a slash: as given, or that of the repository's GitHub Pages."""
     if given:
         return given.rstrip("/") + "/"
     match = re.fullmatch(r"https://github\.com/([\w-]+)/([\w.-]+?)(?:\.git)?/?", repository)

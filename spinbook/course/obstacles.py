@@ -1,4 +1,4 @@
-"""What keeps a course's cells from running. Each cause is listed once; the cause that would unlock most comes first."""
+"""What keeps a course's cells from running. Each cause is listed once, the most frequent first."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _WORDS = {
 
 @dataclass(frozen=True)
 class Obstacle:
-    """One cause. `problems` are its places; `blocks` says that something is not run because of it."""
+    """One cause. `problems` are the places where it occurs."""
 
     group: str
     problems: tuple[Problem, ...]
@@ -51,7 +51,7 @@ class Obstacle:
 
     @property
     def chapters(self) -> tuple[Path, ...]:
-        """The chapters in which it is."""
+        """The chapters in which it occurs."""
         return tuple(dict.fromkeys(problem.file for problem in self.problems))
 
     @property
@@ -71,8 +71,7 @@ class Obstacle:
 
 
 def obstacles(problems: Iterable[Problem]) -> list[Obstacle]:
-    """Return the causes that several places may share: those first that would unlock most, those last that block
-    nothing."""
+    """Return the shared causes: first those that keep most cells from running, last those that block nothing."""
     groups: dict[str, list[Problem]] = {}
     for problem in problems:
         if problem.group:
@@ -96,5 +95,5 @@ def ranked(problems: Sequence[Problem]) -> list[str]:
 
 
 def strict(problem: Problem) -> Problem:
-    """Return the problem as `--strict` sees it: what is not run is an error."""
+    """Return the problem as `--strict` treats it: code that is not run is an error."""
     return replace(problem, severity=Severity.ERROR) if problem.severity is Severity.NOT_RUN else problem

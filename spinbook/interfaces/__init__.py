@@ -1,1 +1,1 @@
-"""The messages, services and actions of a course: collected, compiled, and used wherever its nodes run."""
+"""The messages, services and actions of a course: collecting, compiling and using them."""

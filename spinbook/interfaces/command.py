@@ -33,7 +33,7 @@ def interfaces() -> None:
 @interfaces.command("list")
 @_course
 def list_(start: Path) -> None:
-    """What this course defines, with file and line, and which packages can be added."""
+    """List what this course defines, with file and line, and which packages can be added."""
     try:
         collected = collect(find_course(start))
     except SpinbookError:
@@ -87,7 +87,7 @@ def _add(package: str) -> None:
     if is_current(package):
         click.echo(f"{package}: is installed")
         return
-    # Before it is done, as it may take minutes.
+    # Printed before compiling, which may take minutes.
     click.echo(f"{package}: compiling {len(shipped.definitions(package))} interfaces")
     install(package)
     click.echo(f"{package}: compiled and installed")

@@ -20,7 +20,7 @@ from spinbook.problem import SpinbookError
 
 #: The course's folder with definitions: interfaces/PACKAGE/{msg,srv,action}/.
 FOLDER = "interfaces"
-#: Whether a chapter can hold a definition at all: most do not, and are not read for it.
+#: Finds chapters that may contain a definition. Most do not, and then need not be read.
 _HAS_ONE = re.compile(rb"\b(msg|srv|action)/[\w-]+\.\1\b")
 
 
@@ -49,7 +49,7 @@ def collect(course: Course) -> CourseDefinitions:
 
 
 def checked(course: Course) -> CourseDefinitions:
-    """Return the same, of a course whose definitions have no faults. Raises SpinbookError with each fault there is."""
+    """Collect a course's definitions and check them. Raises SpinbookError with every fault."""
     collected = collect(course)
     faults = check(collected.definitions, prefixes.interfaces(prefixes.installed()))
     if found := [*collected.problems, *problems(faults)]:
@@ -58,7 +58,7 @@ def checked(course: Course) -> CourseDefinitions:
 
 
 def problems(faults: Iterable[Fault]) -> Iterator[Problem]:
-    """Return what the compiler says of definitions, as problems of an author's files."""
+    """Return the compiler's faults as problems in the author's files."""
     return (Problem(fault.file, fault.line, fault.problem, fault.fix) for fault in faults)
 
 
@@ -110,7 +110,7 @@ def compile_course(course: Course, collected: CourseDefinitions | None = None) -
 
 
 def _are_sourced(collected: CourseDefinitions) -> bool:
-    """Return whether a sourced workspace has them all, built by colcon from the same text."""
+    """Return whether a sourced workspace has all definitions, built by colcon from the same text."""
     places = [prefix for prefix in prefixes.installed() if prefix not in activation.active()]
     return all(
         store.is_installed(package, members, places) for package, members in by_package(collected.definitions).items()

@@ -1,4 +1,4 @@
-"""Shows in a cell what a process prints, while it prints it, for a bounded time and a bounded number of lines."""
+"""Shows the output of a process in a cell, live, for a limited time and a limited number of lines."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from dataclasses import dataclass
 from ros_in_python.ros2.domain import participates
 from spinbook.kernel.process import KeptProcess
 
-#: Lines shown as they come, and lines kept for the end when more come.
+#: The number of lines shown at first and, if there are more, at the end.
 FIRST_LINES = 60
 LAST_LINES = 10
 _POLL_S = 0.03
-#: The time between two looks whether a process has joined ROS (s).
+#: The time between two checks whether a process has joined ROS (s).
 _LOOK_S = 0.2
-#: A process that has neither printed anything nor joined ROS by then (s) is taken to have started.
+#: After this time (s), a process counts as started even if it has not printed anything or joined ROS.
 _STARTING_S = 20.0
 
 
 @dataclass(frozen=True)
 class DisplayLimit:
-    """How long a process is shown: for this many seconds, or until it has printed this text, or until it ends.
+    """How long a process is shown: for so many seconds, until it has printed this text, or until it ends.
 
     The seconds count from its first line, so that a slow machine shows as much as a fast one.
     """
@@ -36,8 +36,8 @@ class DisplayLimit:
 class Countdown:
     """Decides when a process has been shown for long enough.
 
-    The seconds count from its first line. While there is none they count from when it joined ROS, and then they are
-    at least as many as it took to join: where starting takes long, so does the first message.
+    The seconds count from its first line or, if there is none, from when it joined ROS. Then they are at least as many
+    as joining took: if the start takes long, so does the first message.
     """
 
     def __init__(
@@ -51,7 +51,9 @@ class Countdown:
         self._first_line: float | None = None
 
     def is_over(self, has_printed: bool) -> bool:
-        """To be asked again and again; `has_printed` says whether the process has printed anything yet."""
+        """Return whether the time is over, when polled; `has_printed` says whether the process has printed anything
+        yet.
+        """
         now = self._now()
         if self._first_line is None and has_printed:
             self._first_line = now
@@ -68,14 +70,14 @@ class Countdown:
 
     @property
     def silent_s(self) -> float:
-        """For how long nothing has been printed, counted from when the process joined ROS, if it has (s)."""
+        """How long (s) nothing has been printed, counted from when the process joined ROS, if it has."""
         return self._now() - (self._began if self._joined is None else self._joined)
 
 
 def joins(process: KeptProcess, domain: int) -> Callable[[], bool]:
-    """Says whether a process, or one that it has started, takes part in the ROS domain yet.
+    """Return a function that says whether a process, or one that it started, takes part in the ROS domain yet.
 
-    It looks only every so often: it goes through all processes of the machine.
+    The function checks only now and then, because it goes through all processes of the machine.
     """
     looked = time.monotonic()
 
@@ -90,7 +92,7 @@ def joins(process: KeptProcess, domain: int) -> Callable[[], bool]:
 
 
 class OutputPrinter:
-    """Prints lines as they come; of very many it prints the first and, at the end, the last."""
+    """Prints lines as they arrive; if there are very many, only the first and, at the end, the last."""
 
     def __init__(self, first: int = FIRST_LINES, last: int = LAST_LINES) -> None:
         self._first = first
@@ -99,7 +101,7 @@ class OutputPrinter:
         self._part = ""
         self._lost = False
         self.seen = ""
-        """The last lines, for who waits for a text in them."""
+        """The last output, to find a text in it."""
 
     @property
     def has_any(self) -> bool:
@@ -107,10 +109,10 @@ class OutputPrinter:
         return bool(self.seen)
 
     def add(self, data: bytes, dropped: int = 0) -> None:
-        """Take in more output; `dropped` bytes before it were too many to keep."""
+        """Add output; `dropped` bytes before it were lost."""
         self._lost = self._lost or dropped > 0
         text = self._part + data.decode(errors="replace")
-        # What comes in two pieces is found as well.
+        # A text that arrives in two pieces is found, too.
         self.seen = self.seen[-1000:] + data.decode(errors="replace")
         *lines, self._part = text.split("\n")
         for line in lines:
@@ -125,7 +127,7 @@ class OutputPrinter:
             self._last.append(line)
 
     def end(self, total_lines: int, rest_is: str) -> None:
-        """Print what was held back. `rest_is` says where the omitted lines can be read."""
+        """Print the last lines. `rest_is` says where the omitted lines can be read."""
         if self._part:
             self._line(self._part)
             self._part = ""
@@ -137,19 +139,19 @@ class OutputPrinter:
         sys.stdout.flush()
 
 
-#: What is said where a text was waited for in vain: see `never_appeared`.
+#: Matches the message of `never_appeared`.
 NEVER_APPEARED = re.compile(r"^— the text (.+) did not appear within ([\d.]+) s —$", re.MULTILINE)
 
 
 def never_appeared(bound: DisplayLimit) -> str:
-    """Say that the text a cell waited for was not printed in its time; `NEVER_APPEARED` finds it again."""
+    """Return the message that the expected text was not printed in time; `NEVER_APPEARED` matches it."""
     return f"— the text {bound.until!r} did not appear within {bound.seconds:g} s —"
 
 
 def show_for(
     process: KeptProcess, bound: DisplayLimit, rest_is: str, has_joined: Callable[[], bool] = lambda: False
 ) -> None:
-    """Show what a process prints until it ends, or until its time is up; then say what did not come.
+    """Show what a process prints until it ends, or until its time is up; then say what is missing.
 
     `has_joined` says whether the process takes part in ROS yet (see `joins`).
     """

@@ -1,4 +1,4 @@
-"""`%check` and `%submit`: find the student's code, and have another process check it or hand it in."""
+"""`%check` and `%submit`: find the student's code, and let another process check it or hand it in."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class CheckedCode:
 
 
 def code_of(exercise: Exercise, session: Session, shell: Any, notebook: Path | None) -> CheckedCode:
-    """Return the exercise's code, as the session ran it last: its cell, and what that needs of the others.
+    """Return the exercise's code as the session last ran it: its cell, and what it needs of other cells.
 
     Raises CellFailed, with what to do, if the cell has not been run and the notebook's file is not known.
     """
@@ -71,12 +71,11 @@ def code_of(exercise: Exercise, session: Session, shell: Any, notebook: Path | N
 
 
 def cells_as_run(session: Session, shell: Any) -> tuple[NotebookCell, ...]:
-    """Return the cells that the kernel has run, each as it ran last: one that a later one replaces in full is left
-    out."""
+    """Return the cells that the kernel has run, each as it last ran, without those that later ones replace in full."""
     history = enumerate(shell.history_manager.input_hist_raw)
     cells = [NotebookCell(number, source) for number, source in history if source.strip()]
     ran = {cell.name: cell for cell in cells if cell.name}
-    # What another way than a cell has run, a test or an extension, is not in the history.
+    # Code that was not run from a cell, but by a test or an extension, is not in the history.
     cells += [
         NotebookCell(len(cells) + 1, f"%%node {name}\n{code}")
         for name, code in session.ran.items()
@@ -108,8 +107,7 @@ def _edited(node: str) -> str:
 
 
 def _saved_after(notebook: Path | None, moment: float) -> bool:
-    """Return whether the notebook was saved after this moment (s since the epoch): what was saved before is out of
-    date."""
+    """Return whether the notebook was saved after this moment (s since the epoch); if not, its file is out of date."""
     try:
         return notebook is not None and notebook.stat().st_mtime > moment
     except OSError:
@@ -130,23 +128,23 @@ VS_CODE = "__vsc_ipynb_file__"
 
 
 def notebook_file(variables: Mapping[str, Any], environment: Mapping[str, str]) -> Path | None:
-    """Return the notebook's file as last saved, or None if it is not known (Colab, a plain terminal)."""
+    """Return the notebook's file as last saved, or None if that is unknown (Colab, a plain terminal)."""
     for given in (variables.get(VS_CODE), environment.get(JUPYTER)):
         if isinstance(given, str) and given.endswith(".ipynb") and Path(given).is_file():
             return Path(given).resolve()
     return None
 
 
-#: The time that the process has to end cleanly when it is asked to (s).
+#: The time that the process has to end after SIGINT, and then after SIGTERM (s).
 _GRACE = (0.5, 0.5)
 
 
 def checked(exercise: Path, code: Code, seconds: float) -> dict[str, str]:
     """Return the result for `code`, by media type: text/html and text/plain.
 
-    Raises CellFailed when there is none: after `seconds`, when interrupted, or by a fault that is not the student's.
+    Raises CellFailed if there is none: after `seconds`, when interrupted, or because of a fault of ours.
     """
-    # A check that is stopped leaves its own temporary files there, too; a student that is another user goes through it.
+    # A stopped check leaves temporary files there. A program that runs as another user must be able to enter it.
     with tempfile.TemporaryDirectory(prefix="spinbook-", ignore_cleanup_errors=True) as temporary:
         folder = Path(temporary)
         folder.chmod(0o711)
@@ -191,7 +189,7 @@ def check_cell(session: Session, shell: Any, name: str, course: str, seconds: fl
     exercise = exercise_of(name, course, notebook)
     found = code_of(exercise, session, shell, notebook)
     print(found.note("Checked", f"%check {exercise.name}"))
-    # Saved with the notebook: it says which of several cells counts.
+    # Saved with the notebook: the record says which of several cells counts.
     record = {RECORD: {"exercise": exercise.name, "code": digest_of(found.code.source)}}
     display(checked(exercise.folder, found.code, seconds), metadata=record, raw=True)
 

@@ -3,8 +3,7 @@
 HOW is `--main` or `--class A [--class B …]`. `--main` calls the file's `main`, as the executable of an installed
 package does. `--class` spins Node classes that come without a main, all in one process.
 
-This file imports nothing of ROS before the code has run, since code that forgets an import must fail here as it does
-anywhere else.
+This file imports nothing of ROS before the code has run: code that forgets an import must fail here, too.
 """
 
 from __future__ import annotations
@@ -27,14 +26,14 @@ def main() -> None:
 
 
 def start(module: Mapping[str, Any], own: Sequence[str]) -> None:
-    """Start a module's `main` or its classes; `own` are the words HOW."""
+    """Start a module's `main` or its classes; `own` are the arguments HOW."""
     if "--main" in own:
         sys.exit(_call(module["main"]))
     _spin([module[name] for name in own if name != "--class"])
 
 
 def _call(start: Any) -> Any:
-    """Call a `main`, with None for an argument that it insists on."""
+    """Call a `main`, with None for each required argument."""
     required = [
         p
         for p in inspect.signature(start).parameters.values()

@@ -13,11 +13,11 @@ from groundwork.files import claim_number
 from interface_compiler import prefixes
 
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
-#: No time stamps: the same log from build to build.
+#: No time stamps, so that the log is the same in every build.
 LOG_FORMAT = "[{severity}] [{name}]: {message}"
-#: Set while `spinbook build` runs a notebook: nobody watches, so plots are drawn once.
+#: Set while `spinbook build` runs a notebook: nobody is watching, so plots are drawn only once.
 EXECUTING = "SPINBOOK_EXECUTING"
-#: Names a file into which a notebook writes its ROS domain, for anybody who watches it.
+#: The file into which a notebook writes its ROS domain, for an observer.
 DOMAIN_NOTE = "SPINBOOK_DOMAIN_NOTE"
 
 
@@ -31,7 +31,7 @@ def for_domain(domain: int, environment: Mapping[str, str]) -> dict[str, str]:
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT" if is_fast_dds else "LOCALHOST",
         "RCUTILS_CONSOLE_OUTPUT_FORMAT": environment.get("RCUTILS_CONSOLE_OUTPUT_FORMAT", LOG_FORMAT),
         "RCUTILS_COLORIZED_OUTPUT": environment.get("RCUTILS_COLORIZED_OUTPUT", "0"),
-        # Jupyter asks for colours of every program; Python obeys from 3.13 on.
+        # Jupyter asks every program for colours; Python obeys since 3.13.
         "PYTHON_COLORS": environment.get("PYTHON_COLORS", "0"),
         "PYTHONUNBUFFERED": "1",
     }
@@ -39,10 +39,10 @@ def for_domain(domain: int, environment: Mapping[str, str]) -> dict[str, str]:
         settings["FASTRTPS_DEFAULT_PROFILES_FILE"] = os.fspath(LOOPBACK_PROFILE)
         settings["FASTDDS_DEFAULT_PROFILES_FILE"] = os.fspath(LOOPBACK_PROFILE)
     if "HOME" not in environment:
-        # rclpy.init raises without one, even where ROS_LOG_DIR is set.
+        # rclpy.init raises without one, even if ROS_LOG_DIR is set.
         settings["HOME"] = tempfile.gettempdir()
     if "ROS_LOG_DIR" not in environment and not _home_is_writable(environment):
-        # It raises too where it can't write its log files.
+        # It also raises if it can't write its log files.
         settings["ROS_LOG_DIR"] = os.fspath(Path(tempfile.gettempdir()) / f"spinbook-ros-log-{os.getuid()}")
     return settings
 
@@ -55,18 +55,18 @@ def _home_is_writable(environment: Mapping[str, str]) -> bool:
 def missing_middleware(environment: Mapping[str, str]) -> str | None:
     """Return the middleware that RMW_IMPLEMENTATION names, if it is not installed here.
 
-    rclpy ends the whole process (exit code 102) when asked for one that is absent, so this must be known before.
+    rclpy ends the whole process (exit code 102) if it is missing, so this must be known in advance.
     """
     name = environment.get("RMW_IMPLEMENTATION", "")
     installed = prefixes.resources("rmw_typesupport", prefixes.installed())
     return name if name and installed and name not in installed else None
 
 
-# A domain is held by a lock on a file that every user of the machine can open; the lock goes when the kernel does,
+# A domain is held by a lock on a file that every user of the machine can open; the lock ends with the kernel,
 # however it ends. Domains up to 101 have ports below Linux's ephemeral range (ROS 2's concepts, "The ROS_DOMAIN_ID").
 
 
-#: 0 is the default of every program, and is left to the terminals of this machine.
+#: 0 is every program's default, so it is left to the terminals of this machine.
 OWN_DOMAINS = range(1, 60)
 HIGHEST = 101
 
@@ -79,7 +79,7 @@ class Domain:
     lock: int | None
 
     def release(self) -> None:
-        """Give it back."""
+        """Release the domain."""
         if self.lock is not None:
             os.close(self.lock)
 
@@ -94,7 +94,7 @@ def claim_domain() -> Domain:
     folder.mkdir(exist_ok=True)
     with contextlib.suppress(PermissionError):
         folder.chmod(0o1777)
-    # Begin at a place of this process's own, so that many notebooks that start at once do not queue at the first.
+    # Each process begins elsewhere, so that notebooks that start together do not all compete for the first domain.
     start = os.getpid() % len(OWN_DOMAINS)
     claimed = claim_number(folder, [*OWN_DOMAINS[start:], *OWN_DOMAINS[:start]])
     if claimed is None:

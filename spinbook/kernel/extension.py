@@ -13,9 +13,9 @@ from spinbook.kernel import environment as domain
 from spinbook.kernel.process import KeptProcess
 from spinbook.kernel.session import Session
 
-#: Names a domain to share with other programs, instead of the notebook's own.
+#: The domain to share with other programs, instead of the notebook's own.
 DOMAIN_VARIABLE = "SPINBOOK_DOMAIN"
-#: The time that the nodes have to end cleanly when the kernel ends (s).
+#: The time in which the nodes have to end when the kernel ends (s).
 _FAREWELL_S = 2.0
 
 
@@ -38,7 +38,9 @@ def load(shell: Any) -> None:
 
 
 def _find_scripts() -> None:
-    """Let `!ros2` and `%%bash` find this environment's programs: its kernel may run without it being activated."""
+    """Let `!ros2` and `%%bash` find this environment's programs: the kernel may run without the environment being
+    activated.
+    """
     folders = os.environ.get("PATH", os.defpath).split(os.pathsep)
     if (scripts := sysconfig.get_path("scripts")) not in folders:
         os.environ["PATH"] = os.pathsep.join([*folders, scripts])

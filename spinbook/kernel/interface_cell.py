@@ -1,4 +1,4 @@
-"""`%%interface`: a message, a service or an action that this notebook defines, compiled when its text is new."""
+"""`%%interface`: a message, a service or an action that this notebook defines, compiled if its text has changed."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def run(session: Session, title: str, text: str) -> None:
 
 
 def _others(session: Session, package: str) -> list[Definition]:
-    """Return what the package has already: as it is in use, or else as this notebook's cells have written it."""
+    """Return the package's other definitions: those that this notebook's cells have written, then those in use."""
     written = [item for item in written_definitions(session.workspace) if item.package == package]
     prefix = prefixes.prefix_of(package, prefixes.installed())
     if prefix is None:
@@ -73,7 +73,7 @@ def _compile(session: Session, item: Definition) -> None:
 
 
 def _all(session: Session, item: Definition) -> list[Definition]:
-    """Return every definition of the workspace, the new one as the cell has it, so that faults name the cell."""
+    """Return every definition of the workspace, the new one with the cell's path, so that faults name the cell."""
     return [item, *(other for other in written_definitions(session.workspace) if other.full_name != item.full_name)]
 
 
@@ -86,5 +86,5 @@ def _say_what_is_stale(session: Session, stale: Sequence[str], package: str, *, 
 
 
 def _store(session: Session) -> Path:
-    """Return where this notebook's own interfaces are compiled: colcon does not look into hidden folders."""
+    """Return the folder of this notebook's compiled interfaces: hidden, because colcon skips hidden folders."""
     return session.workspace / ".interfaces"

@@ -23,7 +23,7 @@ _OWN_OPTION = re.compile(r"""\s*--(seconds|until)\s+("[^"]*"|'[^']*'|\S+)\s*""")
 
 
 class LineReader(argparse.ArgumentParser):
-    """Reads a magic's line; the cell shows wrong usage, and the text of `--help`."""
+    """Parses a magic's line; wrong usage and the text of `--help` are shown in the cell."""
 
     def __init__(self, prog: str, description: str) -> None:
         super().__init__(prog=prog, description=description, allow_abbrev=False)
@@ -276,7 +276,7 @@ class SpinbookMagics(Magics):
         reader.add_argument("--course", default="", help="the folder of the handout, if it is not this one")
         reader.add_argument("--seconds", type=float, default=60.0, help="how long it may take")
         if given := reader.read(line):
-            # Loaded when it is used: most cells are not exercises.
+            # Imported here because most cells are not exercises.
             from spinbook.kernel import check_cell
 
             check_cell.check_cell(self.session, self.shell, given.exercise, given.course, given.seconds)
@@ -317,7 +317,7 @@ class SpinbookMagics(Magics):
 
 
 def register(shell: Any, session: Session) -> Sequence[str]:
-    """Return add the commands to a shell. Returns their names."""
+    """Add the commands to a shell. Return their names."""
     magics = SpinbookMagics(shell, session)
     shell.register_magics(magics)
     return [*magics.magics["line"], *magics.magics["cell"]]

@@ -21,7 +21,7 @@ from spinbook.kernel.plot.picture import in_words as plot_in_words
 from spinbook.kernel.plot.recording import PlotRecording, RecordingTime
 from spinbook.kernel.process import CellFailed, KeptProcess
 
-#: How long the look may take beyond the counting (s).
+#: How long looking at the graph may take, in addition to counting (s).
 _GRAPH_LIMIT_S = 20.0
 
 
@@ -50,7 +50,7 @@ _TURTLE_LIMIT_S = 30.0
 
 
 def show_turtle() -> None:
-    """Ask the running turtlesim for its picture and show it. Raises CellFailed where none answers."""
+    """Ask the running turtlesim for its picture and show it. Raises CellFailed if none answers."""
     with tempfile.TemporaryDirectory(prefix="spinbook-") as folder:
         file, moving = Path(folder) / "turtle.png", Path(folder) / "turtle.svg"
         argv = [sys.executable, "-m", "ros_in_python.turtlesim", os.fspath(file), "--moving", os.fspath(moving)]
@@ -69,7 +69,7 @@ def show_turtle() -> None:
         display(bundle, raw=True, metadata={kind: {"alt": alt} for kind in bundle if kind != "text/plain"})
 
 
-#: How often a watched plot is redrawn (s).
+#: The time between two drawings of a live plot (s).
 _REDRAW_S = 0.5
 
 
@@ -91,7 +91,7 @@ def show_plot(paths: list[str], seconds: float, title: str) -> None:
 
 
 def _record(process: KeptProcess, recording: PlotRecording, seconds: float, title: str) -> Any:
-    """Take in what arrives. Returns the handle of the picture that is being watched, if one is."""
+    """Record what arrives. Return the handle of the live picture, if there is one."""
     watched = EXECUTING not in os.environ
     handle: Any = None
     rest = ""
@@ -114,7 +114,7 @@ def _record(process: KeptProcess, recording: PlotRecording, seconds: float, titl
 
 
 def _show(recording: PlotRecording, title: str, handle: Any) -> Any:
-    """Show what has been recorded so far. Where nobody has watched it come, it comes again, as a moving picture."""
+    """Show what has been recorded so far; as a moving picture, too, if nobody was watching."""
     words = plot_in_words(recording)
     bundle = {"image/png": as_png(draw(recording, title)), "text/plain": words}
     if EXECUTING in os.environ and (moving := moving_plot(recording, title)) is not None:

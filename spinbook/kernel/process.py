@@ -1,4 +1,4 @@
-"""A process that the notebook started, as the kernel sees it: its output, whether it runs, how to end it."""
+"""A process that the notebook started: its output, its status, and how to end it."""
 
 from __future__ import annotations
 
@@ -56,13 +56,12 @@ class KeptProcess:
         self._control.sendall(json.dumps(request).encode() + b"\n")
 
     def read(self) -> tuple[bytes, int]:
-        """Return (what it printed since the last call, how many bytes before that were too many to keep); updates
-        `status`."""
+        """Return (output since the last call, number of bytes dropped before it), and update `status`."""
         data, dropped, self._offset = self._read_from(self._offset)
         return data, dropped
 
     def read_all(self) -> tuple[bytes, int]:
-        """Return (all that is kept of what it printed, how many bytes are missing in the middle)."""
+        """Return (all output that was kept, number of bytes missing in the middle)."""
         head, _, offset = self._read_from(0)
         tail, dropped, _ = self._read_from(offset)
         return head + tail, dropped
@@ -71,7 +70,7 @@ class KeptProcess:
         self._ask({"read": offset})
         line = self._answers.readline()
         if not line:
-            # Somebody killed the supervisor; the kernel kills what it kept.
+            # The supervisor was killed, and its process with it.
             self.status = Status(-9, "SIGKILL", self.status.lines)
             return b"", 0, offset
         answer = json.loads(line)
@@ -80,11 +79,11 @@ class KeptProcess:
         return data, answer["dropped"], answer["offset"] + len(data)
 
     def descendants(self) -> list[int]:
-        """Return the ids of the process and of all that it has started, as far as they still run."""
+        """Return the ids of the process and of all that it has started, as far as they are still running."""
         return supervisor.descendants(self._supervisor.pid)
 
     def stop(self, grace: tuple[float, float] = STOP_GRACE) -> None:
-        """Begin to end it: SIGINT, then SIGTERM, then SIGKILL, `grace` seconds apart. Does not wait."""
+        """Begin to end it: SIGINT, then SIGTERM, then SIGKILL, `grace` seconds apart. Return without waiting."""
         self._ask({"stop": list(grace)})
 
     def wait(self, timeout_s: float) -> Status:
@@ -97,7 +96,7 @@ class KeptProcess:
             time.sleep(0.01)
 
     def close(self) -> None:
-        """Release it, and end whatever still runs of it."""
+        """Release it, and end whatever of it is still running."""
         self._answers.close()
         self._control.close()
         self._supervisor.wait()
@@ -107,5 +106,5 @@ class CellFailed(Exception):
     """Raised by a notebook command. Only its message is shown, but the cell counts as failed everywhere."""
 
     def _render_traceback_(self) -> list[str]:
-        """Return what IPython prints instead of a traceback."""
+        """Return the lines that IPython prints instead of a traceback."""
         return [str(self)]

@@ -1,4 +1,4 @@
-"""What a recorder, a process of its own, says to the kernel: one JSON array per line, its kind first."""
+"""The lines that a recorder process prints for the kernel: one JSON array per line, its kind first."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from ros_in_python.ros2.cli import CommandError
 
 
 def write_line(kind: str, *values: Any) -> None:
-    """Print one line, at once."""
+    """Print one line, without buffering."""
     print(json.dumps((kind, *values)), flush=True)
 
 
 def read_lines(lines: Iterable[str]) -> Iterator[tuple[str, list[Any]]]:
-    """Yield the kind and the values of each line; whatever a library printed among them is passed over."""
+    """Yield the kind and the values of each line; skip whatever a library printed among them."""
     for line in lines:
         try:
             kind, *values = json.loads(line)
@@ -27,7 +27,7 @@ def read_lines(lines: Iterable[str]) -> Iterator[tuple[str, list[Any]]]:
 
 @contextmanager
 def errors_written() -> Iterator[None]:
-    """Write what a `ros2` command would refuse as a line ["error", words], and end."""
+    """Write a CommandError as a line ["error", message], and end."""
     try:
         yield
     except CommandError as error:

@@ -1,8 +1,8 @@
 """Reads the answers of a service that go to other nodes, as DDS carries them: on the topic `rr/NAMEReply`.
 
-rclpy can't: it puts a slash before each topic's name, and its clients are shown their own answers only. So this calls
-rmw, the middleware's C interface, whose functions are described in rmw/rmw.h. Of the middlewares only Fast DDS (the
-default) sends an answer as it is; others put something before it, and there nothing is read.
+rclpy can't: it puts a slash before each topic's name, and its clients only get their own answers. So this calls rmw,
+the middleware's C interface, whose functions are described in rmw/rmw.h. Of the middlewares only Fast DDS (the default)
+sends an answer as it is; others put a header before it, and with those nothing is read.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class _SubscriptionOptions(ctypes.Structure):
 
 
 class _Information(ctypes.Structure):
-    """rmw_message_info_t: its beginning, and more room than the rest needs."""
+    """rmw_message_info_t: its beginning, and more space than the rest needs."""
 
     _fields_ = [
         ("source_timestamp", ctypes.c_int64),
@@ -72,12 +72,12 @@ class _Information(ctypes.Structure):
     ]
 
 
-#: Keep the last 100, reliable, volatile, automatic liveliness; the topic's name is taken as it is.
+#: Keep the last 100, reliable, volatile, automatic liveliness; the topic's name is used as it is.
 _RELIABLE = (1, 100, 1, 2, (0, 0), (0, 0), 1, (0, 0), True)
 
 
 class ServiceReplyReader:
-    """The answers of one service; `answer` is their class."""
+    """Reads the answers of one service; `answer` is their class."""
 
     def __init__(self, node: Node, service: str, answer: Any) -> None:
         self._answer = answer
@@ -86,7 +86,7 @@ class ServiceReplyReader:
             self._subscription = _subscribe(node, f"rr{service}Reply", answer)
 
     def take(self) -> Iterator[tuple[float, Any]]:
-        """Yield what has arrived since: (when it was sent in s since the epoch, the answer)."""
+        """Yield what has arrived since the last call: (when it was sent in s since the epoch, the answer)."""
         while self._subscription is not None and (taken := _take(self._subscription)) is not None:
             yield taken[0], deserialize_message(taken[1], self._answer)
 

@@ -1,4 +1,4 @@
-"""The state of one notebook while its kernel runs: a ROS domain, its nodes, a workspace, the package of its cells."""
+"""The state of a notebook while its kernel runs: its ROS domain, nodes, workspace and package."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from spinbook.package.workspace import add_file, add_module
 
 @dataclass
 class RunningNode:
-    """A node that was started, and may have ended since."""
+    """A node that was started and may have ended since."""
 
     name: str
     process: KeptProcess
@@ -32,7 +32,7 @@ class RunningNode:
 
 @dataclass(frozen=True)
 class StopResult:
-    """How a node ended when it was asked to. `output` is what it printed after that."""
+    """How a node ended when it was stopped. `output` is what it printed after that."""
 
     name: str
     status: Status
@@ -41,7 +41,7 @@ class StopResult:
 
     @property
     def in_words(self) -> str:
-        """One line for the reader."""
+        """The result in one line, for the reader."""
         code, by = self.status.exit, self.status.ended_by
         if self.had_ended:
             return f"{self.name} had ended before (exit code {code})."
@@ -54,7 +54,7 @@ class StopResult:
 
 
 class NodeRegistry:
-    """Every node that this notebook started and did not replace or stop."""
+    """The nodes that this notebook started and did not replace or stop."""
 
     def __init__(self) -> None:
         self._nodes: dict[str, RunningNode] = {}
@@ -106,11 +106,11 @@ NODE_SECONDS = 3.0
 COMMAND_SECONDS = 5.0
 #: How long `%log --until` waits at most (s).
 LOG_SECONDS = 30.0
-#: The time between two looks (s).
+#: The time between two looks at the log (s).
 _LOG_POLL_S = 0.1
 #: How long messages are counted for the graph (s).
 GRAPH_SECONDS = 2.5
-#: The time that a bounded command has to end by itself when it is asked to (s), so that its last lines are shown.
+#: The time that a command has to end after Ctrl-C, and then after SIGTERM (s), so that its last lines are shown.
 COMMAND_GRACE = (3.0, 1.0)
 
 
@@ -126,7 +126,7 @@ class NodeStart:
     known_as: tuple[str, ...] = ()
 
     def argv(self, file: Path, words: Sequence[str] = ()) -> list[str]:
-        """Return the command that starts the code in `file`; `words` are for the node."""
+        """Return the command that starts the code in `file`; `words` are the node's arguments."""
         own = [part for name in self.classes for part in ("--class", name)]
         own = ["--main"] if self.calls_main else own
         if not own:
@@ -142,7 +142,7 @@ class Session:
     package: Package = field(default_factory=lambda: Package(name="notebook_nodes", workspace="notebook_ws"))
     nodes: NodeRegistry = field(default_factory=NodeRegistry)
     ran: dict[str, str] = field(default_factory=dict)
-    """The code of each node's cell as it was run last, by the node's name."""
+    """The code of each node's cell as it last ran, by the node's name."""
     ran_at: dict[str, float] = field(default_factory=dict)
     """When that was (s since the epoch)."""
     parts: dict[str, str] = field(default_factory=dict)
@@ -150,13 +150,13 @@ class Session:
     starts: dict[str, tuple[Path, NodeStart]] = field(default_factory=dict)
     """The file of each node and how it is started, by the node's name."""
     timeline: TimelineProcess | None = None
-    """What is being recorded for `%timeline`."""
+    """The recorder for `%timeline`, if one is running."""
 
     def __post_init__(self) -> None:
         self.use_domain(self.domain)
 
     def use_domain(self, domain: Domain) -> None:
-        """Let everything that starts from now on talk in this domain, snippets in the kernel too."""
+        """Let everything that starts from now on use this domain, including snippets in the kernel."""
         self.domain = domain
         os.environ.update(environment.for_domain(domain.number, os.environ))
         if note := os.environ.get(environment.DOMAIN_NOTE):
@@ -177,14 +177,14 @@ class Session:
     ) -> None:
         """Write a node's code as a module of its package, start it and show its log for a while.
 
-        `after` names the nodes and parts whose code makes it whole; None: it is whole.
+        `after` names the nodes and parts whose code completes it; None if it is complete.
         """
         start = start or NodeStart()
         file = self._saved(name, code, start, after)
         self.run_background(name, start.argv(file), self._import_path(file), Path.cwd(), bound)
 
     def keep_node(self, name: str, code: str, start: NodeStart, after: Sequence[str] | None = None) -> None:
-        """Write a node's code as a module of its package, for `ros2 run` to start with words of its own."""
+        """Write a node's code as a module of its package, for `ros2 run` to start with arguments."""
         known_as = start.known_as or (f"{self.package.name}/{name}",)
         self._saved(name, code, replace(start, known_as=known_as), after)
         package, _, executable = known_as[0].partition("/")
@@ -213,7 +213,7 @@ class Session:
         print(f"Wrote {file.relative_to(Path.cwd())}")
 
     def _package_of(self, known_as: Sequence[str]) -> tuple[Package, tuple[str, ...]]:
-        """Return the package to which a node belongs, and what its executables are called there."""
+        """Return the package to which a node belongs, and the names of its executables there."""
         pairs = [name.partition("/") for name in known_as]
         if not pairs:
             return self.package, ()
@@ -235,16 +235,16 @@ class Session:
             return code
 
     def _import_path(self, module: Path) -> dict[str, str]:
-        """Lets nodes import each other by their package, as they can once it is installed."""
+        """Return settings with which nodes can import each other by their package, as they can once it is installed."""
         paths = [os.fspath(module.parents[1]), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
         return {"PYTHONPATH": os.pathsep.join(path for path in paths if path)}
 
     def run_executable(
         self, package: str, executable: str, words: Sequence[str], bound: DisplayLimit, known_as: str
     ) -> bool:
-        """Start the node that a cell made as this executable. False if no cell did.
+        """Start the node that a cell made as this executable. Return whether there is one.
 
-        `known_as` is another name than the executable's where it runs next to the one that has that.
+        `known_as` differs from the executable's name if another instance has that name.
         """
         for name, (file, start) in self.starts.items():
             if f"{package}/{executable}" in start.known_as:
@@ -284,9 +284,7 @@ class Session:
     def run_command(
         self, argv: list[str], settings: dict[str, str], cwd: Path, bound: DisplayLimit, shown_as: str
     ) -> None:
-        """Run a command in the cell; if it has not ended when its time is up, end it as Ctrl-C would. Raises CellFailed
-        if it fails.
-        """
+        """Run a command in the cell, and end it as Ctrl-C would when its time is up. Raises CellFailed if it fails."""
         process = KeptProcess(argv, {**os.environ, **settings}, cwd)
         try:
             try:
@@ -306,7 +304,7 @@ class Session:
             raise CellFailed(f"{shown_as}: {_how_it_ended(status.exit or 0)}")
 
     def wait_for(self, name: str, bound: DisplayLimit) -> None:
-        """Wait until a node's log holds the bound's text, or its time is up. Raises CellFailed for an unknown name."""
+        """Wait until a node's log contains the limit's text, or its time is up. Raises CellFailed for an unknown name."""
         node = self.find(name)
         deadline = time.monotonic() + bound.seconds
         text = (bound.until or "").encode()
@@ -317,7 +315,7 @@ class Session:
             time.sleep(_LOG_POLL_S)
 
     def log(self, name: str, whole: bool) -> str:
-        """Return all that is kept of what a node printed. Raises CellFailed for an unknown name."""
+        """Return the output of a node that was kept. Raises CellFailed for an unknown name."""
         node = self.find(name)
         data, dropped = node.process.read_all()
         text = data.decode(errors="replace")
@@ -326,7 +324,7 @@ class Session:
         return text if whole else in_short(text)
 
     def find(self, name: str) -> RunningNode:
-        """Return the node of that name. Raises CellFailed, naming those that there are."""
+        """Return the node of that name. Raises CellFailed, which lists the known ones."""
         node = self.nodes.get(name)
         if node is None:
             there = ", ".join(self.nodes.names()) or "none"

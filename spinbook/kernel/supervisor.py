@@ -16,11 +16,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-#: The number of first and last bytes that are kept of a process's output.
+#: How many of the first and of the last bytes of a process's output are kept.
 KEPT_AT_EACH_END = 2_000_000
 _PR_SET_PDEATHSIG = 1
 _PR_SET_CHILD_SUBREAPER = 36
-#: How long a process may take to end after SIGINT and SIGTERM (s) when nobody is left to ask for more.
+#: The time that a process has to end after SIGINT and after SIGTERM (s) when the kernel is gone.
 _ORPHAN_GRACE = (1.0, 0.5)
 
 
@@ -29,7 +29,7 @@ def _prctl(option: int, value: int) -> None:
 
 
 class ProcessOutput:
-    """What a process printed: its first and last bytes, and how many came between them."""
+    """The output of a process: its first and last bytes, and how many were dropped between them."""
 
     def __init__(self, kept_at_each_end: int = KEPT_AT_EACH_END) -> None:
         self._kept = kept_at_each_end
@@ -39,7 +39,7 @@ class ProcessOutput:
         self.lines = 0
 
     def add(self, data: bytes) -> None:
-        """Take in more of it."""
+        """Add output."""
         self.total += len(data)
         self.lines += data.count(b"\n")
         room = max(0, self._kept - len(self._head))
@@ -81,7 +81,7 @@ def descendants(root: int) -> list[int]:
 
 
 class Supervisor:
-    """One process under watch. `run` returns when the process and the kernel have both gone."""
+    """Supervises one process. `run` returns when the process and the kernel have both ended."""
 
     def __init__(self, control: socket.socket) -> None:
         self._control = control
@@ -96,7 +96,7 @@ class Supervisor:
         self._orphaned = False
 
     def run(self) -> None:
-        """Serve requests until nothing is left to keep."""
+        """Serve requests until both the process and the kernel have ended."""
         _prctl(_PR_SET_CHILD_SUBREAPER, 1)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         signal.signal(signal.SIGTERM, lambda *_: self._orphan())
@@ -157,7 +157,7 @@ class Supervisor:
         self._selector.register(self._process.stdout, selectors.EVENT_READ)
 
     def _drain(self) -> bool:
-        """Take in what waits in the pipe; False at its end."""
+        """Read from the pipe. Return whether there may be more."""
         assert self._process is not None
         assert self._process.stdout is not None
         try:
@@ -176,7 +176,7 @@ class Supervisor:
             return
         code = self._process.poll()
         if code is not None:
-            # What it started goes with it; then the pipe's last bytes are there to be read.
+            # End what it started, too, so that the pipe has an end; then read the last bytes.
             self._kill_all()
             while self._drain():
                 pass
@@ -200,7 +200,7 @@ class Supervisor:
         if number is signal.SIGKILL:
             self._kill_all()
         else:
-            # The whole group, as a terminal does.
+            # Signal the whole group, as a terminal does.
             with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.killpg(self._process.pid, number)
 

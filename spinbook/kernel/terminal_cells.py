@@ -20,11 +20,11 @@ COLCON_SECONDS = 120.0
 
 
 def run_colcon(session: Session, words: list[str], bound: DisplayLimit) -> None:
-    """Run colcon with these words. Raises CellFailed if there is nothing to build, or if the build fails."""
+    """Run colcon with these arguments. Raises CellFailed if there is nothing to build, or if the build fails."""
     workspace = session.workspace
     if not (workspace / "src").is_dir():
         raise CellFailed(f"There is nothing to build in {workspace.name} yet: run the chapter's node cells first.")
-    # Where ROS 2 came from PyPI, this Python's prefix is the underlay that /opt/ros/jazzy is elsewhere.
+    # If ROS 2 is from PyPI, this Python's prefix is the underlay, in place of /opt/ros/jazzy.
     prefixes = [p for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
     settings = {
         "AMENT_PREFIX_PATH": os.pathsep.join(dict.fromkeys([*prefixes, sys.prefix])),
@@ -38,7 +38,7 @@ def run_colcon(session: Session, words: list[str], bound: DisplayLimit) -> None:
 
 
 def _without_interfaces(session: Session) -> list[str]:
-    """Options that leave out packages of interfaces where there is no ament_cmake: Spinbook compiles them itself."""
+    """Return options that leave out interface packages if there is no ament_cmake: Spinbook compiles them itself."""
     if toolchain.sourced_ros() is not None:
         return []
     packages = sorted({item.package for item in written_definitions(session.workspace)})
@@ -46,7 +46,7 @@ def _without_interfaces(session: Session) -> list[str]:
 
 
 def run_ros2(session: Session, words: list[str], bound: DisplayLimit) -> None:
-    """Run a `ros2` command, for no longer than its limit. Raises CellFailed if it fails."""
+    """Run a `ros2` command with a time limit. Raises CellFailed if it fails."""
     if words[:1] == ["run"] and not {"-h", "--help"} & set(words):
         _run_executable(session, words[1:], bound)
         return
@@ -67,7 +67,7 @@ def _folder(session: Session, words: list[str]) -> Path:
 
 
 def _launch(session: Session, words: list[str], bound: DisplayLimit) -> None:
-    """`ros2 launch …`: continues in the background as a node does, under the name of its file: `humanoid`."""
+    """Run `ros2 launch …` in the background, like a node, under the name of its file, such as `humanoid`."""
     files = [word.rpartition("/")[2] for word in words if re.search(r"launch\.(py|ya?ml|xml)$", word)]
     name = files[0].split(".")[0] if files else "launch"
     argv = [sys.executable, "-m", "ros_in_python.ros2", *words]
@@ -75,7 +75,7 @@ def _launch(session: Session, words: list[str], bound: DisplayLimit) -> None:
 
 
 def _create_package(session: Session, words: list[str]) -> None:
-    """`ros2 pkg create … NAME`: an empty package in the workspace, which the chapter's nodes fill."""
+    """Run `ros2 pkg create … NAME`: make an empty package in the workspace, for the chapter's nodes."""
     name, _ = created_package(["ros2", *words])
     if not name:
         raise CellFailed("Write: ros2 pkg create --build-type ament_python NAME")
@@ -87,7 +87,7 @@ def _create_package(session: Session, words: list[str]) -> None:
 
 
 def _run_executable(session: Session, words: list[str], bound: DisplayLimit) -> None:
-    """`ros2 run PACKAGE EXECUTABLE …`: a node like any other of the notebook, called as it or as `__node:=` says."""
+    """Run `ros2 run PACKAGE EXECUTABLE …` as a node of the notebook, with that name or the one in `__node:=`."""
     if len(words) < 2 or words[0].startswith("-"):
         raise CellFailed("Write: ros2 run PACKAGE EXECUTABLE, such as ros2 run turtlesim turtlesim_node")
     executable = words[1]
@@ -100,8 +100,7 @@ def _run_executable(session: Session, words: list[str], bound: DisplayLimit) -> 
 
 
 def _renamed(words: list[str]) -> str:
-    """Return what `__node:=NAME` or `__name:=NAME` calls the node: a second one of that executable, next to the
-    first."""
+    """Return the node's name in `__node:=NAME` or `__name:=NAME`, which allows a second node of an executable."""
     for word in words:
         option, found, name = word.partition(":=")
         if found and option in ("__node", "__name"):

@@ -1,4 +1,4 @@
-"""What happened on services, actions and topics, as lanes along an axis of time: what `%timeline` draws."""
+"""What `%timeline` draws: events on services, actions and topics, as lanes along a time axis."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ RUNS = ("EXECUTING", "CANCELING")
 
 @dataclass(frozen=True)
 class TimelineEvent:
-    """Something that was sent at a time (s): by which name, what, for which goal, and what it said in short.
+    """A message that was sent at a time (s): its topic, service or action, its kind, its goal, and a summary.
 
     `what` is "message" (topic), "request", "response" (service), "goal", "accepted", "rejected", "feedback", "cancel",
-    "cancel answered", or the state that a goal has got into.
+    "cancel answered", or the new state of a goal.
     """
 
     at: float
@@ -39,7 +39,7 @@ class RecordedEvents:
     error: str | None = None
 
     def take(self, lines: Iterable[str]) -> None:
-        """Take in lines that the recorder printed."""
+        """Add lines that the recorder printed."""
         for kind, rest in read_lines(lines):
             if kind == "event":
                 self.events.append(TimelineEvent(*rest))
@@ -70,7 +70,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Lane:
-    """One line of the picture. `name` is whose it is, `label` what is written at it."""
+    """One line of the picture. `name` is that of its topic, service or action; `label` is shown above it."""
 
     name: str
     label: str
@@ -97,9 +97,9 @@ def _topic(name: str, events: list[TimelineEvent]) -> Lane:
 
 
 def _calls(name: str, events: list[TimelineEvent], end: float) -> Lane:
-    """Requests and their responses, which come in the order of the requests.
+    """Return the lane of a service. Responses are matched to requests in their order.
 
-    A response before the first request belongs to one that was sent before the recording began.
+    A response before the first request belongs to a request from before the recording.
     """
     answers = [event.at for event in events if event.what == "response"]
     asked = [event.at for event in events if event.what == "request"]
@@ -124,9 +124,9 @@ def _goals(name: str, events: list[TimelineEvent], end: float) -> Iterator[Lane]
 
 
 def _answers(events: list[TimelineEvent]) -> dict[str, list[TimelineEvent]]:
-    """Goal -> the answers that name no goal: they come in the order of the questions.
+    """Map each goal to its answers. Answers do not name their goal; they arrive in the order of the requests.
 
-    A goal that has got into any state was not rejected.
+    A goal with any state was not rejected.
     """
     accepted = {event.goal for event in events if event.what in (*RUNS, *ENDS, "ACCEPTED")}
     found: dict[str, list[TimelineEvent]] = {}
@@ -146,7 +146,7 @@ def _goal(name: str, label: str, events: list[TimelineEvent], end: float) -> Lan
 
 
 def _bars(events: list[TimelineEvent], end: float) -> Iterator[Span]:
-    """Yield what the goal went through: it waits for an answer, runs, and is being cancelled."""
+    """Yield the phases of a goal: waiting for an answer, running, being canceled."""
     looks: dict[str, Literal["waits", "runs", "cancels"]] = {
         "goal": "waits",
         "ACCEPTED": "waits",
@@ -175,7 +175,7 @@ def _mark(event: TimelineEvent) -> Mark | None:
 
 
 def in_words(drawn: Iterable[Lane], start: float) -> str:
-    """Return what the picture shows, a line for each lane; times in s from `start`."""
+    """Describe the picture, in one line per lane; times are in s from `start`."""
     lines = []
     for lane in drawn:
         message = [f"{mark.text} at {mark.at - start:.2f} s" for mark in lane.marks if mark.text]

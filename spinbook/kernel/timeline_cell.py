@@ -16,14 +16,14 @@ from spinbook.kernel.timeline_picture import moving_timeline, span_of, still_tim
 
 #: How long the recorder may take to find the first name (s).
 _APPEAR_S = 20.0
-#: What was sent just before the recorder is asked may still be on its way (s).
+#: The time that messages sent just before the end may take to arrive (s).
 _LATE_S = 0.3
-#: How long the recorder may take in what has arrived, and how long to end after SIGTERM (s).
+#: The time that the recorder has to read what has arrived, and then to end after SIGTERM (s).
 _STOP_GRACE = (10.0, 1.0)
 
 
 class TimelineProcess:
-    """A recorder that listens while other cells run. `names` are those of services, actions and topics."""
+    """A recorder that runs while other cells run. `names` are those of services, actions and topics."""
 
     def __init__(self, names: list[str]) -> None:
         argv = [sys.executable, "-u", "-m", "spinbook.kernel.timeline_recorder", *names]
@@ -33,7 +33,7 @@ class TimelineProcess:
         self._rest = ""
 
     def wait_for_all(self) -> list[str]:
-        """Wait until every name has been found. Returns those that have not. Raises CellFailed if it fails."""
+        """Wait until every name has been found. Return those that were not. Raises CellFailed if it fails."""
         deadline = time.monotonic() + _APPEAR_S
         while self._missing() and time.monotonic() < deadline and self._process.status.running:
             time.sleep(0.03)
@@ -52,7 +52,7 @@ class TimelineProcess:
         self._happenings.take(complete)
 
     def end(self) -> RecordedEvents:
-        """Stop recording. Returns what has happened, in the order of the names."""
+        """Stop recording. Return what has happened, in the order of the names."""
         time.sleep(_LATE_S)
         self._process.stop(_STOP_GRACE)
         self._process.wait(sum(_STOP_GRACE) + 1.0)

@@ -1,6 +1,6 @@
-"""A timeline as pictures: an SVG that is drawn as fast as it happened, and the same still, as a PNG.
+"""A timeline as pictures: an SVG that moves as fast as the events did, and a still figure.
 
-In print, and for readers who prefer no motion, the SVG is still: the whole timeline.
+In print, and for readers who prefer no motion, the SVG shows the whole timeline, still.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 #: A longer recording (s) is shown faster, so that it takes no longer than this.
 LONGEST_S = 20.0
-#: More ticks than this on one lane are thinned out: they would be one bar.
+#: A lane with more ticks than this is thinned out; otherwise they would merge into a bar.
 MOST_TICKS = 150
 _WIDTH, _LEFT, _RIGHT, _TOP = 420, 14, 16, 14
 _LABEL, _BAR, _ROW, _GAP = 18, 16, 14, 8
@@ -36,7 +36,7 @@ _MARKS = {
     "good": ("#009E73", ""),
     "bad": ("#D55E00", ""),
 }
-#: What marks of these kinds say is written at them, except for what the lane's legend says already.
+#: Marks of these kinds have their text next to them, unless the legend explains it.
 _WRITTEN = ("good", "bad", "cancel", "answered")
 _UNWRITTEN = "response"
 
@@ -78,7 +78,7 @@ def _fitting(label: str) -> str:
 
 
 def _lane(lane: Lane, top: float, across: Scale) -> tuple[str, float]:
-    """Return the bars, marks and words of a lane below `top`, and where it ends."""
+    """Return the bars, marks and texts of a lane below `top`, and where it ends (px)."""
     middle = top + _BAR / 2
     bars = "".join(_bar(span, top, across) for span in lane.spans)
     marks = "".join(_shape(mark, across.at(mark.at), middle) for mark in _few(lane.marks))
@@ -101,7 +101,7 @@ def _bar(span: Span, top: float, across: Scale) -> str:
 
 
 def _few(marks: Sequence[Mark]) -> Iterator[Mark]:
-    """Return the marks, with every so manyth of very many ticks."""
+    """Return the marks; of too many ticks only every n-th."""
     ticks = [mark for mark in marks if mark.look == "tick"]
     step = math.ceil(len(ticks) / MOST_TICKS) or 1
     return chain(ticks[::step], (mark for mark in marks if mark.look != "tick"))
@@ -120,7 +120,7 @@ def _shape(mark: Mark, x: float, y: float) -> str:
 
 
 def _placed(marks: Sequence[Mark], across: Scale) -> Iterator[tuple[str, float, int]]:
-    """Yield (text, x in px, row) of what is written, so that no two texts lie on one another."""
+    """Yield (text, x in px, row) for each text, so that no two overlap."""
     ends: list[float] = []
     for mark in filter(_is_written, marks):
         width = sum(_CAPITAL if char.isupper() else _CHAR for char in mark.text)
@@ -147,7 +147,7 @@ def _axis(across: Scale, top: float, bottom: float) -> str:
 
 
 def _legend(lanes: Sequence[Lane], y: float) -> tuple[str, float]:
-    """Return what the bars and marks mean that are there; and where it ends."""
+    """Return the legend of the bars and marks in use, and where it ends (px)."""
     spans = {span.look for lane in lanes for span in lane.spans}
     marks = {mark.look for lane in lanes for mark in lane.marks}
     entries = [
@@ -175,7 +175,7 @@ def _legend(lanes: Sequence[Lane], y: float) -> tuple[str, float]:
 
 
 def _plain_ticks(lanes: Sequence[Lane]) -> bool:
-    """Return whether a topic is among the lanes, whose ticks are messages."""
+    """Return whether a lane is a topic's, so that its ticks are messages."""
     return any(not lane.spans and any(mark.look == "tick" for mark in lane.marks) for lane in lanes)
 
 
@@ -208,7 +208,7 @@ _POINTS_AN_INCH = 72
 def still_timeline(lanes: Sequence[Lane], title: str = "") -> Figure:
     """Return the same as a figure of matplotlib, as wide as a phone: the SVG's layout. Time counts from the first
     event."""
-    # Web pages draw the other one, and have no matplotlib.
+    # Web pages draw the SVG and have no matplotlib.
     from matplotlib.figure import Figure
 
     start, end = span_of(lanes)
@@ -230,7 +230,7 @@ def still_timeline(lanes: Sequence[Lane], title: str = "") -> Figure:
 
 
 def _draw_lane(draw: Axes, lane: Lane, top: float, across: Scale) -> float:
-    """Draw a lane below `top`, as `_lane` does. Returns where it ends."""
+    """Draw a lane below `top`, as `_lane` does. Return where it ends (px)."""
     draw.text(_LEFT, top + 6, _fitting(lane.label), fontsize=11, fontweight="bold", va="center")
     top += _LABEL
     for span in lane.spans:
@@ -255,7 +255,7 @@ def _draw_lane(draw: Axes, lane: Lane, top: float, across: Scale) -> float:
 
 
 def _draw_axis(draw: Axes, across: Scale, top: float, bottom: float) -> float:
-    """Draw lines at round times and the times below them, as `_axis` does. Returns the picture's height."""
+    """Draw lines at round times and the times below them, as `_axis` does. Return the picture's height (px)."""
     seconds = Scale(0.0, across.high - across.low, across.start, across.end)
     for mark in seconds.marks():
         x, unit = seconds.at(mark), " s" if mark == seconds.marks()[-1] else ""

@@ -5,8 +5,8 @@
 Lines: ["found", name, "action" | "service" | "topic"], ["error", words], and events, ["event", time (s), name, what,
 goal, text], where `what` is one of those in timeline.py, `goal` is a goal's number (hexadecimal) or "".
 
-Everything is read where it goes by: requests by a second server that never answers, answers from their DDS topic,
-feedback and status by subscribing. Times are those at which it was sent.
+Requests are read by a second server that never answers, answers from their DDS topic, feedback and status by
+subscribing. Times are those of sending.
 
 A client that has found this second server and not yet the real one believes that the service is ready, and its request
 would be lost. So the requests of a service are read only if it has a client already, which then knows the real one.
@@ -43,18 +43,18 @@ _HEARS_ALL = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, du
 _FEEDBACK = QoSProfile(depth=100)
 _STATUS = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _LOOK_S = 0.01
-#: How long after a service its clients may be discovered (s).
+#: How long after a service its clients are discovered at the latest (s).
 _CLIENTS_S = 0.5
 
-#: Reads what has arrived: (when it was sent in s, the message).
+#: Reads what has arrived: (time of sending in s, message).
 Take = Callable[[], Iterator[tuple[float, Any]]]
 
 
 class TimelineRecorder(Node):
-    """Looks for what the names mean, and prints every event of theirs."""
+    """Finds out what the names mean, and prints each of their events."""
 
     def __init__(self, names: list[str]) -> None:
-        # With parameter services: by them the `ros2` command makes sure that whoever serves has heard of its client.
+        # With parameter services: the `ros2` command uses them to make sure that a server has discovered its client.
         super().__init__("_spinbook_timeline", enable_rosout=False)
         self._began = time.time()
         self._missing = list(names)
@@ -76,7 +76,7 @@ class TimelineRecorder(Node):
                 record(sent, message)
 
     def _is_known(self, name: str, kind: str) -> bool:
-        """Return whether it is known who else uses what has been found: a service's clients may not be heard of yet."""
+        """Return whether the users of what was found are known: a service's clients may not be discovered yet."""
         since = time.monotonic() - self._seen.setdefault(name, time.monotonic())
         return kind != "service" or self.count_clients(name) > 0 or since > _CLIENTS_S
 
@@ -114,7 +114,7 @@ class TimelineRecorder(Node):
         self._polled.append((ServiceReplyReader(self, name, kind.Response).take, answered))
 
     def _requests(self, kind: Any, name: str) -> Take:
-        """Return what is asked of a service, taken as a server of its own would, and never answered."""
+        """Return a reader of a service's requests, which takes them like a server but never answers."""
         from rclpy.impl.implementation_singleton import rclpy_implementation
         from rclpy.type_support import check_for_type_support
 
@@ -162,7 +162,7 @@ class TimelineRecorder(Node):
         self._subscribe(kind.GoalStatusMessage, f"{own}/status", _STATUS, partial(self._on_status, name))
 
     def _on_status(self, name: str, at: float, message: Any) -> None:
-        """The states of all goals; those that have changed are written."""
+        """Write the states of goals that have changed."""
         for goal in message.status_list:
             number = _number(goal.goal_info.goal_id)
             if self._states.get(number) != goal.status:
@@ -179,8 +179,7 @@ _STATES = {
 
 
 def _callback(record: Callable[..., None]) -> Any:
-    """Return a callback of the form that rclpy gives the information besides a message to: it looks at the
-    parameters."""
+    """Return a callback with two parameters, to which rclpy also passes information about the message."""
 
     def callback(message: Any, information: dict[str, int]) -> None:
         record(information["source_timestamp"] / 1e9, message)
@@ -209,12 +208,12 @@ def in_short(message: Any) -> str:
     return ""
 
 
-#: How many messages may have arrived and not been taken in when the recorder is told to stop.
+#: How many messages may still be unread when the recorder is stopped.
 _MAY_WAIT = 300
 
 
 def _stop_event() -> threading.Event:
-    """Return an event that SIGINT and SIGTERM set. ROS continues: what has arrived by then is still to be read."""
+    """Return an event that SIGINT and SIGTERM set. ROS keeps running, so that what has arrived can still be read."""
     text = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: text.set())
@@ -222,7 +221,7 @@ def _stop_event() -> threading.Event:
 
 
 def record(recorder: TimelineRecorder, stop_requested: threading.Event) -> None:
-    """Record until told to stop, and then take in what had arrived before: on a busy machine that may be much."""
+    """Record until stopped, then read what has already arrived: on a busy machine that may be a lot."""
     while not stop_requested.is_set():
         rclpy.spin_once(recorder, timeout_sec=_LOOK_S)
         recorder.look()
@@ -232,7 +231,7 @@ def record(recorder: TimelineRecorder, stop_requested: threading.Event) -> None:
 
 
 def main() -> None:
-    """Record until told to stop."""
+    """Record until stopped."""
     stop_requested = _stop_event()
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:

@@ -83,7 +83,7 @@ def submit(
 
 
 def print_result(checked: SelfCheck, exercise: Exercise, console: Console) -> None:
-    """Print what the self-check found, or why there was none."""
+    """Print the result of the self-check, or why there is none."""
     if checked.grade:
         show(checked.grade, exercise, console)
     else:
@@ -91,7 +91,7 @@ def print_result(checked: SelfCheck, exercise: Exercise, console: Console) -> No
 
 
 def _ran(code: Path, notebook: Path | None, exercise: Exercise) -> HandInCandidate:
-    """Return the code that a notebook's kernel ran last, which may not have been saved yet."""
+    """Return the code that a notebook's kernel ran last and that may not be saved yet."""
     return replace(given(code, exercise), file=notebook, origin="the cell as you ran it last")
 
 
@@ -113,7 +113,7 @@ def _shown(path: Path) -> str:
     return str(path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path)
 
 
-#: Exit codes, besides click's 2 for usage.
+#: Exit codes, in addition to click's 2 for wrong usage.
 ALL_PASS, SOME_FAIL, HOST_FAULT = 0, 1, 3
 
 

@@ -30,9 +30,9 @@ from spinbook.update.handout import BASE
 
 @dataclass(frozen=True)
 class HandInCandidate:
-    """What the student may want to hand in: the exercise's code, and the file it is from, if there is one.
+    """Code that the student may want to hand in, and the file it is from, if there is one.
 
-    `origin` tells where the code is from, in words or by the file's name.
+    `origin` says where the code is from, in words or by the file's name.
     """
 
     file: Path | None
@@ -42,10 +42,10 @@ class HandInCandidate:
 
 def candidates(exercise: Exercise, folder: Path) -> list[HandInCandidate]:
     """Return the files that hold the exercise: notebooks and ROS 2 packages in `folder`, and the .py of its name, there
-    or in the exercise's own folder. One whose program is a question has a submission without one.
+    or in the exercise's own folder. If it is unclear which program is meant, the submission has a question in place of
+    a program.
 
-    Where there are several, those with the untouched starter don't count beside one with more in it, and two with the
-    same code count once.
+    If there are several, unchanged starters do not count next to changed ones, and the same code counts once.
     """
     files = [folder / exercise.file_name, *sorted(folder.glob("*.ipynb")), *_packages(folder)]
     files.append(exercise.folder / exercise.file_name)
@@ -63,7 +63,7 @@ def _packages(folder: Path) -> list[Path]:
 
 
 def is_starter(candidate: HandInCandidate, exercise: Exercise) -> bool:
-    """Return whether this is still the unchanged starter."""
+    """Return whether the code is still the unchanged starter."""
     return _bare(candidate.submission.source) in _starters(exercise)
 
 
@@ -72,7 +72,7 @@ def _name(file: Path, folder: Path) -> str:
 
 
 def _starters(exercise: Exercise) -> set[str]:
-    """Return the starter as it was handed out, where that is known."""
+    """Return the starter as it was handed out, if that is known."""
     handed_out = exercise.folder.parent.parent / BASE / "exercises" / exercise.name / exercise.file_name
     found = set()
     with contextlib.suppress(OSError, ValueError):
@@ -84,8 +84,7 @@ def _starters(exercise: Exercise) -> set[str]:
 
 
 def _bare(code: str) -> str:
-    """Return code as it counts for a comparison: a cell ends without a line end, and begins with an emptied line of
-    magic."""
+    """Return code for comparison: a cell has no line end at its end, and an empty line in place of its magic."""
     return code.replace("\r\n", "\n").strip()
 
 
@@ -98,7 +97,7 @@ class SelfCheck:
 
     @property
     def record(self) -> dict[str, Any]:
-        """As plain data, for the upload's record."""
+        """The result as plain data, for the upload's record."""
         if self.grade is None:
             return {"not_run": self.why}
         return {
@@ -111,7 +110,7 @@ class SelfCheck:
 
 
 def self_check(exercise: Exercise, submission: Submission) -> SelfCheck:
-    """Run the public checks. It raises nothing, because a failure must not keep anybody from handing in."""
+    """Run the public checks. Never raises: a failure must not keep anybody from handing in."""
     try:
         grade = grade_submission(exercise.public(), submission)
     except KeyboardInterrupt:
@@ -125,13 +124,13 @@ def self_check(exercise: Exercise, submission: Submission) -> SelfCheck:
     return SelfCheck(replace(grade, submission=Path(grade.submission).name))
 
 
-#: A notebook larger than this (bytes) is left out of the upload; its cell is in the upload in any case.
+#: A notebook larger than this (bytes) is left out of the upload; its cell is always in the upload.
 LARGEST_NOTEBOOK = 2_500_000
 
 
 @dataclass(frozen=True)
 class HandIn:
-    """What is handed in, by whom, and what the public checks say of it."""
+    """What is handed in, by whom, and the result of the public checks."""
 
     exercise: Exercise
     work: HandInCandidate
@@ -140,7 +139,7 @@ class HandIn:
 
 
 def write_upload(hand_in: HandIn, target: Path) -> None:
-    """Write the upload to `target`, whole or not at all. Raises `OSError`."""
+    """Write the upload to `target`, completely or not at all. Raises `OSError`."""
     exercise, file, program = hand_in.exercise, hand_in.work.file, hand_in.work.submission.program
     assert program
     files = dict(program.files)
@@ -172,12 +171,12 @@ def _now() -> datetime:
 
 FILE = Path(".spinbook") / "student"
 
-#: A longer name is a mistake.
+#: The longest name of a student (characters).
 LONGEST = 200
 
 
 def remembered_student(folder: Path) -> str | None:
-    """Return the name kept in `folder` or in one above it: empty if the student gave none, None if nobody asked yet."""
+    """Return the name stored in `folder` or above: empty if the student gave none, None if nobody has asked yet."""
     for place in (folder, *folder.parents):
         try:
             return (place / FILE).read_text(encoding="utf-8").strip()[:LONGEST]
@@ -187,7 +186,7 @@ def remembered_student(folder: Path) -> str | None:
 
 
 def remember_student(name: str, folder: Path) -> str:
-    """Keep a name in `folder`; returns it as it is kept, on one line."""
+    """Store a name in `folder`. Return it as stored, on one line."""
     kept = " ".join(name.split())[:LONGEST]
     write_if_changed(folder / FILE, kept + "\n")
     return kept
@@ -223,7 +222,8 @@ def _no_program(file: Path, submission: Submission) -> Problem:
 
 
 def found(exercise: Exercise, folder: Path, command: str, question: str) -> HandInCandidate:
-    """Return the code in the one file of `folder` that holds the exercise; of several the student chooses one.
+    """Return the code in the one file of `folder` that holds the exercise; if there are several, the student chooses
+    one.
 
     `command` is what the student typed. Raises `UsageError` and `SpinbookError`.
     """

@@ -23,7 +23,7 @@ from groundwork.files import write_if_changed
 def main() -> None:
     """Check the code that the command line names."""
     folder, code, result = Path(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3])
-    # What draws the result takes its time to load: it does so while the node is being spun.
+    # The modules that draw the result take long to import, so this happens while the node runs.
     threading.Thread(target=_load_drawing, daemon=True).start()
     write_if_changed(result, json.dumps(_checked(folder, code.read_text(encoding="utf-8"))))
 

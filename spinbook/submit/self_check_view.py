@@ -1,4 +1,4 @@
-"""A self-check as a notebook shows it: HTML, and the same in plain text for front ends without HTML."""
+"""A self-check as a notebook shows it: as HTML, and as plain text for front ends without HTML."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ from grader.report.terminal import show
 #: Columns of the plain text.
 WIDTH = 100
 
-#: Of one text no more is shown: a student can publish a name of a megabyte.
+#: The longest text that is shown (characters): a student can publish a name of a megabyte.
 LONGEST = 4000
 
-#: How many lines of what a node printed the plain text has.
+#: How many lines of a node's output the plain text shows.
 LAST_LINES = 12
 
 
 @dataclass(frozen=True)
 class CheckRow:
-    """One check as it is shown. `facts` are label and value; `remark` is what they leave out.
+    """One check as it is shown. `facts` are (label, value); `remark` is the rest of the finding.
 
-    `before` is above the first of several checks that all wait for the same one.
+    `before` is shown above the first of several checks that depend on the same one.
     """
 
     check: ShownCheck
@@ -45,7 +45,7 @@ class CheckRow:
 
 
 def as_text(grade: Grade, exercise: Exercise) -> str:
-    """Return what the terminal says, without colours."""
+    """Return the text that the terminal shows, without colours."""
     out = io.StringIO()
     show(grade, exercise, Console(file=out, width=WIDTH, color_system=None, highlight=False))
     lines = [line.rstrip() for line in out.getvalue().rstrip("\n").split("\n")]
@@ -56,7 +56,7 @@ def as_text(grade: Grade, exercise: Exercise) -> str:
 
 
 def next_step(grade: Grade, exercise: Exercise) -> str:
-    """Return what a beginner does now."""
+    """Return what a beginner should do next."""
     if grade.full_marks:
         return f"hand in. Type %submit {exercise.name} into a new cell and run it."
     if grade.outcome == "host-error":
@@ -69,8 +69,7 @@ def next_step(grade: Grade, exercise: Exercise) -> str:
 
 
 def as_html(grade: Grade, exercise: Exercise) -> str:
-    """Return a piece of HTML that needs nothing from outside and runs nothing, with everything of the student's
-    escaped."""
+    """Return HTML that loads and runs nothing, with all text from the student escaped."""
     environment = Environment(
         loader=PackageLoader("spinbook.submit", "."),
         autoescape=True,
@@ -89,7 +88,7 @@ def as_html(grade: Grade, exercise: Exercise) -> str:
         log=_end(grade.log),
         log_open=grade.outcome != "graded",
         rows=_rows(grade, exercise),
-        # As an image an SVG can neither run nor load anything, whatever is in it.
+        # In an <img>, an SVG can neither run nor load anything.
         plot=Markup("data:image/svg+xml;base64,") + base64.b64encode(plot.encode()).decode() if plot else "",
         plot_says=_plot_says(grade),
         next_step=next_step(grade, exercise),
@@ -103,13 +102,13 @@ def _harmless(value: Any) -> Any:
 
 
 def _first_step(grade: Grade, exercise: Exercise) -> str:
-    """Return what to look for in a program that did not come through. The steps after it are about files, not cells."""
+    """Return the first step to take with a program that failed. The other steps are about files, not cells."""
     found = advice(grade, exercise)
     return found.steps[0] if found else ""
 
 
 def _end(log: str) -> str:
-    """Return the end of a log, where the reason for an end stands."""
+    """Return the end of a log, which shows why the program ended."""
     return as_students_see_it(log).strip()[-LONGEST:]
 
 
@@ -133,7 +132,7 @@ def _row(check: ShownCheck, grade: Grade, exercise: Exercise) -> CheckRow:
 
 
 def _facts(finding: Finding, grade: Grade, element: str) -> tuple[tuple[tuple[str, str], ...], str]:
-    """Return what is wrong as label and value, and what of the finding's text they leave out."""
+    """Return what is wrong as (label, value), and the rest of the finding's text."""
     phrase = f"got {finding.got}."
     if not (finding.expected and finding.got and phrase in finding.text):
         return (), finding.text

@@ -1,4 +1,4 @@
-"""Reads a handout (a folder or a zip), and the copy of the last one in a student's folder."""
+"""Reads a handout (a folder or a zip), and the original files of the last one in a student's folder."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from grader.submission.upload import RECORD
 from groundwork.problem import Problem
 from spinbook.problem import SpinbookError
 
-#: Where it is, in the handout and in the student's folder.
+#: The folder with the original files, in the handout and in the student's folder.
 BASE = PurePosixPath(".spinbook/base")
 
 #: Files that students may want to change. All others come from the handout.
@@ -21,12 +21,12 @@ _REMEMBERED = {".ipynb", ".md", ".py", ".toml", ".txt", ".yml"}
 
 
 def is_remembered(path: PurePosixPath) -> bool:
-    """Return whether a file of a handout, by its path in it, is remembered."""
+    """Return whether a handout's file, by its path in it, is stored for later updates."""
     return path.suffix in _REMEMBERED and path.parts[0] != ".spinbook"
 
 
 def base_files(handout: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return what a handout of these files, by name, needs to have in it besides, so that it can be updated one day."""
+    """Return the additional files that a handout of these files, by name, needs for later updates."""
     return {str(BASE / name): content for name, content in handout.items() if is_remembered(PurePosixPath(name))}
 
 
@@ -45,7 +45,7 @@ _PACKAGE = re.compile(rb"%chapter [^\n\"\\]*--package ([a-z0-9_]+)")
 
 
 def read_handout(path: Path) -> Files:
-    """Return every file of a handout, by its path in it. Raises `SpinbookError` where it can't be read or is none."""
+    """Return a handout's files by their paths in it. Raises `SpinbookError` if it can't be read or isn't a handout."""
     if not path.exists():
         raise SpinbookError(Problem(path, None, "there is no such file or folder.", "Name the new handout."))
     try:
@@ -60,7 +60,7 @@ def read_handout(path: Path) -> Files:
 
 
 def refuse_another_course(path: Path, files: Files, folder: Path) -> None:
-    """Raise `SpinbookError` where a handout's notebooks and those in the student's folder are of different courses."""
+    """Raise `SpinbookError` if a handout's notebooks and the student's are from different courses."""
     base = folder / BASE
     mine = packages(file.read_bytes() for file in sorted((base if base.is_dir() else folder).glob("*.ipynb")))
     new = packages(data for path, data in files.items() if path.suffix == ".ipynb" and len(path.parts) == 1)
@@ -70,7 +70,7 @@ def refuse_another_course(path: Path, files: Files, folder: Path) -> None:
 
 
 def packages(notebooks: Iterable[bytes]) -> set[str]:
-    """Return the ROS packages that these notebooks' set-up cells name, which are one for each course."""
+    """Return the ROS packages that these notebooks' set-up cells name, one for each course."""
     return {match.decode() for notebook in notebooks for match in _PACKAGE.findall(notebook)}
 
 
@@ -127,7 +127,7 @@ def _bounded(path: Path, count: int, size: int) -> None:
 
 
 def _without_outer_folder(files: Files) -> Files:
-    """Return a zip often has one folder around everything."""
+    """Remove the one folder that a zip often has around everything."""
     outer = {path.parts[0] for path in files}
     if len(outer) == 1 and all(len(path.parts) > 1 for path in files) and not outer & {".spinbook"}:
         return {PurePosixPath(*path.parts[1:]): data for path, data in files.items()}

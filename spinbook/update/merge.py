@@ -19,27 +19,27 @@ _NODE = re.compile(r"%%node\s+(\w+)")
 
 
 def text(cell: Cell) -> str:
-    """Return the content of a cell. Editors differ in line ends and in space at the end, so these don't count."""
+    """Return the content of a cell, without line ends and final space, in which editors differ."""
     source = cell.get("source", "")
     joined = source if isinstance(source, str) else "".join(source)
     return joined.replace("\r\n", "\n").rstrip()
 
 
 def content(cell: Cell) -> tuple[str, str]:
-    """Return what makes a cell the same as another: its type and its text, not its outputs."""
+    """Return what has to be equal in equal cells: type and text, not outputs."""
     return cell.get("cell_type", ""), text(cell)
 
 
 def label(cell: Cell) -> str:
-    """Return a cell's name for people: its node, or its first line."""
+    """Return a cell's name for people: its first line."""
     lines = [line.strip() for line in text(cell).split("\n") if line.strip()]
     return (lines[0] if lines else "an empty cell")[:60]
 
 
 def found_again(old: Sequence[Cell], new: Sequence[Cell]) -> dict[int, int]:
-    """For cells of `old`, by their index, where they are in `new`: by id, by content, as a node, or by similarity."""
+    """Map the indices of cells in `old` to those in `new`: by id, by content, by node, or by similarity."""
     found: dict[int, int] = {}
-    # Of two cells with one id the one with the old content is meant.
+    # If two cells have the same id, the one with the old content comes first.
     _pair(old, new, found, lambda cell: (cell.get("id"), content(cell)) if cell.get("id") else None)
     _pair(old, new, found, lambda cell: cell.get("id"))
     _pair(old, new, found, lambda cell: content(cell) if text(cell) else None)
@@ -49,7 +49,7 @@ def found_again(old: Sequence[Cell], new: Sequence[Cell]) -> dict[int, int]:
 
 
 def _pair(old: Sequence[Cell], new: Sequence[Cell], found: dict[int, int], key: Any) -> None:
-    """Pair cells that have no partner yet and one key; where several have it, in their order."""
+    """Pair cells without a partner that have the same key; if several have it, in their order."""
     waiting: dict[Any, list[int]] = {}
     taken = set(found.values())
     for j, cell in enumerate(new):
@@ -62,7 +62,7 @@ def _pair(old: Sequence[Cell], new: Sequence[Cell], found: dict[int, int], key: 
 
 
 def _node(cell: Cell) -> tuple[str, str] | None:
-    """Return the exercise or the node whose cell this is."""
+    """Return the exercise or the node to which a cell belongs."""
     if cell.get("cell_type") != "code":
         return None
     known = cell.get("metadata", {}).get("spinbook", {})
@@ -89,14 +89,14 @@ def _pair_alike(old: Sequence[Cell], new: Sequence[Cell], found: dict[int, int])
             taken.add(j)
 
 
-# There are three sides: `base`, what was handed out; `mine`, what the student made of it; `new`, what is handed out
+# There are three sides: `base` was handed out; `mine` is what the student made of it; `new` is what is handed out
 # now. A cell that only one of the two changed is taken from that one. Where both did, the student's is kept and the
 # new one is shown below it, as text: were it code, it could be taken for the student's.
 
 
 @dataclass
 class MergeReport:
-    """What happened to cells, by their labels, for the student to read."""
+    """What happened to cells, by their labels, as a report for the student."""
 
     taken: list[str] = field(default_factory=list)
     added: list[str] = field(default_factory=list)
@@ -110,7 +110,7 @@ class MergeReport:
 
 @dataclass(frozen=True)
 class _Item:
-    """One cell of the result: where it is in `mine` and in `new`, and what is put below it."""
+    """One cell of the result: its index in `mine` and in `new`, and the cells below it."""
 
     mine: int | None
     new: int | None
@@ -119,7 +119,7 @@ class _Item:
 
 
 def merged(base: Sequence[Cell], mine: Sequence[Cell], new: Sequence[Cell]) -> tuple[list[Cell], MergeReport]:
-    """Return the student's cells with the author's changes in them, and what became of what.
+    """Return the student's cells with the author's changes, and a report.
 
     With `new` equal to `base` the result equals `mine`. Every cell of `mine` that differs from its `base`, or has none,
     is in the result.
@@ -129,7 +129,7 @@ def merged(base: Sequence[Cell], mine: Sequence[Cell], new: Sequence[Cell]) -> t
 
 
 def merged_without_base(mine: Sequence[Cell], new: Sequence[Cell]) -> tuple[list[Cell], MergeReport]:
-    """Return the same if the original handout is not known: a cell that differs counts as changed by both."""
+    """Merge without the original handout: a cell that differs counts as changed by both."""
     pairs = sorted(found_again(new, mine).items())
     unknown: Cell = {"cell_type": "", "source": ""}
     base = [new[j] if content(new[j]) == content(mine[i]) else unknown for j, i in pairs]
@@ -138,7 +138,7 @@ def merged_without_base(mine: Sequence[Cell], new: Sequence[Cell]) -> tuple[list
 
 
 class _Merge:
-    """One merge. `mine_of` and `new_of` tell for a cell of the base, by its number, where it is now."""
+    """One merge. `mine_of` and `new_of` map the index of a cell in the base to its index now."""
 
     def __init__(
         self,
@@ -184,14 +184,14 @@ class _Merge:
         return _refreshed(mine, base, new), (shown_below(new),)
 
     def _only_mine(self) -> list[_Item]:
-        """Cells that the student added, and cells that the author has taken out."""
+        """Return the cells that the student added, and those that the author removed but the student changed."""
         base_of = {i: b for b, i in self.mine_of.items()}
         added = [j for j in range(len(self.new)) if j not in self.new_of.values()]
         items = []
         for i, cell in enumerate(self.mine):
             b = base_of.get(i)
             if b is None:
-                # A cell may be new on both sides and the same, such as after an update that was broken off.
+                # The same cell may be new on both sides, for example after an interrupted update.
                 same = next((j for j in added if content(self.new[j]) == content(cell) and text(cell)), None)
                 added = [j for j in added if j != same]
                 items.append(_Item(i, same, cell))
@@ -203,7 +203,7 @@ class _Merge:
         return items
 
     def _only_new(self, have: set[int | None]) -> list[_Item]:
-        """Cells that the author added, and cells that the student has deleted: those stay so, unless they changed."""
+        """Return the cells that the author added, and those that the student deleted but the author changed."""
         base_of = {j: b for b, j in self.new_of.items()}
         items = []
         for j, cell in enumerate(self.new):
@@ -220,19 +220,19 @@ class _Merge:
         return items
 
     def _moved(self, of: dict[int, int]) -> bool:
-        """Return whether the cells that both sides have are in another order than in the base."""
+        """Return whether the cells that both sides have are in a different order than in the base."""
         places = [of[b] for b in range(len(self.base)) if b in self.mine_of and b in self.new_of]
         return places != sorted(places)
 
 
 def _is_needed(cell: Cell) -> bool:
-    """Return whether an exercise can't be done without this cell, so that a student should know that it is gone."""
+    """Return whether an exercise can't be done without this cell, so that the student should know that it is missing."""
     known = cell.get("metadata", {}).get("spinbook", {})
     return bool(known.get("exercise")) or known.get("kind") in ("setup", "check")
 
 
 def _refreshed(mine: Cell, base: Cell, new: Cell) -> Cell:
-    """Return the student's cell as it is, with what our tools need to know of it."""
+    """Return the student's cell unchanged, except for the new id and Spinbook's metadata."""
     if new.get("metadata") == base.get("metadata") and new.get("id") == base.get("id"):
         return mine
     cell = {**mine, "metadata": dict(mine.get("metadata", {}))}
@@ -244,7 +244,7 @@ def _refreshed(mine: Cell, base: Cell, new: Cell) -> Cell:
 
 
 def shown_below(new: Cell) -> Cell:
-    """Return the new version of a cell that the student has changed, as text to look at."""
+    """Return the new version of a cell that the student has changed, as text."""
     language = "python" if new.get("cell_type") == "code" else "markdown"
     fence = "`" * max(3, 1 + max((len(run) for run in re.findall(r"`+", text(new))), default=0))
     words = (
@@ -257,7 +257,7 @@ def shown_below(new: Cell) -> Cell:
 
 
 def _woven(first: Sequence[_Item], second: Sequence[_Item]) -> list[_Item]:
-    """Return `first` in its order, with the entries that only `second` has put after those that they follow there."""
+    """Return `first` in its order, with entries only in `second` inserted after those that they follow there."""
     order = list(first)
     before: _Item | None = None
     for item in second:

@@ -1,4 +1,4 @@
-"""What an update will do, decided before anything is done, and doing it: first a backup, then every file."""
+"""Plans an update before anything is changed, and carries it out: first a backup, then every file."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from spinbook.update.merge import Cell, MergeReport, content, merged, merged_wit
 
 
 class NoNotebook(Exception):
-    """Raised when a file is not a notebook that can be read; says why."""
+    """Raised for a file that is not a readable notebook; says why."""
 
 
 def read(data: bytes) -> dict[str, Any]:
@@ -50,16 +50,17 @@ def _is_cell(cell: Any) -> bool:
 
 
 def chapter(notebook: dict[str, Any]) -> str:
-    """Return the chapter whose notebook this is, by whatever name it is saved; empty where it is another's."""
+    """Return the chapter of a notebook, under whatever name it is saved; "" if it is not a chapter's."""
     known = notebook["metadata"].get("spinbook", {})
     name = known.get("chapter", "") if isinstance(known, dict) else ""
     return name if isinstance(name, str) else ""
 
 
 def merged_notebook(base: bytes | None, mine: bytes, new: bytes) -> tuple[bytes, MergeReport]:
-    """Return the student's notebook with the author's changes in it. Raises `NoNotebook` where one of them is none.
+    """Return the student's notebook with the author's changes in it. Raises `NoNotebook` if one of them is not a
+    notebook.
 
-    With no `base` (a handout that kept none) a cell counts as the student's wherever it differs from the new one.
+    With no `base` (a handout that kept none) a cell counts as the student's if it differs from the new one.
     """
     ours, theirs = read(mine), read(new)
     if base == new:
@@ -82,7 +83,7 @@ def merged_notebook(base: bytes | None, mine: bytes, new: bytes) -> tuple[bytes,
 
 
 def _with_ids_of_their_own(cells: list[Cell]) -> list[Cell]:
-    """Cells without an id, or with one that another has, get a new one, which depends on nothing but the cells."""
+    """Give each cell without an id, or with the id of another, a new one that depends only on the cells."""
     seen: set[str] = set()
     for number, cell in enumerate(cells):
         name = cell.get("id")
@@ -93,7 +94,7 @@ def _with_ids_of_their_own(cells: list[Cell]) -> list[Cell]:
     return cells
 
 
-#: Folders in which a student's notebook is not looked for.
+#: Folders that are not searched for a student's notebook.
 _NOT_LOOKED_IN = {".spinbook", ".ipynb_checkpoints", ".venv", "backups", "build"}
 
 
@@ -101,7 +102,7 @@ _NOT_LOOKED_IN = {".spinbook", ".ipynb_checkpoints", ".venv", "backups", "build"
 class UpdatePlan:
     """Files to write, what to report about each, and entries of the base that are out of date.
 
-    `report` has a line or more for each file, by the file's path; `notebooks` what became of cells.
+    `report` has one or more lines per file, by the file's path; `notebooks` has the reports of merges.
     """
 
     writes: Files = field(default_factory=dict)
@@ -116,7 +117,7 @@ class UpdatePlan:
 
 
 def plan(folder: Path, handout: Mapping[PurePosixPath, bytes]) -> UpdatePlan:
-    """Return what brings the student's `folder` up to `handout`. Changes nothing."""
+    """Plan what updates the student's `folder` to `handout`. Nothing is changed."""
     made = UpdatePlan()
     base = _base_in(folder)
     for path, data in sorted(handout.items()):
@@ -147,7 +148,7 @@ def _base_in(folder: Path) -> Files:
 
 
 def _own(made: UpdatePlan, folder: Path, path: PurePosixPath, data: bytes) -> None:
-    """A file of ours, which no student edits."""
+    """Plan to write a file of Spinbook's own, which students do not edit."""
     if _content(folder / path) != data:
         made.base[path] = data
 
@@ -192,7 +193,7 @@ def _notebook(made: UpdatePlan, folder: Path, path: PurePosixPath, base: bytes |
 
 
 def _students(folder: Path, path: PurePosixPath, new: bytes) -> PurePosixPath:
-    """Return where the student has this notebook, which may have another name by now."""
+    """Return the path of this notebook in the student's folder, where it may have another name."""
     if (folder / path).exists():
         return path
     try:
@@ -232,9 +233,10 @@ BACKUPS = "backups"
 
 
 def carry_out(plan: UpdatePlan, folder: Path) -> Path | None:
-    """Write everything. Returns the folder with a copy of each file that is replaced, None where none is.
+    """Carry out a plan. Return the folder with copies of the replaced files, or None if no file is replaced.
 
-    If it breaks off, the same update can be done again: what was handed out is remembered last. Raises `OSError`.
+    If it is interrupted, the same update can be repeated, because the original files are written last. Raises
+    `OSError`.
     """
     replaced = [path for path in plan.writes if (folder / path).exists()]
     backup = _new_backup(folder) if replaced else None

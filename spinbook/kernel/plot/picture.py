@@ -18,14 +18,14 @@ from spinbook.kernel.plot.recording import PlotCurve, PlotRecording
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: Told apart in grey and by readers who do not see red and green alike (after Okabe and Ito, 2008).
+#: Distinct in grey and for colour-blind readers (after Okabe and Ito, 2008).
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 _DASHES = ["-", "--", "-.", ":"]
 
 
 def draw(recording: PlotRecording, title: str = "") -> Figure:
     """Return a figure of what was recorded. Time counts from the first sample."""
-    # Web pages read other parts of this module, and have no matplotlib.
+    # Web pages import other parts of this module and have no matplotlib.
     from matplotlib.figure import Figure
 
     shown = panels(recording)
@@ -64,7 +64,7 @@ def panels(recording: PlotRecording) -> dict[tuple[str, str], list[PlotCurve]]:
 
 
 def in_words(recording: PlotRecording) -> str:
-    """Return what the figure shows, for those who can't see it and for front ends without pictures."""
+    """Describe the figure, for those who can't see it and for front ends without pictures."""
     lines = []
     for (kind, unit), curves in panels(recording).items():
         for curve in curves:
@@ -91,11 +91,11 @@ class Scale:
     end: float
 
     def at(self, value: float) -> float:
-        """Return the place of a value (px)."""
+        """Return the position of a value (px)."""
         return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
 
     def marks(self) -> list[float]:
-        """Up to five round values between, 1, 2 or 5 times a power of ten apart."""
+        """Return up to five round values, 1, 2 or 5 times a power of ten apart."""
         span = self.high - self.low
         step = 10.0 ** math.floor(math.log10(span / 5))
         step *= next((factor for factor in (1, 2, 5) if span / (step * factor) <= 5), 10)
@@ -124,7 +124,7 @@ _NAME_CHAR = 6.9
 def panel(
     name: str, curves: Mapping[str, PlotCurve], top: float, across: Scale, start: float, key: str
 ) -> tuple[str, float]:
-    """Return the panel below `top` with curves by label, and where it ends.
+    """Return the panel of these curves below `top`, and where it ends (px).
 
     Curves are seen through the clip path `key` + "c"; the class `key` + "x" moves the pointer.
     """
@@ -161,7 +161,7 @@ def _axes(across: Scale, up: Scale) -> str:
 
 
 def _legend(looks: Mapping[str, str], y: float) -> tuple[str, float]:
-    """Return the names, as many in a row as fit, the first row at `y`; and where they end."""
+    """Return the names in rows, the first at `y`, and where they end (px)."""
     x, texts = float(LEFT), ""
     for label, look in looks.items():
         width = 38 + _NAME_CHAR * len(label)
@@ -184,7 +184,7 @@ def _polyline(curve: PlotCurve, across: Scale, up: Scale, start: float) -> str:
     return f"M{coord(whole[0][0])} {coord(whole[0][1])}{''.join(steps)}"
 
 
-# Then a rest, then again. In print, and for readers who prefer no motion, it is still: the whole curves.
+# In print, and for readers who prefer no motion, the whole curves are shown, still.
 
 
 #: A longer recording (s) is shown faster, so that it takes no longer than this.
@@ -195,12 +195,12 @@ _TOP = 28
 
 
 def moving_plot(recording: PlotRecording, title: str = "") -> str | None:
-    """Return the picture, or None where nothing can move: no time has passed, or there are too many curves."""
+    """Return the picture, or None if nothing can move: no time has passed, or there are too many curves."""
     return plot_svg(recording, title) if sum(map(len, _shown(recording).values())) <= MOST_CURVES else None
 
 
 def plot_svg(recording: PlotRecording, title: str = "") -> str | None:
-    """Return the picture, without motion if there are too many curves; None where no time has passed."""
+    """Return the picture, without motion if there are too many curves; None if no time has passed."""
     shown = _shown(recording)
     curves = [curve for by_label in shown.values() for curve in by_label.values()]
     end = max((curve.times[-1] for curve in curves), default=recording.start) - recording.start
@@ -224,7 +224,7 @@ def plot_svg(recording: PlotRecording, title: str = "") -> str | None:
 
 
 def _shown(recording: PlotRecording) -> dict[str, dict[str, PlotCurve]]:
-    """Return axis -> label -> curve, of curves that can be drawn."""
+    """Return axis -> label -> curve, for the curves that can be drawn."""
     several_topics = len({quantity.topic for quantity in recording.curves}) > 1
     shown: dict[str, dict[str, PlotCurve]] = {}
     for (kind, unit), curves in panels(recording).items():

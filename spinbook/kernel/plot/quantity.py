@@ -1,4 +1,4 @@
-"""Takes numbers out of messages, each with the name and unit that an axis and a legend need."""
+"""Reads numbers from messages, each with the name and unit for the axis and the legend."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class TopicPath:
 
 
 def resolve(path: str, topics: Iterable[str]) -> TopicPath | None:
-    """Split a path into one of these topics and a field. The longest topic that fits is meant, as in rqt_plot.
+    """Split a path into one of these topics and a field. The longest topic that matches wins, as in rqt_plot.
 
-    None if no topic fits. Raises ValueError if the rest is not a field.
+    Return None if no topic matches. Raises ValueError if the rest is not a field.
 
     >>> resolve('/joint_commands/position[0]', ['/joint_commands'])
     TopicPath(topic='/joint_commands', steps=('position', 0))
@@ -71,7 +71,7 @@ class PlotQuantity:
 
 
 def quantities(path: TopicPath, message: Any, type_name: str) -> Iterator[tuple[PlotQuantity, float]]:
-    """Yield every number that the path leads to in this message, with what it is.
+    """Yield every number at the path in this message, with what it is.
 
     `type_name` is "package/Type". Raises LookupError if the message has no such field.
     """

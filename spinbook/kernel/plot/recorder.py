@@ -2,9 +2,9 @@
 
     python -m spinbook.kernel.plot.recorder PATH …
 
-Lines: ["looking"] once it takes part in ROS, ["waiting", [paths not found yet], [topics there are]],
-["sample", topic, kind, unit, label, time (s), value], ["error", words].
-A process and not a thread: the kernel then needs no rclpy, and its Stop button can't break one.
+Lines: ["looking"] once it takes part in ROS, ["waiting", [paths not found yet], [topics there are]], ["sample", topic,
+kind, unit, label, time (s), value], ["error", words]. A process rather than a thread: the kernel then needs no rclpy,
+and its Stop button can't break it.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from ros_in_python.ros2.interfaces import message_class
 from spinbook.kernel.plot.quantity import TopicPath, quantities, resolve, stamp_of
 from spinbook.kernel.recorder_lines import errors_written, write_line
 
-#: Hears publishers of every reliability and durability.
+#: Compatible with publishers of every reliability and durability.
 _HEARS_ALL = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
 
 
 class PlotRecorder(Node):
-    """Looks for the topics that paths name, and hands every number that comes from them to `write`, as a line."""
+    """Subscribes to the topics that paths name, and passes each number from them to `write`, as a line."""
 
     def __init__(
         self, paths: Sequence[str], write: Callable[..., None] = write_line, context: Context | None = None
@@ -69,7 +69,7 @@ class PlotRecorder(Node):
 
 
 def main() -> None:
-    """Record until told to stop."""
+    """Record until stopped."""
     rclpy.init()
     try:
         with errors_written():
@@ -87,7 +87,7 @@ def _record(paths: list[str]) -> None:
     try:
         rclpy.spin(recorder)
     finally:
-        # Without this its end is not announced, and others see it for another minute.
+        # Otherwise its end is not announced, and others see it for another minute.
         recorder.destroy_node()
 
 

@@ -21,7 +21,7 @@ class PlotCurve:
 
 @dataclass
 class PlotRecording:
-    """Curves in the order in which they first appeared, and what is still waited for."""
+    """Curves in the order in which they first appeared, and the paths without a topic yet."""
 
     curves: dict[PlotQuantity, PlotCurve] = field(default_factory=dict)
     waiting: list[str] = field(default_factory=list)
@@ -31,12 +31,12 @@ class PlotRecording:
     """Whether the recorder takes part in ROS yet."""
 
     def take(self, lines: Iterable[str]) -> None:
-        """Take in lines that the recorder printed."""
+        """Add lines that the recorder printed."""
         for kind, values in read_lines(lines):
             self.note(kind, *values)
 
     def note(self, kind: str, *values: Any) -> None:
-        """Take in what the recorder says: a line's kind and values."""
+        """Add one line of the recorder: its kind and values."""
         if kind == "sample":
             *about, when, value = values
             quantity = PlotQuantity(*about)
@@ -51,7 +51,7 @@ class PlotRecording:
             self.error = values[0]
 
     def why_empty(self, paths: Sequence[str]) -> str:
-        """Return why nothing was recorded of these paths."""
+        """Return why nothing was recorded for these paths."""
         if self.waiting:
             there = ", ".join(self.published) or "none"
             return f"Nobody publishes {', '.join(self.waiting)}. Topics with a publisher are: {there}."
@@ -63,13 +63,13 @@ class PlotRecording:
         return min((curve.times[0] for curve in self.curves.values()), default=0.0)
 
 
-#: How long the recorder may take to start, and a topic's first message to come after that (s).
+#: How long the recorder may take to start, and after that a topic's first message to arrive (s).
 _STARTING_S = 30.0
 _APPEAR_S = 7.0
 
 
 class RecordingTime:
-    """Says when a recording is over: its seconds count from the first sample, or it waited for one in vain.
+    """Says when a recording is over: its seconds count from the first sample, and waiting for that has a limit, too.
 
     The recorder's own start does not count as waiting: on a busy machine it may take longer than the recording.
     """
@@ -80,7 +80,7 @@ class RecordingTime:
         self._is_looking = self._has_samples = False
 
     def is_over(self, recording: PlotRecording, now: float) -> bool:
-        """Return ask this again and again; `now` is a monotonic clock's time (s)."""
+        """Return whether the time is over, when polled; `now` is a monotonic clock's time (s)."""
         if recording.is_looking and not self._is_looking:
             self._is_looking, self._ends = True, now + _APPEAR_S
         if recording.curves and not self._has_samples:
