@@ -71,12 +71,12 @@ def find_failures(chapter: Path, ran: dict[str, Any], ended: dict[str, Any]) -> 
 
 def find_warnings(chapter: Path, ran: dict[str, Any]) -> list[CellFailure]:
     """Find the cells that waited in vain for a text (`until=`): their outputs do not show what the chapter says."""
-    found = []
+    warnings = []
     for cell in ran["cells"]:
         if cell["cell_type"] == "code" and (never := NEVER_APPEARED.search(_printed(cell))):
             what = f"`until` failed: {never[1]} was not printed within {never[2]} s. Correct it, or raise `seconds`."
-            found.append(CellFailure(chapter, _line(cell), what, ""))
-    return found
+            warnings.append(CellFailure(chapter, _line(cell), what, ""))
+    return warnings
 
 
 def _failed_cells(chapter: Path, cells: list[dict[str, Any]]) -> Iterator[CellFailure]:

@@ -65,18 +65,18 @@ def not_included(code: str) -> str:
 
 def options(lines: list[str]) -> tuple[dict[str, str], int]:
     """Return a directive's options (`:key: value` lines, or YAML between two `---`), and how many lines they take."""
-    found: dict[str, str] = {}
+    values: dict[str, str] = {}
     if lines and lines[0].strip() == "---" and "---" in (rest := [line.strip() for line in lines[1:]]):
         end = rest.index("---")
         for line in lines[1 : end + 1]:
             key, _, value = line.partition(":")
-            found[key.strip()] = value.strip()
-        return found, end + 2
+            values[key.strip()] = value.strip()
+        return values, end + 2
     count = 0
     while count < len(lines) and (match := _OPTION.match(lines[count].strip())):
-        found[match[1]] = match[2].strip()
+        values[match[1]] = match[2].strip()
         count += 1
-    return found, count
+    return values, count
 
 
 def pairs(text: str) -> dict[str, str]:
@@ -84,11 +84,11 @@ def pairs(text: str) -> dict[str, str]:
     return {key: double or single or plain for key, double, single, plain in _PAIR.findall(text)}
 
 
-def image(path: str, given: dict[str, str]) -> str:
+def image(path: str, properties: dict[str, str]) -> str:
     """Return an image as HTML if it has a width, otherwise as Markdown."""
-    alt = given.get("alt") or given.get("caption") or ""
-    if "width" in given:
-        width = given["width"].removesuffix("px")
+    alt = properties.get("alt") or properties.get("caption") or ""
+    if "width" in properties:
+        width = properties["width"].removesuffix("px")
         return f'<img src="{path}" alt="{alt}" width="{width}">'
     return f"![{alt}](<{path}>)" if " " in path else f"![{alt}]({path})"
 
@@ -140,21 +140,25 @@ def kramdown_style(text: str) -> str:
     return next((_STYLE[name] for name in names if name in _STYLE), "")
 
 
-def paired(name: str, given: dict[str, str], words: str) -> tuple[str, str, str]:
+def paired(name: str, properties: dict[str, str], words: str) -> tuple[str, str, str]:
     """Return (kind, style, title) for an opening tag of this name."""
     if name in {"TabItem", "Tab", "tab", "TabPanel"}:
         positional = words.strip().strip("\"'") if "=" not in words else ""
         # jekyll-tabs names the group first: `tab group title`.
         positional = positional.partition(" ")[2] or positional
-        return "tab", "", given.get("label") or given.get("title") or given.get("value") or positional.strip("\"'")
+        return (
+            "tab",
+            "",
+            properties.get("label") or properties.get("title") or properties.get("value") or positional.strip("\"'"),
+        )
     if name.lower() == "details":
-        return "details", "note", given.get("title") or given.get("summary") or ""
+        return "details", "note", properties.get("title") or properties.get("summary") or ""
     if name == "Admonition":
-        return "admonition", _STYLE.get(given.get("type", "note"), "note"), given.get("title", "")
+        return "admonition", _STYLE.get(properties.get("type", "note"), "note"), properties.get("title", "")
     if name == "hint":
-        return "admonition", _STYLE.get(given.get("style", "info"), "note"), ""
+        return "admonition", _STYLE.get(properties.get("style", "info"), "note"), ""
     if name.lower() in _STYLE and name not in {"highlight"}:
-        title = given.get("title") or ("" if name.lower() in STYLES else in_words(name))
+        title = properties.get("title") or ("" if name.lower() in STYLES else in_words(name))
         return "admonition", _STYLE[name.lower()], title
     return ("dropped", "", "") if name == "comment" else ("group", "", "")
 
@@ -166,10 +170,10 @@ def in_words(name: str) -> str:
 
 def words_of(name: str, properties: str) -> list[str]:
     """Return the sentences among a component's properties, as a quotation; nothing if it has none."""
-    found = [(double or single).replace('\\"', '"') for double, single in _QUOTED.findall(properties)]
+    sentences = [(double or single).replace('\\"', '"') for double, single in _QUOTED.findall(properties)]
     title = pairs(properties).get("title", "")
-    found = [text for text in found if " " in text and text != title]
-    return [f"> **{title or in_words(name)}**", ">", *(f"> - {text}" for text in found), ""] if found else []
+    sentences = [text for text in sentences if " " in text and text != title]
+    return [f"> **{title or in_words(name)}**", ">", *(f"> - {text}" for text in sentences), ""] if sentences else []
 
 
 def as_html(tag: str) -> str:

@@ -84,11 +84,11 @@ def as_fence(fence: Fence, lines: tuple[SourceLine, ...]) -> tuple[SourceLine, .
     return (SourceLine(f"{mark}{fence.language}{title}", number), *code, SourceLine(mark, lines[-1].number))
 
 
-def merged_callouts(found: list[Block]) -> list[Block]:
+def merged_callouts(blocks: list[Block]) -> list[Block]:
     """Make an admonition of each paragraph or quotation with kramdown's `{: .note }` before or after it."""
     out: list[Block] = []
     style = ""
-    for block in found:
+    for block in blocks:
         if block.kind is BlockKind.DROPPED and block.style in attributes.STYLES:
             if out and out[-1].kind in {BlockKind.TEXT, BlockKind.QUOTE} and out[-1].lines[-1].text.strip():
                 out[-1] = _called_out(out[-1], block.style)
@@ -107,10 +107,10 @@ def _called_out(block: Block, style: str) -> Block:
     return Block(BlockKind.ADMONITION, block.lines, (Block(BlockKind.TEXT, lines),), style=style)
 
 
-def paired(found: list[Block]) -> tuple[Block, ...]:
+def paired(blocks: list[Block]) -> tuple[Block, ...]:
     """Join an opening tag and its closing tag to one block that holds what is between them."""
     stack: list[tuple[Block | None, list[Block]]] = [(None, [])]
-    for block in found:
+    for block in blocks:
         if block.kind is BlockKind.DROPPED and block.style == "open" and block.title in attributes.PAIRED:
             stack.append((block, []))
         elif block.kind is BlockKind.DROPPED and block.style == "close" and block.title in attributes.PAIRED:
@@ -133,9 +133,9 @@ def paired(found: list[Block]) -> tuple[Block, ...]:
 
 
 def _pair(opened: Block, inner: list[Block], closing: Block | None) -> Block:
-    given = attributes.pairs(opened.new[0].text if opened.new else "")
+    properties = attributes.pairs(opened.new[0].text if opened.new else "")
     words = opened.new[0].text if opened.new else ""
-    kind, style, title = attributes.paired(opened.title, given, words)
+    kind, style, title = attributes.paired(opened.title, properties, words)
     summary = next((block for block in inner if block.style == "summary"), None)
     if summary and summary.new:
         title = summary.new[0].text
@@ -145,6 +145,6 @@ def _pair(opened: Block, inner: list[Block], closing: Block | None) -> Block:
         code = "".join(f"{line.text}\n" for block in inner for line in block.lines)
         fence = make_fence(words.split(" ")[0] or "text", code, opened.line)
         return Block(BlockKind.FENCE, lines, fence=fence, new=as_fence(fence, lines))
-    if opened.title == "details" and summary is None and "title" not in given:
+    if opened.title == "details" and summary is None and "title" not in properties:
         title = "Details"
     return Block(BlockKind(kind), lines, tuple(inner), title, style)

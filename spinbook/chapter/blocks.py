@@ -57,24 +57,24 @@ class _Reader:
         if self.depth > _DEEPEST:
             return (Block(BlockKind.TEXT, tuple(lines)),)
         tokens = parser().parse("\n".join(line.text for line in lines))
-        found: list[Block] = []
+        blocks: list[Block] = []
         at = 0
         for index, token in enumerate(tokens):
             if token.level or token.map is None or token.nesting < 0 or token.map[0] < at:
                 continue
             start, end = token.map
             if start > at:
-                found.append(Block(BlockKind.TEXT, tuple(lines[at:start])))
+                blocks.append(Block(BlockKind.TEXT, tuple(lines[at:start])))
             if token.type == "container_any_open" and end < len(lines) and set(lines[end].text.strip()) == {":"}:
                 end += 1
             at = min(max(end, start + 1), len(lines))
             if token.type in _HOLDERS and not any(map(self._is_block, _inside(tokens, index))):
-                found.append(Block(BlockKind.TEXT, tuple(lines[start:at])))
+                blocks.append(Block(BlockKind.TEXT, tuple(lines[start:at])))
             else:
-                found.extend(self._block(token, tuple(lines[start:at])))
+                blocks.extend(self._block(token, tuple(lines[start:at])))
         if at < len(lines):
-            found.append(Block(BlockKind.TEXT, tuple(lines[at:])))
-        return paired(merged_callouts(found))
+            blocks.append(Block(BlockKind.TEXT, tuple(lines[at:])))
+        return paired(merged_callouts(blocks))
 
     def inside(self, lines: Sequence[SourceLine]) -> tuple[Block, ...]:
         return _Reader(self.include, self.depth + 1).blocks(lines)
@@ -247,10 +247,12 @@ class _Reader:
 
     def _liquid(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         if token.tag == "include":
-            given = attributes.pairs(token.info)
-            source = given.get("image_path") or given.get("src") or given.get("url") or given.get("file")
+            properties = attributes.pairs(token.info)
+            source = (
+                properties.get("image_path") or properties.get("src") or properties.get("url") or properties.get("file")
+            )
             if source:
-                new = (SourceLine(attributes.image(source, given), lines[0].number),)
+                new = (SourceLine(attributes.image(source, properties), lines[0].number),)
                 return [Block(BlockKind.TEXT, lines, new=new)]
             return [Block(BlockKind.DROPPED, lines)]
         if token.tag.startswith("end"):
@@ -298,14 +300,14 @@ class _Reader:
             if token.type == "list_item_open" and token.level == 1 and token.map
         ]
         ends = [start for _, start in items[1:]] + [len(lines)]
-        found = []
+        result = []
         for (token, start), end in zip(items, ends, strict=False):
             own = lines[start:end]
             offset = _offset(own[0].text, len(token.info) + len(token.markup))
             first = SourceLine(own[0].text[offset:], own[0].number)
             inner = self.inside([first, *_dedented(own[1:], offset)])
-            found.append(Block(BlockKind.ITEM, own, inner, title=token.info, style=token.markup, offset=offset))
-        return tuple(found)
+            result.append(Block(BlockKind.ITEM, own, inner, title=token.info, style=token.markup, offset=offset))
+        return tuple(result)
 
 
 def read_blocks(text: str, include: Include) -> tuple[Block, ...]:

@@ -24,13 +24,13 @@ def names_begun(code: str) -> frozenset[str]:
 
 def methods_alone(tree: ast.Module) -> frozenset[str]:
     """Return the methods of code that holds nothing else: they belong to a class which is not in it."""
-    found = set()
+    methods = set()
     for item in tree.body:
         if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef) and [a.arg for a in item.args.args[:1]] == ["self"]:
-            found.add(item.name)
+            methods.add(item.name)
         elif not (isinstance(item, ast.Expr) and isinstance(item.value, ast.Constant)):
             return frozenset()
-    return frozenset(found)
+    return frozenset(methods)
 
 
 def uses_super_outside(tree: ast.Module) -> bool:
@@ -43,13 +43,13 @@ def uses_super_outside(tree: ast.Module) -> bool:
 @functools.lru_cache(maxsize=256)
 def assembled(pieces: tuple[str, ...]) -> tuple[tuple[tuple[int, ...], str], ...]:
     """Return (numbers of the pieces, their code), with each class joined to its methods in the next pieces."""
-    found: list[tuple[tuple[int, ...], str]] = []
+    groups: list[tuple[tuple[int, ...], str]] = []
     at = 0
     while at < len(pieces):
         numbers, text = _class_from(at, pieces)
-        found.append((numbers, text))
+        groups.append((numbers, text))
         at = numbers[-1] + 1
-    return tuple(found)
+    return tuple(groups)
 
 
 def _class_from(start: int, pieces: Sequence[str]) -> tuple[tuple[int, ...], str]:

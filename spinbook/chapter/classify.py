@@ -140,19 +140,21 @@ def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[C
     if interface := interface_path(fence.title or "", interface_package):
         return _interface(fence, interface, interface_package), problems
     if meant := interface_title(fence.title or ""):
-        return ClassifiedFence(fence, CellKind.STATIC, "its title names no interface"), [_unnamed(fence, meant, file)]
+        return ClassifiedFence(fence, CellKind.STATIC, "its title is not an interface's name"), [
+            _unnamed(fence, meant, file)
+        ]
     if is_package_file(fence.title or "") and (item := _package_file(fence)):
         return item, problems
     fence = with_language(fence)
     if fence.is_shell:
-        item, found = _shell(fence, file)
-        return item, problems + found
+        item, more = _shell(fence, file)
+        return item, problems + more
     if (fence.is_python or fence.is_shell) and (absent := not_included(fence.code)):
-        item, found = _absent(fence, absent, file)
-        return item, problems + found
+        item, more = _absent(fence, absent, file)
+        return item, problems + more
     if fence.is_python:
-        item, found = _python(fence, file)
-        return item, problems + found
+        item, more = _python(fence, file)
+        return item, problems + more
     what = f"`{fence.language}` is" if fence.language else "a fence without a language is"
     return ClassifiedFence(fence, CellKind.STATIC, f"{what} neither Python nor shell"), problems
 
@@ -166,9 +168,9 @@ def _interface(fence: Fence, path: str, own: str) -> ClassifiedFence:
 
 
 def _unnamed(fence: Fence, meant: str, file: Path) -> Problem:
-    found = f"this definition is shown and not compiled: its title `{fence.title}` names no interface."
-    fix = f'Write title="{meant}", or write `static` behind the language if it is only to be shown.'
-    return Problem(file, fence.line, found, fix, Severity.NOT_RUN)
+    problem = f"this definition is shown and not compiled: its title `{fence.title}` is not an interface's name."
+    fix = f'Write title="{meant}", or write `static` after the language if it is only to be shown.'
+    return Problem(file, fence.line, problem, fix, Severity.NOT_RUN)
 
 
 def _package_file(fence: Fence) -> ClassifiedFence | None:
@@ -201,14 +203,14 @@ def _unknown_attributes(fence: Fence, file: Path) -> list[Problem]:
     if not unknown or not (fence.is_python or fence.is_shell):
         return []
     known = "; ".join(f"`{name}`: {meaning}" for name, meaning in ATTRIBUTES.items())
-    found = f"unknown attribute {', '.join(f'`{a}`' for a in unknown)} on this fence."
-    return [Problem(file, fence.line, found, f"Known are {known}.", Severity.WARNING)]
+    problem = f"unknown attribute {', '.join(f'`{a}`' for a in unknown)} on this fence."
+    return [Problem(file, fence.line, problem, f"Known are {known}.", Severity.WARNING)]
 
 
 def _absent(fence: Fence, name: str, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
-    found = f"the fence includes `{name}`, and there is no such file."
+    text = f"the fence includes `{name}`, and there is no such file."
     fix = "Write the path relative to the chapter's folder, or to the course's."
-    problem = Problem(file, fence.line, found, fix, Severity.NOT_RUN, group="files that are not there")
+    problem = Problem(file, fence.line, text, fix, Severity.NOT_RUN, group="files that are not there")
     why = f"it includes `{name}`, which is not here"
     return ClassifiedFence(fence, CellKind.STATIC, why, f"{why}."), [problem]
 
@@ -230,9 +232,9 @@ def _shell(fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
 
 def _not_run(fence: Fence, command: UnsupportedCommand, file: Path) -> Problem:
     line = fence.first_code_line + command.line - 1
-    found = f"this shell fence is shown and not run: {command.why} (`{command.text}`)."
+    problem = f"this shell fence is shown and not run: {command.why} (`{command.text}`)."
     fix = "Put what can run into a fence of its own, or write `static` after the language to say that this is meant."
-    return Problem(file, line, found, fix, Severity.WARNING, group="a real shell")
+    return Problem(file, line, problem, fix, Severity.WARNING, group="a real shell")
 
 
 def _python(fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
@@ -258,8 +260,8 @@ def _python(fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
 def _broken(fence: Fence, error: CodeError, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
     line = fence.first_code_line + error.line - 1
     fix = "Fix the code, or write `static` after the language if it is only to be shown and not run."
-    found = f"not Python: {error.message} (column {error.column})."
-    problem = Problem(file, line, found, fix, Severity.NOT_RUN)
+    text = f"not Python: {error.message} (column {error.column})."
+    problem = Problem(file, line, text, fix, Severity.NOT_RUN)
     sign = f"line {error.line} is not valid Python ({error.message})."
     return ClassifiedFence(fence, CellKind.STATIC, "it is not Python", sign), [problem]
 
@@ -267,9 +269,9 @@ def _broken(fence: Fence, error: CodeError, file: Path) -> tuple[ClassifiedFence
 def _magics_in_node(fence: Fence, file: Path) -> list[Problem]:
     if not has_magics(fence.code):
         return []
-    found = "a node's code contains a notebook command (a line that begins with % or !)."
+    problem = "a node's code contains a notebook command (a line that begins with % or !)."
     fix = "A node is a file of its own, which Python runs: put the command into another fence."
-    return [Problem(file, fence.line, found, fix, Severity.NOT_RUN)]
+    return [Problem(file, fence.line, problem, fix, Severity.NOT_RUN)]
 
 
 def _refused(fence: Fence, code: PythonCode) -> str:
@@ -303,22 +305,22 @@ def _why_static(fence: Fence, code: PythonCode) -> str:
 def node_name(item: ClassifiedFence, text: str, file: Path) -> tuple[str, bool, list[Problem]]:
     """Return (a node's file without .py, whether the author named it, problems). The text names the file `text`."""
     code = item.code
-    given = item.fence.title if item.fence.title and item.fence.title.endswith(".py") else text
-    if given:
-        stem = given.rsplit("/", 1)[-1].removesuffix(".py")
+    named_file = item.fence.title if item.fence.title and item.fence.title.endswith(".py") else text
+    if named_file:
+        stem = named_file.rsplit("/", 1)[-1].removesuffix(".py")
         if stem.isidentifier():
             return stem, True, []
         name = re.sub(r"\W+", "_", stem).strip("_") or "node"
         name = name if name.isidentifier() else f"node_{name}"
-        found = f"`{given}` can't be a module: `{stem}` is not a Python name. It is called `{name}` here."
+        problem = f"`{named_file}` can't be a module: `{stem}` is not a Python name. It is called `{name}` here."
         fix = "Use letters, digits and underscores, such as my_node.py."
-        return name, True, [Problem(file, item.fence.line, found, fix, Severity.WARNING)]
+        return name, True, [Problem(file, item.fence.line, problem, fix, Severity.WARNING)]
     assert code is not None
     name = code.ros_name if code.ros_name and code.ros_name.isidentifier() else ""
     name = name or (
         re.sub(r"(?<!^)(?<![A-Z_])(?=[A-Z])", "_", code.node_classes[0]).lower() if code.node_classes else ""
     )
     name = name or "node"
-    found = f"this fence is a node without a file name; it is called `{name}`."
+    problem = f"this fence is a node without a file name; it is called `{name}`."
     fix = f'Name its file: ```python title="{name}.py"'
-    return name, False, [Problem(file, item.fence.line, found, fix, Severity.WARNING, group="a file name")]
+    return name, False, [Problem(file, item.fence.line, problem, fix, Severity.WARNING, group="a file name")]

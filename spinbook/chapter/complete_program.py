@@ -99,15 +99,15 @@ def join(code: str, pieces: Sequence[str]) -> CompleteProgram:
     todo, seen = [*needs, *filter(None, [amended])], set(needs)
     while todo:
         name = todo.pop(0)
-        found = _binding(name, pieces)
+        binding = _binding(name, pieces)
         usual = usual_import(name)
-        if found is None or (usual and _is_import(found, pieces, name)):
+        if binding is None or (usual and _is_import(binding, pieces, name)):
             if usual:
                 imports[usual] = None
             else:
                 missing[name] = needs.get(name, 1)
             continue
-        number, statements = found
+        number, statements = binding
         new = statements - taken.get(number, set())
         taken.setdefault(number, set()).update(new)
         text = "\n".join(_piece(pieces[number]).text(i) for i in sorted(new))
@@ -130,10 +130,10 @@ def _amended(code: str, pieces: Sequence[str]) -> tuple[str, str]:
     for item in ast.parse(code).body if facts.lacking or facts.nameless else ():
         if not isinstance(item, ast.ClassDef) or item.name not in facts.node_classes:
             continue
-        found = _binding(item.name, pieces)
+        binding = _binding(item.name, pieces)
         methods = {inner.name for inner in item.body if isinstance(inner, ast.FunctionDef)}
-        if found and "__init__" not in methods and isinstance(item.bases[0], ast.Name):
-            text = "\n".join(_piece(pieces[found[0]]).text(i) for i in found[1])
+        if binding and "__init__" not in methods and isinstance(item.bases[0], ast.Name):
+            text = "\n".join(_piece(pieces[binding[0]]).text(i) for i in binding[1])
             if all(name in text for name in facts.lacking):
                 return item.name, item.bases[0].id
     return "", ""
@@ -170,10 +170,10 @@ def _binding(name: str, pieces: Sequence[str]) -> tuple[int, set[int]] | None:
     return None
 
 
-def _is_import(found: tuple[int, set[int]], pieces: Sequence[str], name: str) -> bool:
-    piece = _piece(pieces[found[0]])
-    return all(isinstance(piece.statements[i], ast.Import | ast.ImportFrom) for i in found[1]) and (
-        usual_import(name) in [piece.text(i) for i in found[1]]
+def _is_import(binding: tuple[int, set[int]], pieces: Sequence[str], name: str) -> bool:
+    piece = _piece(pieces[binding[0]])
+    return all(isinstance(piece.statements[i], ast.Import | ast.ImportFrom) for i in binding[1]) and (
+        usual_import(name) in [piece.text(i) for i in binding[1]]
     )
 
 
@@ -252,10 +252,10 @@ def _interfaces() -> Mapping[str, str]:
     """Return a mapping of each message, service and action to the module that has it, for the packages that are
     installed.
     """
-    found: dict[str, str] = {}
+    modules: dict[str, str] = {}
     there = prefixes.packages(prefixes.installed())
     for package in sorted(set(_PREFERRED) & set(there), key=_PREFERRED.index):
         for interface in interfaces.interfaces_of(package) or []:
             kind, _, name = interface.partition("/")
-            found.setdefault(name, f"{package}.{kind}")
-    return found
+            modules.setdefault(name, f"{package}.{kind}")
+    return modules

@@ -14,13 +14,13 @@ def excerpts(fences: Sequence[Fence]) -> dict[int, str]:
     python = [fence for fence in fences if fence.is_python]
     code = {fence.line: _lines(fence.code) for fence in python}
     programs = {fence.line: code[fence.line] for fence in python if _is_whole(fence.code)}
-    found: dict[int, str] = {}
+    places: dict[int, str] = {}
     for line in (fence.line for fence in python if not fence.attributes):
         lines = code[line]
         within = [at for at, whole in programs.items() if at != line and len(lines) < len(whole) and lines in whole]
         if lines.strip() and within:
-            found[line] = "above" if min(within) < line else "below"
-    return found
+            places[line] = "above" if min(within) < line else "below"
+    return places
 
 
 def is_excerpt(item: ClassifiedFence, place: str) -> bool:

@@ -64,24 +64,24 @@ def missing_imports(
     `own` are the chapter's and the course's packages, each with its modules; under "" the modules of both.
     `own_interfaces` are those that the course defines, such as `my_interfaces/msg/Pose`.
     """
-    found = [_relative(module, line) for module, line in code.relative_imports.items()]
+    missing = [_relative(module, line) for module, line in code.relative_imports.items()]
     for module, line in code.imports.items():
         top, _, rest = module.partition(".")
         if module in own.get("", ()) or top in own.get("", ()):
             continue
         if top in own:
             if rest and rest.partition(".")[0] not in own[top]:
-                found.append(_not_shown(module, own[top], line))
+                missing.append(_not_shown(module, own[top], line))
         elif not _is_installed(top):
-            found.append(_not_installed(top, line))
+            missing.append(_not_installed(top, line))
         elif rest and not _has_module(top, rest):
             names = [name for (place, name) in code.interfaces if place == module]
-            found.append(_no_module(module, names, line))
+            missing.append(_no_module(module, names, line))
     for (module, name), line in code.interfaces.items():
         known = own_names(module, own_interfaces) or interfaces_of(module)
         if known and name != "*" and name not in known:
-            found.append(_no_interface(module, name, known, line))
-    return found
+            missing.append(_no_interface(module, name, known, line))
+    return missing
 
 
 def _relative(module: str, line: int) -> MissingPackage:
@@ -220,9 +220,9 @@ def own_names(module: str, own_interfaces: Collection[str]) -> frozenset[str]:
 @functools.cache
 def _all_interfaces() -> Mapping[str, frozenset[str]]:
     """Map each module of interfaces to its names, for all installed packages."""
-    found: dict[str, set[str]] = {}
+    names_of: dict[str, set[str]] = {}
     for package in ros_packages():
         for interface in interface_files.interfaces_of(package) or []:
             kind, _, name = interface.partition("/")
-            found.setdefault(f"{package}.{kind}", set()).add(name)
-    return {module: frozenset(names) for module, names in found.items()}
+            names_of.setdefault(f"{package}.{kind}", set()).add(name)
+    return {module: frozenset(names) for module, names in names_of.items()}

@@ -81,7 +81,7 @@ def headings(blocks: Iterable[Block]) -> Iterator[Heading]:
 def labels(blocks: Sequence[Block], file: Path) -> dict[str, Label]:
     """Return a chapter's labels: a label before a heading names it, any other label the section around it."""
     coming = headings(blocks)
-    found: dict[str, Label] = {}
+    named: dict[str, Label] = {}
     waiting: list[str] = []
     above = Heading("", "", "")
     for block in _all(blocks):
@@ -94,9 +94,9 @@ def labels(blocks: Sequence[Block], file: Path) -> dict[str, Label]:
             continue
         here = [*waiting, *([block.label] if block.label else [])]
         words = (block.title if block.label else "") or above.words
-        found = {**{_normal(name): Label(file, above.anchor, words) for name in here}, **found}
+        named = {**{_normal(name): Label(file, above.anchor, words) for name in here}, **named}
         waiting = []
-    return found
+    return named
 
 
 def _all(blocks: Iterable[Block]) -> Iterator[Block]:
@@ -154,9 +154,9 @@ class References:
             return text
         lines = text.split("\n")
         at = [0] * len(lines)
-        for first, content, found in _references(text):
+        for first, content, references in _references(text):
             places = list(places_of(lines, at, first, content))
-            for item in reversed(found):
+            for item in reversed(references):
                 new, _ = self._new(item)
                 if new is not None:
                     _put(lines, at, places, content, item, new)
@@ -170,8 +170,8 @@ class References:
             text = "\n".join(line.text for line in lines)
             if block.children or block.fence or block.kind is BlockKind.DROPPED or not may_refer(text, self.known):
                 continue
-            for first, content, found in _references(text):
-                for item in found:
+            for first, content, references in _references(text):
+                for item in references:
                     _, unknown = self._new(item)
                     if unknown and unknown not in reported:
                         reported.add(unknown)
@@ -186,12 +186,12 @@ class References:
 
     def _problem(self, item: _LabelReference, unknown: str, line: int) -> Problem:
         if item.role.endswith("doc"):
-            found = f"a reference leads to the document `{unknown}`, and there is no such file."
+            problem = f"a reference leads to the document `{unknown}`, and there is no such file."
             fix = "Write its path relative to the chapter's folder, without .md."
         else:
-            found = f"a reference leads to the label `{unknown}`, which no chapter has."
+            problem = f"a reference leads to the label `{unknown}`, which no chapter has."
             fix = f"Write `({unknown})=` on a line before the heading that is meant."
-        return Problem(self.file, line, found, fix, Severity.WARNING, group="labels that no chapter has")
+        return Problem(self.file, line, problem, fix, Severity.WARNING, group="labels that no chapter has")
 
     def _new(self, item: _LabelReference) -> tuple[str | None, str]:
         """Return (the replacement of a reference, the unknown name in it); None leaves the reference as it is."""

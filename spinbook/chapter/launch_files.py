@@ -42,14 +42,17 @@ def _calls(code: str) -> Iterator[ast.Call]:
 
 
 def _node(call: ast.Call) -> LaunchedNode | None:
-    given = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg}
-    package, executable = (_text(given.get(name)) for name in ("package", "executable"))
+    keywords = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg}
+    package, executable = (_text(keywords.get(name)) for name in ("package", "executable"))
     if not package or not executable:
         return None
-    words = [*_remapped("__node", _text(given.get("name"))), *_remapped("__ns", _namespace(given.get("namespace")))]
-    words += [word for name, to in _pairs(given.get("remappings")) for word in _remapped(name, to)]
-    words += [word for name, value in _parameters(given.get("parameters")) for word in ("-p", f"{name}:={value}")]
-    arguments = [_text(item) for item in _items(given.get("arguments"))]
+    words = [
+        *_remapped("__node", _text(keywords.get("name"))),
+        *_remapped("__ns", _namespace(keywords.get("namespace"))),
+    ]
+    words += [word for name, to in _pairs(keywords.get("remappings")) for word in _remapped(name, to)]
+    words += [word for name, value in _parameters(keywords.get("parameters")) for word in ("-p", f"{name}:={value}")]
+    arguments = [_text(item) for item in _items(keywords.get("arguments"))]
     return LaunchedNode(package, executable, (*filter(None, arguments), *(("--ros-args", *words) if words else ())))
 
 
@@ -82,10 +85,10 @@ def _parameters(value: ast.expr | None) -> Iterator[tuple[str, str]]:
         if isinstance(item, ast.Dict):
             for key, of in zip(item.keys, item.values, strict=True):
                 try:
-                    found = ast.literal_eval(of)
+                    value_of = ast.literal_eval(of)
                 except ValueError:
                     continue
-                yield _text(key), str(found).lower() if isinstance(found, bool) else str(found)
+                yield _text(key), str(value_of).lower() if isinstance(value_of, bool) else str(value_of)
 
 
 _PATH = re.compile(r"launch/[\w-]+[._]launch\.(py|yaml|yml|xml)|config/[\w-]+\.ya?ml")

@@ -33,9 +33,9 @@ def needs_arguments(own: ast.ClassDef) -> bool:
     init = next((i for i in own.body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
     if init is None:
         return False
-    given = len(init.args.args) - 1 - len(init.args.defaults)
+    positional = len(init.args.args) - 1 - len(init.args.defaults)
     required = [a for a, d in zip(init.args.kwonlyargs, init.args.kw_defaults, strict=True) if d is None]
-    return given > 0 or bool(required)
+    return positional > 0 or bool(required)
 
 
 def gives_no_name(own: ast.ClassDef) -> bool:
@@ -54,14 +54,14 @@ def attributes_lacking(
     stored = {i.attr for i in everything if isinstance(i, ast.Attribute) and not isinstance(i.ctx, ast.Load)}
     if any(isinstance(i, ast.Call) and last_name(i.func) == "setattr" for i in everything):
         return {}
-    found: dict[str, int] = {}
+    lacking: dict[str, int] = {}
     for name in names:
         if all(last_name(base) in {*NODE_CLASSES, "object", "ABC"} for base in classes[name].bases):
             defined = known | stored | _bound(classes[name])
             for attribute, line in _read_of_self(classes[name]):
                 if attribute not in defined:
-                    found.setdefault(attribute, line)
-    return found
+                    lacking.setdefault(attribute, line)
+    return lacking
 
 
 def _bound(own: ast.ClassDef) -> set[str]:
@@ -87,35 +87,35 @@ def used_by_init(lacking: Mapping[str, int], names: list[str], classes: Mapping[
         used: set[str] = set()
         for method in _called_from("__init__", methods):
             used |= {i.attr for i in ast.walk(methods[method]) if isinstance(i, ast.Attribute)}
-        if found := next((attribute for attribute in lacking if attribute in used), ""):
-            return found
+        if first := next((attribute for attribute in lacking if attribute in used), ""):
+            return first
     return ""
 
 
 def _called_from(start: str, methods: Mapping[str, ast.FunctionDef]) -> list[str]:
     """Return a method and the class's methods that its top-level statements call, directly or indirectly."""
-    found = [start] if start in methods else []
-    for name in found:
+    called = [start] if start in methods else []
+    for name in called:
         for item in methods[name].body:
             call = getattr(item, "value", None)
             dotted = ast.unparse(call.func) if isinstance(call, ast.Call) else ""
             owner, _, method = dotted.rpartition(".")
-            if owner == "self" and method in methods and method not in found:
-                found.append(method)
-    return found
+            if owner == "self" and method in methods and method not in called:
+                called.append(method)
+    return called
 
 
 def never_initialized(names: Sequence[str], classes: Mapping[str, ast.ClassDef]) -> dict[str, int]:
     """Return the Node classes whose `__init__` does not call Node's, so that nothing in them works -> line."""
-    found: dict[str, int] = {}
+    lines: dict[str, int] = {}
     for name in names:
         bases = [last_name(base) for base in classes[name].bases]
         init = next((i for i in classes[name].body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
         if init is None or bases not in (["Node"], ["LifecycleNode"]):
             continue
         if not any(isinstance(i, ast.Attribute) and i.attr == "__init__" for i in ast.walk(init)):
-            found[name] = init.lineno
-    return found
+            lines[name] = init.lineno
+    return lines
 
 
 @functools.cache

@@ -90,15 +90,15 @@ def _created(code: str) -> Iterator[tuple[str, str]]:
 
 
 def _entries(code: str) -> tuple[dict[tuple[str, str], str], set[str]]:
-    found: dict[tuple[str, str], str] = {}
+    executables: dict[tuple[str, str], str] = {}
     names = {match[1] for match in _PACKAGE_NAME.finditer(code)} if "setup(" in code else set()
     for executable, module, _ in _ENTRY.findall(code):
         package, _, stem = module.rpartition(".")
         package = package.partition(".")[0]
         if package:
             names.add(package)
-            found[package, executable] = stem
-    return found, names
+            executables[package, executable] = stem
+    return executables, names
 
 
 def _package_of(path: str) -> str:
@@ -113,7 +113,7 @@ def _package_of(path: str) -> str:
 
 def named_files(blocks: Iterable[Block]) -> dict[int, str]:
     """Map the line of a fence to its Python file, as named in its first comment or in the text just before it."""
-    found: dict[int, str] = {}
+    files: dict[int, str] = {}
     words: list[str] = []
     for block in (inner for top in blocks for inner in top.walk()):
         if block.kind in {BlockKind.TEXT, BlockKind.HEADING}:
@@ -129,9 +129,9 @@ def named_files(blocks: Iterable[Block]) -> dict[int, str]:
                 continue
             message = _in_comment(fence.code) or (words[-1] if words else "")
             if message and message.rsplit("/", 1)[-1] not in _NOT_PROGRAMS:
-                found[fence.line] = message
+                files[fence.line] = message
             words = []
-    return found
+    return files
 
 
 def _in_comment(code: str) -> str:

@@ -30,16 +30,16 @@ _READS_COMMAND_LINE = frozenset({"parse_args", "parse_known_args"})
 
 def programs_started(everything: Sequence[ast.AST]) -> dict[str, int]:
     """Return the words of the commands that code runs -> line. Variables are followed to their values."""
-    found: dict[str, int] = {}
+    words: dict[str, int] = {}
     calls = [item for item in everything if isinstance(item, ast.Call)]
     of_subprocess = _names_of("subprocess", everything)
     for call in calls:
         if ast.unparse(call.func) in {"shutil.rmtree", "rmtree"}:
-            found.setdefault("rm", call.lineno)
+            words.setdefault("rm", call.lineno)
         if _starts_a_program(call, of_subprocess):
             for word in _command_words(call, everything):
-                found.setdefault(word.rsplit("/", 1)[-1], call.lineno)
-    return found
+                words.setdefault(word.rsplit("/", 1)[-1], call.lineno)
+    return words
 
 
 def words_read(everything: Sequence[ast.AST]) -> int:
@@ -47,8 +47,8 @@ def words_read(everything: Sequence[ast.AST]) -> int:
     if any(_looks_first(item) for item in everything):
         return 0
     indexes = (item.slice for item in everything if isinstance(item, ast.Subscript) and _is_argv(item.value))
-    found = [index.value for index in indexes if isinstance(index, ast.Constant) and isinstance(index.value, int)]
-    return max(found, default=0)
+    indices = [index.value for index in indexes if isinstance(index, ast.Constant) and isinstance(index.value, int)]
+    return max(indices, default=0)
 
 
 def calls_main(statement: ast.stmt) -> bool:
@@ -65,14 +65,14 @@ def starts_ros(call: ast.Call) -> bool:
 
 def at_top(tree: ast.Module) -> list[ast.stmt]:
     """Return the statements that run when the code does, with those in `try`, `with` and `if`."""
-    found: list[ast.stmt] = []
+    statements: list[ast.stmt] = []
     todo = list(tree.body)
     while todo:
         statement = todo.pop(0)
-        found.append(statement)
+        statements.append(statement)
         if isinstance(statement, ast.Try | ast.With | ast.If):
             todo += statement.body
-    return found
+    return statements
 
 
 def loops_forever(statement: ast.stmt) -> bool:
@@ -126,13 +126,13 @@ def _is_of_os(function: ast.expr) -> bool:
 
 def _names_of(module: str, everything: Sequence[ast.AST]) -> frozenset[str]:
     """Return the names that code uses for a module, and those that it imports from it."""
-    found = {module}
+    names = {module}
     for item in everything:
         if isinstance(item, ast.Import):
-            found |= {alias.asname or alias.name for alias in item.names if alias.name == module}
+            names |= {alias.asname or alias.name for alias in item.names if alias.name == module}
         elif isinstance(item, ast.ImportFrom) and item.module == module:
-            found |= {alias.asname or alias.name for alias in item.names}
-    return frozenset(found)
+            names |= {alias.asname or alias.name for alias in item.names}
+    return frozenset(names)
 
 
 def _command_words(call: ast.Call, everything: Sequence[ast.AST]) -> Iterator[str]:

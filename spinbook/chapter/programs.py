@@ -107,39 +107,39 @@ class Programs:
         names = ", ".join(f"`{name}`" for name in missing)
         verb = "is" if len(missing) == 1 else "are"
         if code.is_complete and code.imports:
-            found = f"{names} {verb} defined neither here nor above, so this program would fail."
+            problem = f"{names} {verb} defined neither here nor above, so this program would fail."
             fix = "Define or import it, or write `static` after the language if this is only a piece of a program."
             line = item.fence.first_code_line + min(missing.values()) - 1
-            self.problems.append(Problem(self.file, line, found, fix, Severity.NOT_RUN))
+            self.problems.append(Problem(self.file, line, problem, fix, Severity.NOT_RUN))
         return _static(item, f"it uses {names}, which nothing above defines")
 
     def _uninitialized(self, item: ClassifiedFence, code: PythonCode) -> ClassifiedFence:
         name, line = next(iter(code.never_initialized.items()))
-        found = f"`{name}.__init__` never calls `super().__init__(…)`, so nothing of this node works."
-        fix = "Call it first, with the node's name, or write `static` behind the language if this is a template."
+        problem = f"`{name}.__init__` never calls `super().__init__(…)`, so nothing of this node works."
+        fix = "Call it first, with the node's name, or write `static` after the language if this is a template."
         at = item.fence.first_code_line + line - 1
-        self.problems.append(Problem(self.file, at, found, fix, Severity.NOT_RUN))
+        self.problems.append(Problem(self.file, at, problem, fix, Severity.NOT_RUN))
         return _static(item, f"`{name}.__init__` never calls `super().__init__(…)`")
 
     def _lacking(self, item: ClassifiedFence, code: PythonCode) -> None:
         name = code.fails_at_once or next(iter(code.lacking))
         line = code.lacking[name]
         severity = Severity.NOT_RUN if code.fails_at_once else Severity.WARNING
-        found = f"`self.{name}` is used but never set."
+        problem = f"`self.{name}` is used but never set."
         fix = "Set it in `__init__`, or check its name: the node fails where it is used."
         at = item.fence.first_code_line + line - 1
-        self.problems.append(Problem(self.file, at, found, fix, severity))
+        self.problems.append(Problem(self.file, at, problem, fix, severity))
 
     def _missing(
         self, item: ClassifiedFence, missing: Sequence[MissingPackage], joined: CompleteProgram
     ) -> ClassifiedFence:
         above = joined.before.count("\n")
-        packages = list(dict.fromkeys(one.package for one in missing))
-        for one in missing:
-            line = item.fence.first_code_line + max(one.line - above, 1) - 1
+        packages = list(dict.fromkeys(absent.package for absent in missing))
+        for absent in missing:
+            line = item.fence.first_code_line + max(absent.line - above, 1) - 1
             alone = len(packages) == 1
             self.problems.append(
-                Problem(self.file, line, one.found, one.fix, Severity.NOT_RUN, group=one.package, alone=alone)
+                Problem(self.file, line, absent.found, absent.fix, Severity.NOT_RUN, group=absent.package, alone=alone)
             )
         names = ", ".join(f"`{name}`" for name in packages)
         if packages == ["relative imports"]:

@@ -142,12 +142,12 @@ def has_magics(code: str) -> bool:
 
 def programs_in_magics(code: str) -> dict[str, int]:
     """Return the programs that a snippet starts with `!program` or `%program` -> line."""
-    found: dict[str, int] = {}
+    programs: dict[str, int] = {}
     for number, line in enumerate(code.split("\n"), start=1):
         if match := _MAGIC.match(line):
             for word in re.split(r"[\s;&|!%]+", match.group(2)):
-                found.setdefault(word.rsplit("/", 1)[-1], number)
-    return found
+                programs.setdefault(word.rsplit("/", 1)[-1], number)
+    return programs
 
 
 @functools.lru_cache(maxsize=4096)
@@ -276,7 +276,7 @@ def _is_launch_function(item: ast.AST) -> bool:
 
 def _optional_imports(everything: Sequence[ast.AST]) -> set[ast.AST]:
     """Return imports whose absence the code itself deals with, or that only a type checker reads."""
-    found: set[ast.AST] = set()
+    optional: set[ast.AST] = set()
     for item in everything:
         caught = isinstance(item, ast.Try) and any(
             handler.type is None or "Error" in ast.dump(handler.type) or "Exception" in ast.dump(handler.type)
@@ -284,8 +284,8 @@ def _optional_imports(everything: Sequence[ast.AST]) -> set[ast.AST]:
         )
         if caught or (isinstance(item, ast.If) and "TYPE_CHECKING" in ast.dump(item.test)):
             assert isinstance(item, ast.Try | ast.If)
-            found |= {i for i in item.body if isinstance(i, ast.Import | ast.ImportFrom)}
-    return found
+            optional |= {i for i in item.body if isinstance(i, ast.Import | ast.ImportFrom)}
+    return optional
 
 
 def _imports_setuptools(tree: ast.Module) -> bool:
@@ -307,8 +307,8 @@ def _node_name(call: ast.Call) -> str | None:
     )
     if not (is_super_init or function in {"Node", "create_node"}):
         return None
-    given = [*call.args[:1], *(k.value for k in call.keywords if k.arg == "node_name")]
-    first = given[0] if given else None
+    names = [*call.args[:1], *(k.value for k in call.keywords if k.arg == "node_name")]
+    first = names[0] if names else None
     return first.value if isinstance(first, ast.Constant) and isinstance(first.value, str) else None
 
 

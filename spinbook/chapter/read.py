@@ -72,12 +72,12 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResu
     problems = list(parsed.problems)
     if parsed.source is None:
         return ReadResult(None, tuple(problems))
-    classified, found = _classify(parsed, file, surroundings)
+    classified, fence_problems = _classify(parsed, file, surroundings)
     title, title_problems = _title(parsed, file)
     own = labels(parsed.blocks, file)
     sections = {heading.slug: heading for heading in headings(parsed.blocks)}
     references = References(root, file, {**surroundings.labels, **own}, surroundings.titles, sections)
-    problems += [*found, *title_problems, *_references(parsed, surroundings, root, references)]
+    problems += [*fence_problems, *title_problems, *_references(parsed, surroundings, root, references)]
     problems.sort(key=lambda problem: (problem.line or 0, problem.problem))
     by_line = {item.fence.line: item for item in classified}
     pieces = _layout(by_line, surroundings).pieces(parsed.blocks)
@@ -163,12 +163,15 @@ def _classify(
     repeated = excerpts([with_language(block.fence) for block in parsed.fences if block.fence])
     for block in parsed.fences:
         assert block.fence is not None
-        item, found = _unclosed(block, file) if not block.closed else first_look(block.fence, file, own)
+        item, fence_problems = _unclosed(block, file) if not block.closed else first_look(block.fence, file, own)
         if is_excerpt(item, repeated.get(block.fence.line, "")):
-            item, found = ClassifiedFence(block.fence, CellKind.STATIC, "it is a piece of a program of the chapter"), []
+            item, fence_problems = (
+                ClassifiedFence(block.fence, CellKind.STATIC, "it is a piece of a program of the chapter"),
+                [],
+            )
         bad = _bad_seconds(item, file)
         items.append(replace(item, fence=_without_seconds(item.fence)) if bad else item)
-        problems += [*found, *bad]
+        problems += [*fence_problems, *bad]
     packages = own_packages(with_language(item.fence) for item in items)
     own_modules = _own(packages, surroundings, items)
     programs = Programs(file, own_modules, named_files(parsed.blocks), surroundings.interfaces)
@@ -206,9 +209,9 @@ def _kinds(surroundings: Surroundings) -> dict[str, frozenset[str]]:
 
 def _unclosed(block: Block, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
     assert block.fence is not None
-    found = f"the code fence that opens here (`{block.lines[0].text.strip()[:60]}`) is never closed."
+    text = f"the code fence that opens here (`{block.lines[0].text.strip()[:60]}`) is never closed."
     mark = block.lines[0].text.strip()[:3]
-    problem = Problem(file, block.fence.line, found, f"Close it with a line of its own: {mark}", Severity.NOT_RUN)
+    problem = Problem(file, block.fence.line, text, f"Close it with a line of its own: {mark}", Severity.NOT_RUN)
     return ClassifiedFence(block.fence, CellKind.STATIC, "its fence is never closed", "its fence is never closed."), [
         problem
     ]
@@ -228,16 +231,16 @@ def _layout(by_line: Mapping[int, ClassifiedFence], surroundings: Surroundings) 
 
 
 def _bad_seconds(item: ClassifiedFence, file: Path) -> list[Problem]:
-    given = item.fence.attributes.get("seconds")
-    if given is None:
+    seconds = item.fence.attributes.get("seconds")
+    if seconds is None:
         return []
     try:
-        if 0 < float(given) <= 600:
+        if 0 < float(seconds) <= 600:
             return []
     except ValueError:
         pass
     fix = "Write a number of seconds, above 0 and up to 600. Until then it is left out."
-    return [Problem(file, item.fence.line, f"`seconds={given}` is not a time.", fix, Severity.WARNING)]
+    return [Problem(file, item.fence.line, f"`seconds={seconds}` is not a time.", fix, Severity.WARNING)]
 
 
 def _without_seconds(fence: Fence) -> Fence:
@@ -251,9 +254,9 @@ def _references(
     for block in (inner for top in parsed.blocks for inner in top.walk() if inner.kind is BlockKind.EXERCISE):
         if block.title not in surroundings.exercises:
             known = ", ".join(sorted(surroundings.exercises)) or "none yet"
-            found = f"there is no exercise `{block.title}`."
+            problem = f"there is no exercise `{block.title}`."
             fix = f"The folder exercises/ holds: {known}."
-            yield Problem(file, block.line, found, fix, Severity.NOT_RUN)
+            yield Problem(file, block.line, problem, fix, Severity.NOT_RUN)
     assert parsed.source is not None
     folder = file.parent.as_posix()
     yield from references.problems(parsed.blocks)
@@ -261,9 +264,9 @@ def _references(
         if is_elsewhere(target) or "{" in target or references.is_label(target):
             continue
         if locate(root, folder, target) is None:
-            found = f"a link leads to `{target}`, and there is no such file."
+            problem = f"a link leads to `{target}`, and there is no such file."
             fix = "Write the path relative to the chapter's folder."
-            yield Problem(file, line, found, fix, Severity.WARNING, group="files that are not there")
+            yield Problem(file, line, problem, fix, Severity.WARNING, group="files that are not there")
 
 
 def _uses(parsed: _ParsedChapter, root: Path, file: Path) -> tuple[Path, ...]:
@@ -271,8 +274,8 @@ def _uses(parsed: _ParsedChapter, root: Path, file: Path) -> tuple[Path, ...]:
     assert parsed.source is not None
     folder = file.parent.as_posix()
     targets = (target for target, _ in _links(parsed.source.text) if not is_elsewhere(target))
-    found = {place for target in targets if (place := locate(root, folder, target))}
-    return tuple(sorted(found | set(parsed.included)))
+    places = {place for target in targets if (place := locate(root, folder, target))}
+    return tuple(sorted(places | set(parsed.included)))
 
 
 @functools.lru_cache(maxsize=512)
@@ -305,11 +308,11 @@ def _heading(parsed: _ParsedChapter, title: str) -> list[Piece]:
 def _title(parsed: _ParsedChapter, file: Path) -> tuple[str, list[Problem]]:
     assert parsed.source is not None
     front = parsed.source.front_matter
-    given = front.get("title") or front.get("sidebar_label")
+    front_title = front.get("title") or front.get("sidebar_label")
     heading = next((block for block in parsed.blocks if block.kind is BlockKind.HEADING), None)
     if heading:
-        return str(given or words_of(heading)), []
+        return str(front_title or words_of(heading)), []
     fix = "Begin it with one line such as `# Nodes and Topics`."
     named = file.stem if file.stem.lower() not in {"index", "readme"} else file.parent.name or file.stem
-    title = str(given or named.replace("-", " ").replace("_", " "))
-    return title, [] if given else [Problem(file, 1, "the chapter has no heading.", fix, Severity.WARNING)]
+    title = str(front_title or named.replace("-", " ").replace("_", " "))
+    return title, [] if front_title else [Problem(file, 1, "the chapter has no heading.", fix, Severity.WARNING)]

@@ -110,14 +110,14 @@ class Shells:
     def _fence(self, item: ClassifiedFence, out: list[ClassifiedFence]) -> ClassifiedFence:
         item = replace(item, commands=tuple(part for command in item.commands for part in self._launched(command)))
         for command in item.commands:
-            refused = self._refused(command, out)
-            if refused is None:
+            reason = self._refused(command, out)
+            if reason is None:
                 self._said.add(command.text if "pub" in command.words or "run" in command.words else "")
                 continue
             line = item.fence.first_code_line + command.line - 1
-            found = f"{refused.why} (`{command.text}`)."
-            self.problems.append(Problem(self.file, line, found, refused.fix, Severity.NOT_RUN, group=refused.group))
-            return replace(item, kind=CellKind.STATIC, why=refused.why, sign=f"{refused.why}.")
+            problem = f"{reason.why} (`{command.text}`)."
+            self.problems.append(Problem(self.file, line, problem, reason.fix, Severity.NOT_RUN, group=reason.group))
+            return replace(item, kind=CellKind.STATIC, why=reason.why, sign=f"{reason.why}.")
         return item
 
     def _refused(self, command: Command, out: list[ClassifiedFence]) -> _Reason | None:
@@ -145,9 +145,9 @@ class Shells:
                 out[number] = replace(out[number], executables=(*known, (package, executable)))
             return None
         if package == self.package:
-            found = f"the course's package `{package}` has no executable `{executable}`"
+            problem = f"the course's package `{package}` has no executable `{executable}`"
             fix = f"Its node cells make these: {', '.join(sorted(self.modules)) or 'none'}."
-            return _Reason(found, fix, "")
+            return _Reason(problem, fix, "")
         return self._foreign(package, executable)
 
     def _is_elsewhere(self, package: str) -> bool:
@@ -157,13 +157,13 @@ class Shells:
 
     def _lacks_words(self, command: Command, out: Sequence[ClassifiedFence]) -> _Reason | None:
         """Return a reason if a program of the chapter reads more arguments than the command gives it."""
-        given = list(itertools.takewhile(lambda word: not word.startswith("-"), command.words[4:]))
+        arguments = list(itertools.takewhile(lambda word: not word.startswith("-"), command.words[4:]))
         for number in self._nodes.values():
             code = out[number].code
-            if command.runs in out[number].executables and code and code.words_read > len(given):
-                words = "a word" if code.words_read == 1 else f"{code.words_read} words"
+            if command.runs in out[number].executables and code and code.words_read > len(arguments):
+                words = "an argument" if code.words_read == 1 else f"{code.words_read} arguments"
                 why = f"`{command.words[3]}` reads {words} from its command line"
-                return _Reason(why, "Write them behind the command, as a reader would.", "")
+                return _Reason(why, "Add them to the command, as a reader would.", "")
         return None
 
     def _launch(self, command: Command) -> _Reason | None:
@@ -178,7 +178,7 @@ class Shells:
 
     def _foreign(self, package: str, executable: str) -> _Reason | None:
         if (package, executable) in _READ_KEYS:
-            fix = "Run it in a terminal; write `static` behind the language to say that this is meant."
+            fix = "Run it in a terminal; write `static` after the language to say that this is meant."
             return _Reason(f"`{executable}` reads keys from a terminal", fix, "keys from a terminal")
         there = set(executables.BUILT_IN.get(package, ()))
         if package in ros_packages():
@@ -247,7 +247,7 @@ class Shells:
                 "it makes a package for C++", "Python packages have --build-type ament_python.", "C++ packages"
             )
         if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
-            return _Reason("it names no package", "Write: ros2 pkg create --build-type ament_python NAME", "")
+            return _Reason("it does not name a package", "Write: ros2 pkg create --build-type ament_python NAME", "")
         self._created.add(name)
         return None
 
@@ -285,7 +285,7 @@ class Shells:
                 return _lacking(package)
             if known and name not in known:
                 close = difflib.get_close_matches(name, known, n=1)
-                fix = f"Did you mean `{close[0]}`?" if close else "Look at `ros2 interface list`."
+                fix = f"Did you mean `{close[0]}`?" if close else "See `ros2 interface list`."
                 return _Reason(f"`{package}/{kind}` has no `{name}`", fix, "")
         return None
 

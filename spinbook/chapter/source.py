@@ -61,8 +61,8 @@ def read_source(file: Path, shown_as: Path) -> tuple[Source | None, list[Problem
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         line = data[: error.start].count(b"\n") + 1
-        found = f"byte 0x{data[error.start]:02x} is not UTF-8."
-        return None, [*problems, Problem(shown_as, line, found, "Save the file as UTF-8.")]
+        problem = f"byte 0x{data[error.start]:02x} is not UTF-8."
+        return None, [*problems, Problem(shown_as, line, problem, "Save the file as UTF-8.")]
     if "\r" in text:
         line = text[: text.index("\r")].count("\n") + 1
         problems.append(
@@ -77,9 +77,9 @@ def read_source(file: Path, shown_as: Path) -> tuple[Source | None, list[Problem
         text = text.replace("\r\n", "\n").replace("\r", "\n")
     for number, content in enumerate(text.split("\n"), start=1):
         if control := _CONTROL.search(content):
-            found = f"control character U+{ord(control.group()):04X} in column {control.start() + 1}."
+            problem = f"control character U+{ord(control.group()):04X} in column {control.start() + 1}."
             fix = "Delete it; it can't be seen, and notebooks and browsers reject it. It is ignored here."
-            problems.append(Problem(shown_as, number, found, fix, Severity.WARNING))
+            problems.append(Problem(shown_as, number, problem, fix, Severity.WARNING))
     text = _LIQUID.sub(lambda match: match[1] or (f"/{match[2]}" if match[2] else ""), _CONTROL.sub("", text))
     front_matter, body, front_problems = _split_front_matter(text, shown_as)
     return Source(body, front_matter), problems + front_problems

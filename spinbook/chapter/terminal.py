@@ -112,14 +112,14 @@ def looks_like_shell(code: str) -> bool:
 
 def programs_of(code: str) -> list[tuple[str, ...]]:
     """Return the words of each command, whether a notebook runs it or not."""
-    found = []
+    commands = []
     for text, _ in _logical_lines(code):
         for part in _parts(text):
             try:
-                found.append(tuple(shlex.split(part, comments=True)))
+                commands.append(tuple(shlex.split(part, comments=True)))
             except ValueError:
                 continue
-    return [words for words in found if words]
+    return [words for words in commands if words]
 
 
 def _noted(command: UnsupportedCommand) -> Command | UnsupportedCommand:
@@ -192,7 +192,7 @@ def _read(text: str, line: int) -> Command | UnsupportedCommand:
     if program in _MOVING_ABOUT:
         return Command(CommandKind.NOTE, f"# {text}", (), line)
     if program not in PROGRAMS:
-        return UnsupportedCommand(text, line, f"`{program}` is none of ros2, colcon and rqt_plot")
+        return UnsupportedCommand(text, line, f"`{program}` is not ros2, colcon or rqt_plot")
     if any(_PLACEHOLDER.fullmatch(word) for word in words[1:]):
         return UnsupportedCommand(text, line, "it holds placeholders for what a reader fills in")
     if _SHELL_SYNTAX.search(outside_quotes):
@@ -221,8 +221,10 @@ def _without_comment(text: str) -> str:
 def _ros2(text: str, words: tuple[str, ...], line: int) -> Command | UnsupportedCommand:
     noun = words[1] if len(words) > 1 else ""
     if noun not in ROS2:
-        return UnsupportedCommand(text, line, f"`ros2 {noun}` is none of: {', '.join(ROS2)}")
+        return UnsupportedCommand(text, line, f"there is no `ros2 {noun}` here; there are: {', '.join(ROS2)}")
     verb = words[2] if len(words) > 2 else ""
     if ROS2[noun] and verb not in ROS2[noun] and not verb.startswith("-"):
-        return UnsupportedCommand(text, line, f"`ros2 {noun} {verb}` is none of: {', '.join(sorted(ROS2[noun]))}")
+        return UnsupportedCommand(
+            text, line, f"there is no `ros2 {noun} {verb}` here; there are: {', '.join(sorted(ROS2[noun]))}"
+        )
     return Command(CommandKind.ROS2, text, words, line)

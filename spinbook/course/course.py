@@ -89,8 +89,8 @@ def find_course(start: Path) -> Course:
     for folder in (start.resolve(), *start.resolve().parents):
         if (folder / FILE).is_file():
             return read_course(folder)
-    found = f"there is no course.toml in {start.resolve()} or in any folder above it."
-    raise SpinbookError(Problem(FILE, None, found, "Go into a course's folder, or name it: spinbook --help"))
+    problem = f"there is no course.toml in {start.resolve()} or in any folder above it."
+    raise SpinbookError(Problem(FILE, None, problem, "Go into a course's folder, or name it: spinbook --help"))
 
 
 def read_course(root: Path) -> Course:
@@ -110,8 +110,8 @@ def read_course(root: Path) -> Course:
     title = _text(data, "title", problems)
     chapters = data.get("chapters")
     if not isinstance(chapters, list) or not chapters or not all(isinstance(c, str) for c in chapters):
-        found = "`chapters` is not a list of files."
-        problems.append(Problem(FILE, None, found, 'Write for example: chapters = ["chapters/01-start.md"]'))
+        problem = "`chapters` is not a list of files."
+        problems.append(Problem(FILE, None, problem, 'Write for example: chapters = ["chapters/01-start.md"]'))
         chapters = []
     for name in {c for c in chapters if chapters.count(c) > 1}:
         problems.append(Problem(FILE, None, f"`{name}` is listed twice.", "Remove one of them."))
@@ -166,9 +166,9 @@ def _package(table: Any, problems: list[Problem]) -> Package | None:
     name = table["name"]
     # REP 144's rule for package names.
     if not (name[:1].isalpha() and name.isidentifier() and name.islower() and "__" not in name):
-        found = f"`{name}` can't be a ROS package's name."
+        problem = f"`{name}` can't be a ROS package's name."
         problems.append(
-            Problem(FILE, None, found, "Use lower-case letters, digits and single underscores, a letter first.")
+            Problem(FILE, None, problem, "Use lower-case letters, digits and single underscores, a letter first.")
         )
     unknown = sorted(set(table) - set(Package.__dataclass_fields__))
     if unknown:

@@ -76,8 +76,8 @@ def obstacles(problems: Iterable[Problem]) -> list[Obstacle]:
     for problem in problems:
         if problem.group:
             groups.setdefault(problem.group, []).append(problem)
-    found = [Obstacle(group, tuple(of)) for group, of in groups.items()]
-    return sorted(found, key=lambda item: (not item.blocks, -item.unlocks, -len(item.problems), item.group))
+    causes = [Obstacle(group, tuple(of)) for group, of in groups.items()]
+    return sorted(causes, key=lambda item: (not item.blocks, -item.unlocks, -len(item.problems), item.group))
 
 
 def by_itself(problems: Iterable[Problem]) -> Iterator[Problem]:
@@ -87,9 +87,9 @@ def by_itself(problems: Iterable[Problem]) -> Iterator[Problem]:
 
 def ranked(problems: Sequence[Problem]) -> list[str]:
     """Return the lines of a report of all causes; none if there are none."""
-    found = obstacles(problems)
-    blocking = [item.in_words for item in found if item.blocks]
-    others = [item.in_words for item in found if not item.blocks]
+    causes = obstacles(problems)
+    blocking = [item.in_words for item in causes if item.blocks]
+    others = [item.in_words for item in causes if not item.blocks]
     lines = ["Shown but not run, with the cause that would unlock most first:", *blocking] if blocking else []
     return [*lines, *(["To look at:", *others] if others else [])]
 

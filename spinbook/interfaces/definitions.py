@@ -52,8 +52,8 @@ def checked(course: Course) -> CourseDefinitions:
     """Collect a course's definitions and check them. Raises SpinbookError with every fault."""
     collected = collect(course)
     faults = check(collected.definitions, prefixes.interfaces(prefixes.installed()))
-    if found := [*collected.problems, *problems(faults)]:
-        raise SpinbookError(*found)
+    if errors := [*collected.problems, *problems(faults)]:
+        raise SpinbookError(*errors)
     return collected
 
 
@@ -102,8 +102,8 @@ def compile_course(course: Course, collected: CourseDefinitions | None = None) -
     except DefinitionError as error:
         raise SpinbookError(*problems(error.faults)) from None
     except CompileError as error:
-        found = f"the course's interfaces ({', '.join(collected.packages)}) can't be compiled."
-        raise SpinbookError(Problem(FILE, None, found, str(error))) from None
+        problem = f"the course's interfaces ({', '.join(collected.packages)}) can't be compiled."
+        raise SpinbookError(Problem(FILE, None, problem, str(error))) from None
     make_current(folder_of(course), compiled.prefix)
     use(compiled.prefix, folder_of(course))
     return compiled

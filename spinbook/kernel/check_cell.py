@@ -129,9 +129,9 @@ VS_CODE = "__vsc_ipynb_file__"
 
 def notebook_file(variables: Mapping[str, Any], environment: Mapping[str, str]) -> Path | None:
     """Return the notebook's file as last saved, or None if that is unknown (Colab, a plain terminal)."""
-    for given in (variables.get(VS_CODE), environment.get(JUPYTER)):
-        if isinstance(given, str) and given.endswith(".ipynb") and Path(given).is_file():
-            return Path(given).resolve()
+    for path in (variables.get(VS_CODE), environment.get(JUPYTER)):
+        if isinstance(path, str) and path.endswith(".ipynb") and Path(path).is_file():
+            return Path(path).resolve()
     return None
 
 
@@ -187,11 +187,11 @@ def check_cell(session: Session, shell: Any, name: str, course: str, seconds: fl
     """
     notebook = notebook_file(shell.user_ns, os.environ)
     exercise = exercise_of(name, course, notebook)
-    found = code_of(exercise, session, shell, notebook)
-    print(found.note("Checked", f"%check {exercise.name}"))
+    result = code_of(exercise, session, shell, notebook)
+    print(result.note("Checked", f"%check {exercise.name}"))
     # Saved with the notebook: the record says which of several cells counts.
-    record = {RECORD: {"exercise": exercise.name, "code": digest_of(found.code.source)}}
-    display(checked(exercise.folder, found.code, seconds), metadata=record, raw=True)
+    record = {RECORD: {"exercise": exercise.name, "code": digest_of(result.code.source)}}
+    display(checked(exercise.folder, result.code, seconds), metadata=record, raw=True)
 
 
 def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
@@ -217,16 +217,16 @@ def submit_cell(session: Session, shell: Any, name: str, course: str, student: s
     """Write the upload for the exercise `name`. Raises CellFailed if there is nothing to hand in, or if it fails."""
     notebook = notebook_file(shell.user_ns, os.environ)
     exercise = exercise_of(name, course, notebook)
-    found = code_of(exercise, session, shell, notebook)
-    print(found.note("Handed in", f"%submit {exercise.name}"))
+    result = code_of(exercise, session, shell, notebook)
+    print(result.note("Handed in", f"%submit {exercise.name}"))
     with tempfile.TemporaryDirectory() as folder:
-        for inside, content in found.code.files.items():
+        for inside, content in result.code.files.items():
             file = Path(folder, exercise.name, inside)
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(content)
-        one = len(found.code.files) == 1
+        is_single = len(result.code.files) == 1
         command = [sys.executable, "-u", "-m", "spinbook", "submit", os.fspath(exercise.folder)]
         command += [os.fspath(notebook)] if notebook else []
-        command += ["--code", os.fspath(file if one else Path(folder, exercise.name))]
+        command += ["--code", os.fspath(file if is_single else Path(folder, exercise.name))]
         command += ["--student", student] if student is not None else []
         session.run_command(command, {}, Path.cwd(), DisplayLimit(seconds), f"%submit {name}")

@@ -47,16 +47,16 @@ def _spin(classes: Sequence[Any]) -> None:
     import rclpy
 
     rclpy.init()
-    made = [make() for make in classes]
+    nodes = [make() for make in classes]
 
     from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 
     together = SingleThreadedExecutor()
     with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
-        if all(together.add_node(one) for one in made):
+        if all(together.add_node(node) for node in nodes):
             together.spin()
-    for one in made:
-        one.destroy_node()
+    for node in nodes:
+        node.destroy_node()
     rclpy.try_shutdown()
 
 

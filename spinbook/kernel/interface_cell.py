@@ -27,7 +27,9 @@ def run(session: Session, title: str, text: str) -> None:
     own = f"{session.package.name}_interfaces"
     path = interface_path(title, own)
     if path is None:
-        raise CellFailed(f"`{title}` names no interface. Write msg/NAME.msg, srv/NAME.srv or action/NAME.action.")
+        raise CellFailed(
+            f"`{title}` is not an interface's name. Write msg/NAME.msg, srv/NAME.srv or action/NAME.action."
+        )
     package, kind, file = path.split("/")
     if is_someone_elses(package, own):
         raise CellFailed(f"The package {package} is installed: choose another one for your own interfaces.")
@@ -80,7 +82,7 @@ def _all(session: Session, item: Definition) -> list[Definition]:
 def _say_what_is_stale(session: Session, stale: Sequence[str], package: str, *, had_one: bool) -> None:
     nodes = [name for name in session.nodes.names() if package in session.ran.get(name, "")]
     if had_one and nodes:
-        print(f"Run the cells of these nodes again, they still use the old text: {', '.join(nodes)}.")
+        print(f"Run the cells of these nodes again; they still use the old text: {', '.join(nodes)}.")
     if stale:
         print(f"This kernel has imported {', '.join(stale)} already: restart it to use the new text in its own cells.")
 

@@ -85,8 +85,8 @@ class SpinbookMagics(Magics):
         reader.add_argument("name")
         reader.add_argument("--package", default="notebook_nodes")
         reader.add_argument("--workspace", default="notebook_ws")
-        if given := reader.read(line):
-            self.session.package = Package(name=given.package, workspace=given.workspace)
+        if arguments := reader.read(line):
+            self.session.package = Package(name=arguments.package, workspace=arguments.workspace)
             interface_cell.begin(self.session)
 
     @no_var_expand
@@ -95,8 +95,8 @@ class SpinbookMagics(Magics):
         """%%interface msg/NAME.msg: define a message, a service or an action, and compile it if it is new."""
         reader = LineReader("%%interface", "Define a message, a service or an action: this cell has its text.")
         reader.add_argument("path", help="msg/NAME.msg, srv/NAME.srv or action/NAME.action; a package may come first")
-        if given := reader.read(line):
-            interface_cell.run(self.session, given.path, cell.rstrip("\n") + "\n" if cell.strip() else "")
+        if arguments := reader.read(line):
+            interface_cell.run(self.session, arguments.path, cell.rstrip("\n") + "\n" if cell.strip() else "")
 
     @no_var_expand
     @cell_magic
@@ -104,8 +104,8 @@ class SpinbookMagics(Magics):
         """%%package_file launch/NAME.launch.py: put this cell's text into the package as a file."""
         reader = LineReader("%%package_file", "Put a launch or parameter file into the package.")
         reader.add_argument("path", help="launch/NAME.launch.py (.yaml, .xml) or config/NAME.yaml")
-        if given := reader.read(line):
-            self.session.write_file(given.path, cell)
+        if arguments := reader.read(line):
+            self.session.write_file(arguments.path, cell)
 
     @no_var_expand
     @cell_magic
@@ -132,16 +132,16 @@ class SpinbookMagics(Magics):
             metavar="PACKAGE/EXECUTABLE",
             help="the name of this node for `ros2 run`",
         )
-        if given := reader.read(line):
-            name = given.name.removesuffix(".py")
+        if arguments := reader.read(line):
+            name = arguments.name.removesuffix(".py")
             if not name.isidentifier():
                 raise CellFailed(f"`{name}` can't be a node's file name: use letters, digits and underscores.")
-            parts = given.after if given.after or given.usual_imports else None
-            start = NodeStart(tuple(given.classes), given.main, tuple(given.known_as))
-            if given.keep:
+            parts = arguments.after if arguments.after or arguments.usual_imports else None
+            start = NodeStart(tuple(arguments.classes), arguments.main, tuple(arguments.known_as))
+            if arguments.keep:
                 self.session.keep_node(name, cell, start, parts)
             else:
-                self.session.run_node(name, cell, DisplayLimit(given.seconds, given.until), start, parts)
+                self.session.run_node(name, cell, DisplayLimit(arguments.seconds, arguments.until), start, parts)
 
     @no_var_expand
     @cell_magic
@@ -150,10 +150,10 @@ class SpinbookMagics(Magics):
         reader = LineReader("%%part", "Keep this cell's code for nodes further down, and run it as any other cell.")
         reader.add_argument("name", help="its name for `--after`")
         reader.add_argument("--keep", action="store_true", help="only keep it, because it can't run by itself")
-        if given := reader.read(line):
-            self.session.parts[given.name] = cell
-            if given.keep:
-                print(f"— kept for the nodes below that use it: {given.name} —")
+        if arguments := reader.read(line):
+            self.session.parts[arguments.name] = cell
+            if arguments.keep:
+                print(f"— kept for the nodes below that use it: {arguments.name} —")
             else:
                 assert self.shell is not None
                 self.shell.run_cell(cell).raise_error()
@@ -180,13 +180,13 @@ class SpinbookMagics(Magics):
         reader = LineReader("%stop", "End nodes as Ctrl-C in their terminal would.")
         reader.add_argument("names", nargs="*")
         reader.add_argument("--all", action="store_true", help="every node of this notebook")
-        given = reader.read(line)
-        if given is None:
+        arguments = reader.read(line)
+        if arguments is None:
             return
-        if not given.names and not given.all:
+        if not arguments.names and not arguments.all:
             running = ", ".join(self.session.nodes.names()) or "none"
             raise CellFailed(f"Which one? %stop NAME, or %stop --all. Started: {running}.")
-        for stopped in self.session.stop(None if given.all else given.names):
+        for stopped in self.session.stop(None if arguments.all else arguments.names):
             if not stopped.had_ended and stopped.status.exit not in (0, None) and stopped.output.strip():
                 print(stopped.output.rstrip())
             print(stopped.in_words)
@@ -200,10 +200,10 @@ class SpinbookMagics(Magics):
         reader.add_argument("--all", action="store_true", help="every line, however many")
         reader.add_argument("--until", help="wait until the log contains this text")
         reader.add_argument("--seconds", type=float, default=LOG_SECONDS, help="how long to wait for it at most")
-        if given := reader.read(line):
-            if given.until is not None:
-                self.session.wait_for(given.name, DisplayLimit(given.seconds, given.until))
-            print(self.session.log(given.name, given.all))
+        if arguments := reader.read(line):
+            if arguments.until is not None:
+                self.session.wait_for(arguments.name, DisplayLimit(arguments.seconds, arguments.until))
+            print(self.session.log(arguments.name, arguments.all))
 
     @no_var_expand
     @line_magic
@@ -227,8 +227,8 @@ class SpinbookMagics(Magics):
         reader.add_argument("what", nargs="+", metavar="TOPIC/FIELD[i]", help="such as /turtle1/pose/x")
         reader.add_argument("--seconds", type=float, default=COMMAND_SECONDS, help="how long to record")
         reader.add_argument("--title", default="", help="the title above the plot")
-        if given := reader.read(line):
-            picture_cells.show_plot(given.what, given.seconds, given.title)
+        if arguments := reader.read(line):
+            picture_cells.show_plot(arguments.what, arguments.seconds, arguments.title)
 
     @no_var_expand
     @line_magic
@@ -237,18 +237,18 @@ class SpinbookMagics(Magics):
         reader = LineReader("%timeline", "Record services, actions and topics while other cells run, then draw them.")
         reader.add_argument("--record", nargs="+", metavar="NAME", help="begin to record these")
         reader.add_argument("--title", default="", help="the title above the picture")
-        given = reader.read(line)
-        if given is None:
+        arguments = reader.read(line)
+        if arguments is None:
             return
         recorded, self.session.timeline = self.session.timeline, None
-        if given.record:
+        if arguments.record:
             if recorded is not None:
                 recorded.close()
-            self.session.timeline = timeline_cell.begin(given.record)
+            self.session.timeline = timeline_cell.begin(arguments.record)
         elif recorded is None:
             raise CellFailed("Nothing is being recorded. Begin with: %timeline --record /NAME")
         else:
-            timeline_cell.show(recorded, given.title)
+            timeline_cell.show(recorded, arguments.title)
 
     @no_var_expand
     @line_magic
@@ -264,8 +264,8 @@ class SpinbookMagics(Magics):
         """%graph: nodes and topics as they are now, drawn as rqt_graph would."""
         reader = LineReader("%graph", "Draw who publishes and who subscribes, and how many messages per second arrive.")
         reader.add_argument("--seconds", type=float, default=GRAPH_SECONDS, help="how long messages are counted")
-        if given := reader.read(line):
-            picture_cells.show_graph(given.seconds)
+        if arguments := reader.read(line):
+            picture_cells.show_graph(arguments.seconds)
 
     @no_var_expand
     @line_magic
@@ -275,11 +275,11 @@ class SpinbookMagics(Magics):
         reader.add_argument("exercise")
         reader.add_argument("--course", default="", help="the folder of the handout, if it is not this one")
         reader.add_argument("--seconds", type=float, default=60.0, help="how long it may take")
-        if given := reader.read(line):
+        if arguments := reader.read(line):
             # Imported here because most cells are not exercises.
             from spinbook.kernel import check_cell
 
-            check_cell.check_cell(self.session, self.shell, given.exercise, given.course, given.seconds)
+            check_cell.check_cell(self.session, self.shell, arguments.exercise, arguments.course, arguments.seconds)
 
     @no_var_expand
     @line_magic
@@ -290,10 +290,12 @@ class SpinbookMagics(Magics):
         reader.add_argument("--student", help="your name or number, as your course requires; kept for the next time")
         reader.add_argument("--course", default="", help="the folder of the handout, if it is not this one")
         reader.add_argument("--seconds", type=float, default=120.0, help="how long it may take")
-        if given := reader.read(line):
+        if arguments := reader.read(line):
             from spinbook.kernel import check_cell
 
-            check_cell.submit_cell(self.session, self.shell, given.exercise, given.course, given.student, given.seconds)
+            check_cell.submit_cell(
+                self.session, self.shell, arguments.exercise, arguments.course, arguments.student, arguments.seconds
+            )
 
     @no_var_expand
     @line_magic
@@ -301,12 +303,12 @@ class SpinbookMagics(Magics):
         """%domain [N]: show or set the ROS domain of this notebook's nodes."""
         reader = LineReader("%domain", "Show this notebook's ROS domain, or join another one.")
         reader.add_argument("number", nargs="?", type=int, help="communicate with everything in this domain")
-        given = reader.read(line)
-        if given is None:
+        arguments = reader.read(line)
+        if arguments is None:
             return
-        if given.number is not None:
+        if arguments.number is not None:
             try:
-                chosen = environment.shared_domain(given.number)
+                chosen = environment.shared_domain(arguments.number)
             except ValueError as error:
                 raise CellFailed(str(error)) from None
             self.session.stop(None)

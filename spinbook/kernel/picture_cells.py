@@ -36,7 +36,7 @@ def show_graph(seconds: float) -> None:
     try:
         graph = NodeGraph.from_json(output[output.index("{") :])
     except ValueError:
-        raise CellFailed(output.strip() or f"The graph could not be looked at (exit code {status.exit}).") from None
+        raise CellFailed(output.strip() or f"The graph could not be read (exit code {status.exit}).") from None
     if not graph.nodes:
         print("No nodes. Run a cell that begins with %%node.")
         return

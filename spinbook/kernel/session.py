@@ -50,7 +50,7 @@ class StopResult:
         if code == 0 or (code is not None and code < 0):
             late = f", but only after {STOP_GRACE[0]:g} s and SIGTERM" if by == "SIGTERM" else ""
             return f"{self.name} stopped{late}."
-        return f"{self.name} stopped with exit code {code}; a node that ends in order has 0."
+        return f"{self.name} stopped with exit code {code}; a node that ends normally has 0."
 
 
 class NodeRegistry:
@@ -188,7 +188,7 @@ class Session:
         known_as = start.known_as or (f"{self.package.name}/{name}",)
         self._saved(name, code, replace(start, known_as=known_as), after)
         package, _, executable = known_as[0].partition("/")
-        print("— saved, not started: it reads words from its command line. Start it with them:")
+        print("— saved, not started: it reads command-line arguments. Start it with them:")
         print(f"  %ros2 run {package} {executable} …")
 
     def _saved(self, name: str, code: str, start: NodeStart, after: Sequence[str] | None) -> Path:
@@ -304,7 +304,7 @@ class Session:
             raise CellFailed(f"{shown_as}: {_how_it_ended(status.exit or 0)}")
 
     def wait_for(self, name: str, bound: DisplayLimit) -> None:
-        """Wait until a node's log contains the limit's text, or its time is up. Raises CellFailed for an unknown name."""
+        """Wait until a node's log contains the limit's text, or time is up. Raises CellFailed for an unknown name."""
         node = self.find(name)
         deadline = time.monotonic() + bound.seconds
         text = (bound.until or "").encode()

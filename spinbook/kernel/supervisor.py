@@ -72,12 +72,12 @@ def descendants(root: int) -> list[int]:
     for pid, state, parent in _processes():
         if state != b"Z":
             children.setdefault(parent, []).append(pid)
-    found, todo = [], [root]
+    pids, todo = [], [root]
     while todo:
         new = children.get(todo.pop(), [])
-        found += new
+        pids += new
         todo += new
-    return found
+    return pids
 
 
 class Supervisor:

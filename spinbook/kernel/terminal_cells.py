@@ -80,7 +80,7 @@ def _create_package(session: Session, words: list[str]) -> None:
     if not name:
         raise CellFailed("Write: ros2 pkg create --build-type ament_python NAME")
     if name != session.package.name and (session.workspace / "src" / name).exists():
-        print(f"{name} is there already.")
+        print(f"The package {name} already exists.")
         return
     folder = write_package(session.workspace, replace(session.package, name=name), [])
     print(f"Created the package {name} in {folder.relative_to(Path.cwd())}")

@@ -129,15 +129,15 @@ def _answers(events: list[TimelineEvent]) -> dict[str, list[TimelineEvent]]:
     A goal with any state was not rejected.
     """
     accepted = {event.goal for event in events if event.what in (*RUNS, *ENDS, "ACCEPTED")}
-    found: dict[str, list[TimelineEvent]] = {}
+    answers: dict[str, list[TimelineEvent]] = {}
     for question, answer in (("goal", "rejected"), ("cancel", "cancel answered")):
         waiting = [
             each for each in events if each.what == question and (answer != "rejected" or each.goal not in accepted)
         ]
         for event in events:
             if event.what == answer and waiting and waiting[0].at <= event.at:
-                found.setdefault(waiting.pop(0).goal, []).append(event)
-    return found
+                answers.setdefault(waiting.pop(0).goal, []).append(event)
+    return answers
 
 
 def _goal(name: str, label: str, events: list[TimelineEvent], end: float) -> Lane:

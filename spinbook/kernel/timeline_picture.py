@@ -48,7 +48,7 @@ def span_of(lanes: Iterable[Lane]) -> tuple[float, float]:
 
 
 def moving_timeline(lanes: Sequence[Lane], title: str = "") -> str:
-    """Return the picture of lanes of which at least one has a mark."""
+    """Return an SVG of lanes, at least one of which has a mark."""
     start, end = span_of(lanes)
     across = Scale(start, max(end, start + 0.1), _LEFT, _WIDTH - _RIGHT)
     words = in_words(lanes, start)

@@ -36,7 +36,9 @@ from spinbook.submit.hand_in import (
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("exercise")
 @click.argument("file", required=False, type=click.Path(path_type=Path))
-@click.option("--student", help="Your name or number, as your course wants it; kept in this folder for the next time.")
+@click.option(
+    "--student", help="Your name or number, as your course requires it; kept in this folder for the next time."
+)
 @click.option("--output", type=click.Path(path_type=Path), help="Where to write.  [default: EXERCISE-submission.zip]")
 @click.option("--code", type=click.Path(path_type=Path), hidden=True, help="The code, as a kernel ran it last.")
 @click.option("--no-check", is_flag=True, help="Write the file without running the checks first.")
@@ -59,15 +61,15 @@ def submit(
     Exit codes: 0 the file is written, 1 it could not be written, 2 wrong usage.
     """
     folder = Path.cwd()
-    wanted = exercise_named(exercise)
-    chosen = _ran(code, file, wanted) if code else given(file, wanted) if file else _found(wanted, folder)
+    loaded = exercise_named(exercise)
+    chosen = _ran(code, file, loaded) if code else given(file, loaded) if file else _found(loaded, folder)
     name = _student(student, folder)
-    checked = SelfCheck(None, "It was left out.") if no_check else self_check(wanted, chosen.submission)
+    checked = SelfCheck(None, "It was left out.") if no_check else self_check(loaded, chosen.submission)
     console = Console(soft_wrap=False, highlight=False)
-    print_result(checked, wanted, console)
-    target = output or default_target(wanted, folder)
+    print_result(checked, loaded, console)
+    target = output or default_target(loaded, folder)
     try:
-        write_upload(HandIn(wanted, chosen, name, checked), target)
+        write_upload(HandIn(loaded, chosen, name, checked), target)
     except OSError as error:
         raise SpinbookError(
             Problem(target, None, f"it can't be written: {error.strerror}.", "Name another place: --output FILE")
@@ -75,10 +77,10 @@ def submit(
     console.print(f"Your code is from {chosen.origin}.", markup=False)
     for note in () if checked.grade else chosen.submission.notes:
         console.print(note, style="bold yellow", markup=False, soft_wrap=True)
-    if is_starter(chosen, wanted):
+    if is_starter(chosen, loaded):
         console.print("It is still the starter, as it was handed out. Was your work saved?", style="bold yellow")
     if not name:
-        console.print("Your name is not in it. If your course wants it there: --student NAME", markup=False)
+        console.print("Your name is not in the file. If your course requires it: --student NAME", markup=False)
     console.print(f"Upload this file: {_shown(target)}", style="bold", markup=False, soft_wrap=True)
 
 
@@ -87,7 +89,7 @@ def print_result(checked: SelfCheck, exercise: Exercise, console: Console) -> No
     if checked.grade:
         show(checked.grade, exercise, console)
     else:
-        console.print(f"No self-check: {checked.why} You can hand in all the same.", markup=False, soft_wrap=True)
+        console.print(f"No self-check: {checked.why} You can still hand in.", markup=False, soft_wrap=True)
 
 
 def _ran(code: Path, notebook: Path | None, exercise: Exercise) -> HandInCandidate:
@@ -133,12 +135,12 @@ def check(exercise: str, file: Path | None, verbose: bool) -> None:
 
     Exit codes: 0 every public check passes, 1 not, 2 wrong usage, 3 the exercise or this machine is at fault.
     """
-    wanted = exercise_named(exercise)
+    loaded = exercise_named(exercise)
     command, question = "spinbook check", "Which one do you want to check?"
-    chosen = given(file, wanted) if file else found(wanted, Path.cwd(), command, question)
+    chosen = given(file, loaded) if file else found(loaded, Path.cwd(), command, question)
     click.echo(f"Checking {chosen.origin}.")
-    grade = _grade(wanted, chosen.submission)
-    show(grade, wanted, Console(soft_wrap=False, highlight=False), verbose)
+    grade = _grade(loaded, chosen.submission)
+    show(grade, loaded, Console(soft_wrap=False, highlight=False), verbose)
     sys.exit(HOST_FAULT if grade.outcome == "host-error" else ALL_PASS if grade.full_marks else SOME_FAIL)
 
 

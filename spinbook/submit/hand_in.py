@@ -49,11 +49,13 @@ def candidates(exercise: Exercise, folder: Path) -> list[HandInCandidate]:
     """
     files = [folder / exercise.file_name, *sorted(folder.glob("*.ipynb")), *_packages(folder)]
     files.append(exercise.folder / exercise.file_name)
-    found = [HandInCandidate(file, read(str(file), exercise), _name(file, folder)) for file in files if file.exists()]
-    found = [one for one in found if one.submission.program or one.submission.question]
-    begun = [candidate for candidate in found if not is_starter(candidate, exercise)]
-    by_code = {_bare(candidate.submission.source): candidate for candidate in reversed(begun or found)}
-    return [candidate for candidate in found if candidate in by_code.values()]
+    candidates = [
+        HandInCandidate(file, read(str(file), exercise), _name(file, folder)) for file in files if file.exists()
+    ]
+    candidates = [one for one in candidates if one.submission.program or one.submission.question]
+    begun = [candidate for candidate in candidates if not is_starter(candidate, exercise)]
+    by_code = {_bare(candidate.submission.source): candidate for candidate in reversed(begun or candidates)}
+    return [candidate for candidate in candidates if candidate in by_code.values()]
 
 
 def _packages(folder: Path) -> list[Path]:
@@ -74,13 +76,13 @@ def _name(file: Path, folder: Path) -> str:
 def _starters(exercise: Exercise) -> set[str]:
     """Return the starter as it was handed out, if that is known."""
     handed_out = exercise.folder.parent.parent / BASE / "exercises" / exercise.name / exercise.file_name
-    found = set()
+    starters = set()
     with contextlib.suppress(OSError, ValueError):
-        found.add(_bare(handed_out.read_text(encoding="utf-8")))
+        starters.add(_bare(handed_out.read_text(encoding="utf-8")))
     with contextlib.suppress(OSError, ValueError):
         if exercise.solution_file:
-            found.add(_bare(starter(exercise.solution_file.read_text(encoding="utf-8"))))
-    return found
+            starters.add(_bare(starter(exercise.solution_file.read_text(encoding="utf-8"))))
+    return starters
 
 
 def _bare(code: str) -> str:
@@ -163,9 +165,9 @@ def default_target(exercise: Exercise, folder: Path) -> Path:
 
 def _now() -> datetime:
     """Return the time, to the second; SOURCE_DATE_EPOCH (s) replaces the clock if uploads have to be reproducible."""
-    given = os.environ.get("SOURCE_DATE_EPOCH", "")
-    if given.isdigit():
-        return datetime.fromtimestamp(int(given), timezone.utc)
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+    if epoch.isdigit():
+        return datetime.fromtimestamp(int(epoch), timezone.utc)
     return datetime.now(timezone.utc).replace(microsecond=0)
 
 

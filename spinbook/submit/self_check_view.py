@@ -103,8 +103,8 @@ def _harmless(value: Any) -> Any:
 
 def _first_step(grade: Grade, exercise: Exercise) -> str:
     """Return the first step to take with a program that failed. The other steps are about files, not cells."""
-    found = advice(grade, exercise)
-    return found.steps[0] if found else ""
+    advised = advice(grade, exercise)
+    return advised.steps[0] if advised else ""
 
 
 def _end(log: str) -> str:

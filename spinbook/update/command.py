@@ -73,8 +73,8 @@ def _folder(start: Path) -> Path:
             return folder.resolve()
     if any(start.glob("*.ipynb")):
         return start.resolve()
-    found = "this is not a course's folder: there is no notebook in it."
-    raise SpinbookError(Problem(start, None, found, "Go to the folder of your notebooks, then start it again."))
+    problem = "this is not a course's folder: there is no notebook in it."
+    raise SpinbookError(Problem(start, None, problem, "Go to the folder of your notebooks, then start it again."))
 
 
 def _only_handout(folder: Path) -> Path:

@@ -51,11 +51,11 @@ def read_handout(path: Path) -> Files:
     try:
         files = _of_folder(path) if path.is_dir() else _of_zip(path)
     except (OSError, zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError) as error:
-        found = f"it can't be read: {error}."
-        raise SpinbookError(Problem(path, None, found, "Download the handout once more.")) from None
+        reason = f"it can't be read: {error}."
+        raise SpinbookError(Problem(path, None, reason, "Download the handout once more.")) from None
     files = _without_outer_folder(files)
-    if found := _why_not(files):
-        raise SpinbookError(Problem(path, None, found, f"Nothing was changed. {_GIVE}"))
+    if reason := _why_not(files):
+        raise SpinbookError(Problem(path, None, reason, f"Nothing was changed. {_GIVE}"))
     return files
 
 
@@ -65,8 +65,8 @@ def refuse_another_course(path: Path, files: Files, folder: Path) -> None:
     mine = packages(file.read_bytes() for file in sorted((base if base.is_dir() else folder).glob("*.ipynb")))
     new = packages(data for path, data in files.items() if path.suffix == ".ipynb" and len(path.parts) == 1)
     if mine and new and not mine & new:
-        found = f"it is a handout of another course: its package is {_and(new)}, yours is {_and(mine)}."
-        raise SpinbookError(Problem(path, None, found, f"Nothing was changed. {_GIVE}"))
+        problem = f"it is a handout of another course: its package is {_and(new)}, yours is {_and(mine)}."
+        raise SpinbookError(Problem(path, None, problem, f"Nothing was changed. {_GIVE}"))
 
 
 def packages(notebooks: Iterable[bytes]) -> set[str]:
@@ -77,7 +77,7 @@ def packages(notebooks: Iterable[bytes]) -> set[str]:
 def _why_not(files: Files) -> str:
     """Say why this is not a handout; empty if it is one."""
     if PurePosixPath(RECORD) in files:
-        return "it is a file to hand in, which `spinbook submit` wrote, and not a handout."
+        return "it is not a handout, but a file to hand in that `spinbook submit` wrote."
     if not any(path.suffix == ".ipynb" for path in files):
         return "there is no notebook in it."
     if not any(path.is_relative_to(BASE) for path in files):
@@ -108,11 +108,11 @@ def _of_zip(file: Path) -> Files:
         for entry in entries:
             path = PurePosixPath(entry.filename)
             if path.is_absolute() or ".." in path.parts or "\\" in entry.filename or "\0" in entry.filename:
-                found = f"{entry.filename!r} in it leads out of its folder."
-                raise SpinbookError(Problem(file, None, found, "This is not a handout. Nothing was changed."))
+                problem = f"{entry.filename!r} in it leads out of its folder."
+                raise SpinbookError(Problem(file, None, problem, "This is not a handout. Nothing was changed."))
             if stat.S_ISLNK(entry.external_attr >> 16):
-                found = f"{entry.filename!r} in it is a symbolic link."
-                raise SpinbookError(Problem(file, None, found, "This is not a handout. Nothing was changed."))
+                problem = f"{entry.filename!r} in it is a symbolic link."
+                raise SpinbookError(Problem(file, None, problem, "This is not a handout. Nothing was changed."))
             with archive.open(entry) as opened:
                 files[path] = opened.read(left + 1)
             left -= len(files[path])
@@ -122,8 +122,8 @@ def _of_zip(file: Path) -> Files:
 
 def _bounded(path: Path, count: int, size: int) -> None:
     if count > MOST_FILES or size > MOST_BYTES:
-        found = f"it holds more than {MOST_FILES} files or {MOST_BYTES // 1_000_000} MB."
-        raise SpinbookError(Problem(path, None, found, "Give the course's new handout, a folder or a zip."))
+        problem = f"it holds more than {MOST_FILES} files or {MOST_BYTES // 1_000_000} MB."
+        raise SpinbookError(Problem(path, None, problem, "Give the course's new handout, a folder or a zip."))
 
 
 def _without_outer_folder(files: Files) -> Files:

@@ -38,27 +38,27 @@ def label(cell: Cell) -> str:
 
 def found_again(old: Sequence[Cell], new: Sequence[Cell]) -> dict[int, int]:
     """Map the indices of cells in `old` to those in `new`: by id, by content, by node, or by similarity."""
-    found: dict[int, int] = {}
+    partners: dict[int, int] = {}
     # If two cells have the same id, the one with the old content comes first.
-    _pair(old, new, found, lambda cell: (cell.get("id"), content(cell)) if cell.get("id") else None)
-    _pair(old, new, found, lambda cell: cell.get("id"))
-    _pair(old, new, found, lambda cell: content(cell) if text(cell) else None)
-    _pair(old, new, found, _node)
-    _pair_alike(old, new, found)
-    return found
+    _pair(old, new, partners, lambda cell: (cell.get("id"), content(cell)) if cell.get("id") else None)
+    _pair(old, new, partners, lambda cell: cell.get("id"))
+    _pair(old, new, partners, lambda cell: content(cell) if text(cell) else None)
+    _pair(old, new, partners, _node)
+    _pair_alike(old, new, partners)
+    return partners
 
 
-def _pair(old: Sequence[Cell], new: Sequence[Cell], found: dict[int, int], key: Any) -> None:
+def _pair(old: Sequence[Cell], new: Sequence[Cell], partners: dict[int, int], key: Any) -> None:
     """Pair cells without a partner that have the same key; if several have it, in their order."""
     waiting: dict[Any, list[int]] = {}
-    taken = set(found.values())
+    taken = set(partners.values())
     for j, cell in enumerate(new):
         if j not in taken:
             waiting.setdefault(key(cell), []).append(j)
     waiting.pop(None, None)
     for i, cell in enumerate(old):
-        if i not in found and (there := waiting.get(key(cell))):
-            found[i] = there.pop(0)
+        if i not in partners and (there := waiting.get(key(cell))):
+            partners[i] = there.pop(0)
 
 
 def _node(cell: Cell) -> tuple[str, str] | None:
@@ -72,9 +72,9 @@ def _node(cell: Cell) -> tuple[str, str] | None:
     return ("node", match.group(1)) if match else None
 
 
-def _pair_alike(old: Sequence[Cell], new: Sequence[Cell], found: dict[int, int]) -> None:
-    taken = set(found.values())
-    rest = [(i, text(cell)[:_COMPARED]) for i, cell in enumerate(old) if i not in found and text(cell)]
+def _pair_alike(old: Sequence[Cell], new: Sequence[Cell], partners: dict[int, int]) -> None:
+    taken = set(partners.values())
+    rest = [(i, text(cell)[:_COMPARED]) for i, cell in enumerate(old) if i not in partners and text(cell)]
     there = [(j, text(cell)[:_COMPARED]) for j, cell in enumerate(new) if j not in taken and text(cell)]
     pairs = []
     for j, theirs in there:
@@ -84,8 +84,8 @@ def _pair_alike(old: Sequence[Cell], new: Sequence[Cell], found: dict[int, int])
             if matcher.real_quick_ratio() >= ALIKE and matcher.quick_ratio() >= ALIKE:
                 pairs.append((-matcher.ratio(), i, j))
     for unlike, i, j in sorted(pairs):
-        if -unlike >= ALIKE and i not in found and j not in taken:
-            found[i] = j
+        if -unlike >= ALIKE and i not in partners and j not in taken:
+            partners[i] = j
             taken.add(j)
 
 
@@ -226,7 +226,7 @@ class _Merge:
 
 
 def _is_needed(cell: Cell) -> bool:
-    """Return whether an exercise can't be done without this cell, so that the student should know that it is missing."""
+    """Return whether an exercise can't be done without this cell, so that a missing one has to be reported."""
     known = cell.get("metadata", {}).get("spinbook", {})
     return bool(known.get("exercise")) or known.get("kind") in ("setup", "check")
 

@@ -197,15 +197,15 @@ def _students(folder: Path, path: PurePosixPath, new: bytes) -> PurePosixPath:
     if (folder / path).exists():
         return path
     try:
-        wanted = chapter(read(new))
+        name = chapter(read(new))
     except NoNotebook:
         return path
-    found = []
+    notebooks = []
     for file in sorted(folder.rglob("*.ipynb")):
         where = PurePosixPath(file.relative_to(folder).as_posix())
-        if wanted and not _NOT_LOOKED_IN & set(where.parts) and _chapter_of(file) == wanted:
-            found.append(where)
-    return found[0] if len(found) == 1 else path
+        if name and not _NOT_LOOKED_IN & set(where.parts) and _chapter_of(file) == name:
+            notebooks.append(where)
+    return notebooks[0] if len(notebooks) == 1 else path
 
 
 def _chapter_of(path: Path) -> str:

@@ -140,7 +140,7 @@ export async function stop(cell, words) {
 function stopped({ name, status, forced }, hadEnded) {
   if (hadEnded) return `${name} had ended before (exit code ${status}).`;
   if (forced) return `${name} ignored Ctrl-C for 2 s; it was ended.`;
-  return status ? `${name} stopped with exit code ${status}; a node that ends in order has 0.` : `${name} stopped.`;
+  return status ? `${name} stopped with exit code ${status}; a node that ends normally has 0.` : `${name} stopped.`;
 }
 
 export function showTurtle(cell) {

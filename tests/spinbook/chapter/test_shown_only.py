@@ -76,7 +76,7 @@ def test_a_command_without_the_words_that_its_program_reads_is_shown_only(tmp_pa
 
     chapter = read(tmp_path, named, "```bash\nros2 run arm client\n```\n")
 
-    assert chapter.static_fences[-1].sign == "`client` reads 2 words from its command line."
+    assert chapter.static_fences[-1].sign == "`client` reads 2 arguments from its command line."
 
 
 def test_a_program_that_counts_its_words_first_is_started_without(tmp_path: Path) -> None:

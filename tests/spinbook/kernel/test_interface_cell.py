@@ -28,7 +28,7 @@ def test_a_definition_is_compiled_once_and_a_changed_one_says_what_to_restart(
     assert kernel.run("from robot_interfaces.msg import Limits; print(Limits())").error == ""
 
     changed = kernel.run(MESSAGE + "float64 upper\n")
-    assert "Run the cells of these nodes again, they still use the old text: holder." in changed.text
+    assert "Run the cells of these nodes again; they still use the old text: holder." in changed.text
     assert "This kernel has imported robot_interfaces already: restart it" in changed.text
     assert "Limits(name='', upper=0.0)" in kernel.run(NODE).text
     assert (
@@ -53,7 +53,7 @@ def test_another_notebook_in_the_same_folder_finds_them(new_kernel: Callable[...
     ("cell", "said"),
     [
         ("%%interface msg/Bad.msg\nfloat x\n", "msg/Bad.msg:1: `float` is not a type.\n    ROS 2 calls it float32."),
-        ("%%interface Limits.msg\nfloat64 x\n", "`Limits.msg` names no interface. Write msg/NAME.msg"),
+        ("%%interface Limits.msg\nfloat64 x\n", "`Limits.msg` is not an interface's name. Write msg/NAME.msg"),
         ("%%interface std_msgs/msg/String.msg\nstring data\n", "The package std_msgs is installed"),
     ],
 )

@@ -74,7 +74,7 @@ def test_a_node_that_ends_badly_on_ctrl_c_shows_its_words(kernel: Kernel) -> Non
 
     shown = kernel.run("%stop --all")
 
-    assert "talker stopped with exit code 1; a node that ends in order has 0." in shown.text
+    assert "talker stopped with exit code 1; a node that ends normally has 0." in shown.text
     assert "RuntimeError: clumsy" in shown.text
 
 

@@ -179,7 +179,7 @@ def test_a_self_check_that_can_not_run_keeps_nobody_from_handing_in(folder: Path
     done = submitted()
     assert done.exit_code == 0, done.output
     assert "No self-check:" in done.output
-    assert "You can hand in all the same." in done.output
+    assert "You can still hand in." in done.output
     assert upload().record["self_check"]["not_run"]
 
 

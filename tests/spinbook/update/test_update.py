@@ -223,7 +223,7 @@ def other_course() -> dict[str, bytes]:
 @pytest.mark.parametrize(
     ("files", "message"),
     [
-        ({"week3.ipynb": notebook(TITLE, LOUDER), "submission.json": b"{}"}, "it is a file to hand in"),
+        ({"week3.ipynb": notebook(TITLE, LOUDER), "submission.json": b"{}"}, "a file to hand in that"),
         ({"week3.ipynb": notebook(TITLE, LOUDER)}, "it is not a handout: there is no .spinbook/base in it."),
         ({"notes.txt": b"x"}, "there is no notebook in it."),
         (other_course(), "it is a handout of another course: its package is cooking, yours is humanoid_control."),
