@@ -1,24 +1,33 @@
-"""A class in which every mistake of every exercise is made once: which names each submission gets.
+"""A class in which every mistake in an exercise is made once: which names each submission gets.
 
-The findings are recorded ones: `record_findings.py` graded each mistake.
+`make test` grades the mistakes in one exercise, `make soak` those in all of them: that takes about a second of CPU time
+per mistake. What is compared, such as values, is tested without grading in test_misconception.py.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+import functools
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from recorded_findings import Recorded, read
 from unlisted_mistakes import UNLISTED
 
-from grader.classroom.misconceptions import Signature, mistakes_in
+from grader.classroom.misconceptions import Signature, failures_of, mistakes_in
 from grader.exercise import load
 from grader.exercise.mistakes import mistakes_of
+from grader.grading import Grade, Options, grading_of
+from grader.submission.reading import of_source
+from grader.workers import WorkerPool
 
 ROOT = Path(__file__).parents[3]
-EXERCISES = sorted(UNLISTED)
+#: Its programs are the quickest to grade.
+ALWAYS = {"robot_description"}
+EXERCISES = [pytest.param(name, marks=() if name in ALWAYS else pytest.mark.soak) for name in sorted(UNLISTED)]
+
+pytestmark = pytest.mark.timeout(900)
 
 #: Listed mistakes that other listed ones describe, too: if the first were not listed, the others would be true of it.
 AKIN = {
@@ -31,64 +40,99 @@ AKIN = {
     "spins_in_the_callback": {"awaits_in_the_default_group"},
 }
 
-
-def listed(exercise: str) -> list[Recorded]:
-    """Return the exercise's usual mistakes that completed and failed checks."""
-    names = {mistake.name for mistake in mistakes_of(load(ROOT / "exercises" / exercise))}
-    return [one for one in read(exercise) if one.name in names and one.failures]
+#: Grade by the mistake's name.
+Grades = Mapping[str, Grade]
 
 
-def signatures_of(mistakes: Sequence[Recorded]) -> list[Signature]:
+@dataclasses.dataclass(frozen=True)
+class Mistakes:
+    """The mistakes in an exercise: those that `solutions/` lists, as far as they fail checks, and the others."""
+
+    listed: Grades
+    unlisted: Grades
+
+
+@pytest.fixture(scope="module")
+def mistakes(workers_with_interfaces: WorkerPool) -> Callable[[str], Mistakes]:
+    """Grades the mistakes in an exercise, once."""
+    return functools.cache(lambda exercise: _graded(exercise, workers_with_interfaces))
+
+
+def _graded(name: str, workers: WorkerPool) -> Mistakes:
+    exercise = load(ROOT / "exercises" / name)
+    assert exercise.solution_file
+    solution = exercise.solution_file.read_text(encoding="utf-8")
+    listed = {mistake.name: mistake.source for mistake in mistakes_of(exercise)}
+    unlisted = {unlisted: mistake.applied_to(solution) for unlisted, mistake in UNLISTED[name].items()}
+    grading = grading_of(exercise, Options(), workers)
+    with ThreadPoolExecutor(2) as pool:
+        submissions = [of_source(source, code.encode(), exercise) for source, code in (listed | unlisted).items()]
+        grades = {grade.submission: grade for grade in pool.map(grading.grade, submissions)}
+    return Mistakes(
+        {mistake: grades[mistake] for mistake in listed if failures_of(grades[mistake])},
+        {mistake: grades[mistake] for mistake in unlisted},
+    )
+
+
+def signatures_of(grades: Grades) -> list[Signature]:
     """Return one signature for all that fail in the same words."""
-    found: list[Signature] = []
-    for one in mistakes:
-        same = next((signature for signature in found if signature.failures == one.failures), None)
+    signatures: list[Signature] = []
+    for name, grade in grades.items():
+        same = next((one for one in signatures if one.failures == failures_of(grade)), None)
         if same:
-            found[found.index(same)] = dataclasses.replace(same, names=(*same.names, one.name))
+            signatures[signatures.index(same)] = dataclasses.replace(same, names=(*same.names, name))
         else:
-            found.append(Signature((one.name,), (one.name,), one.failures))
-    return found
+            signatures.append(Signature((name,), (name,), failures_of(grade)))
+    return signatures
 
 
-def named(one: Recorded, signatures: Sequence[Signature]) -> list[set[str]]:
+def named(grade: Grade, signatures: list[Signature]) -> list[set[str]]:
     """Return the names of each signature that a submission matches."""
-    return [set(signatures[i].names) for i in mistakes_in(one.failures, set(one.blocked), signatures)]
+    blocked = {verdict.name for verdict in grade.verdicts if verdict.status == "blocked"}
+    return [set(signatures[i].names) for i in mistakes_in(failures_of(grade), blocked, signatures)]
 
 
 @pytest.mark.parametrize("exercise", EXERCISES)
-def test_every_listed_mistake_stands_under_its_own_name_alone(exercise: str) -> None:
-    signatures = signatures_of(listed(exercise))
+def test_every_listed_mistake_stands_under_its_own_name_alone(
+    exercise: str, mistakes: Callable[[str], Mistakes]
+) -> None:
+    listed = mistakes(exercise).listed
+    signatures = signatures_of(listed)
     assert len(signatures) >= 10
-    for one in listed(exercise):
-        (names,) = named(one, signatures)
-        assert one.name in names
+    for name, grade in listed.items():
+        (names,) = named(grade, signatures)
+        assert name in names
 
 
 @pytest.mark.parametrize("exercise", EXERCISES)
-def test_a_mistake_that_is_not_listed_never_stands_under_the_name_of_another(exercise: str) -> None:
-    mistakes = listed(exercise)
-    for one in mistakes:
-        others = signatures_of([other for other in mistakes if other.failures != one.failures])
-        for names in named(one, others):
-            assert names & AKIN.get(one.name, set()), f"{one.name} stands under {names}"
+def test_a_mistake_that_is_not_listed_never_stands_under_the_name_of_another(
+    exercise: str, mistakes: Callable[[str], Mistakes]
+) -> None:
+    listed = mistakes(exercise).listed
+    for name, grade in listed.items():
+        others = {other: one for other, one in listed.items() if failures_of(one) != failures_of(grade)}
+        for names in named(grade, signatures_of(others)):
+            assert names & AKIN.get(name, set()), f"{name} stands under {names}"
 
 
 @pytest.mark.parametrize("exercise", EXERCISES)
-def test_other_programs_stand_under_mistakes_that_they_make_or_under_other(exercise: str) -> None:
-    signatures = signatures_of(listed(exercise))
-    for one in read(exercise):
-        if mistake := UNLISTED[exercise].get(one.name):
-            for names in named(one, signatures):
-                assert names & set(mistake.may_be_called), f"{one.name} stands under {names}"
+def test_other_programs_stand_under_mistakes_that_they_make_or_under_other(
+    exercise: str, mistakes: Callable[[str], Mistakes]
+) -> None:
+    signatures = signatures_of(mistakes(exercise).listed)
+    for name, grade in mistakes(exercise).unlisted.items():
+        for names in named(grade, signatures):
+            assert names & set(UNLISTED[exercise][name].may_be_called), f"{name} stands under {names}"
 
 
-def test_most_of_them_that_make_a_listed_mistake_stand_under_its_name() -> None:
-    wanted = found = 0
-    for exercise in EXERCISES:
-        signatures = signatures_of(listed(exercise))
-        for one in read(exercise):
-            mistake = UNLISTED[exercise].get(one.name)
-            if mistake and mistake.may_be_called and one.failures:
-                wanted += 1
-                found += bool(named(one, signatures))
-    assert found / wanted >= 0.5, f"{found} of {wanted}"
+@pytest.mark.parametrize("exercises", [sorted(ALWAYS), pytest.param(sorted(UNLISTED), marks=pytest.mark.soak)], ids=len)
+def test_most_of_them_that_make_a_listed_mistake_stand_under_its_name(
+    exercises: list[str], mistakes: Callable[[str], Mistakes]
+) -> None:
+    stand = [
+        bool(named(grade, signatures_of(mistakes(exercise).listed)))
+        for exercise in exercises
+        for name, grade in mistakes(exercise).unlisted.items()
+        if UNLISTED[exercise][name].may_be_called and failures_of(grade)
+    ]
+    assert sum(stand) / len(stand) >= 0.5, f"{sum(stand)} of {len(stand)}"
