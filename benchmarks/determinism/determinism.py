@@ -23,7 +23,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from grader.audit.candidates import mistakes, right_ones
+from grader.audit.candidates import mistakes, right_solutions
 from grader.exercise import Exercise, load
 from grader.exercise.edits import read_edits
 from grader.grading import Grade, Options
@@ -158,7 +158,7 @@ def _folder(path: str) -> Path:
 
 def _submissions(exercise: Exercise) -> dict[str, Submission]:
     """Return what is graded of an exercise, by a name such as `heartbeat/right/two_threads.py`."""
-    candidates = right_ones(exercise)
+    candidates = right_solutions(exercise)
     if exercise.folder != COURSE / "exercises" / HARDEST:
         few = [one for one in candidates if one.kind == "solution" or "thread" in one.name]
         return {f"{exercise.name}/{one.name}": one.submission for one in few}

@@ -15,7 +15,7 @@ from grader.audit.candidates import (
     mistakes,
     over_seed,
     problems_of,
-    right_ones,
+    right_solutions,
     seeds_of,
 )
 from grader.audit.check_list import AuditedCheck, ChecksJob, problems_in_text
@@ -30,7 +30,7 @@ from grader.audit.worth import (
     problems_of_broken,
     problems_of_checks,
     scenario_results,
-    worth_spinning_on,
+    worth_running_on,
 )
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Options
@@ -39,7 +39,7 @@ from grader.grading.reference import solution_file
 from grader.submission.reading import of_source
 from grader.workers.pool import WorkerPool
 
-#: The number of seeds with which right solutions must be right.
+#: Right solutions must get full marks with this many seeds.
 SEEDS = 20
 
 #: The number of mutants that a quick audit tries.
@@ -48,8 +48,9 @@ SAMPLE = 12
 
 @dataclass(frozen=True)
 class AuditPlan:
-    """Everything that an audit tries. `quick` is whether a trial ends as soon as its result is clear. `sampled` is
-    whether there are more mutants than these.
+    """Everything that an audit tries.
+
+    With `quick`, a trial ends as soon as its result is clear. `sampled` says that there are more mutants than these.
     """
 
     right: list[Candidate]
@@ -62,10 +63,12 @@ class AuditPlan:
 
 
 def planned(trials: Trials, quick: bool, most: int | None, seeds: int = SEEDS) -> AuditPlan:
-    """AuditPlan everything; in a quick audit, leave out the other right solutions and the seeds. Take at most `most`
-    mutants."""
+    """Choose what to try. A quick audit leaves out the other right solutions and the seeds.
+
+    Choose at most `most` mutants.
+    """
     exercise = trials.grading.runner.exercise
-    right = right_ones(exercise)
+    right = right_solutions(exercise)
     every = mutants_of(solution_file(exercise).read_text(encoding="utf-8"), exercise)
     limit = SAMPLE if quick and most is None else most
     chosen = every if limit is None else sample(every, limit)
@@ -81,7 +84,7 @@ def planned(trials: Trials, quick: bool, most: int | None, seeds: int = SEEDS) -
 
 
 def sample(mutants: tuple[Mutant, ...], size: int) -> tuple[Mutant, ...]:
-    """This many mutants, of as many operators as possible; always the same ones."""
+    """Return `size` mutants, of as many operators as possible. The choice is always the same."""
     turns: dict[str, int] = {}
     ranked: list[tuple[int, str, Mutant]] = []
     for mutant in sorted(mutants, key=lambda mutant: mutant.id):
@@ -93,7 +96,7 @@ def sample(mutants: tuple[Mutant, ...], size: int) -> tuple[Mutant, ...]:
 
 @dataclass(frozen=True)
 class Tried:
-    """The trials: of the author's programs by name, of mutants by id, of right solutions with each further seed."""
+    """The trials: of the author's programs by name, of mutants by id, and of right solutions for each further seed."""
 
     programs: dict[str, Trial] = field(default_factory=dict)
     mutants: dict[str, Trial] = field(default_factory=dict)
@@ -106,12 +109,12 @@ class Tried:
 
 
 def try_all(plan: AuditPlan, trials: Trials, store: Store, progress: AuditProgress) -> Tried:
-    """The trial of everything in the plan. Raises `HostFault` if the machine or the grader is at fault."""
+    """Try everything in the plan. Raises `HostFault` if the machine or the grader is at fault."""
     tried = Tried()
     work = _Work(plan, trials, store)
     progress.begin(trials.grading.runner.exercise.name, len(plan.seeds) + len(plan.mutants) + len(_programs(plan)))
     with ThreadPoolExecutor(trials.grading.runner.options.parallel) as pool:
-        # The longest first, so that the workers finish at about the same time.
+        # The longest ones start first, so that the workers finish at about the same time.
         seeds = {pool.submit(over_seed, trials, store, seed, plan.right): seed for seed in plan.seeds}
         programs = {pool.submit(work.program, program): program for program in _programs(plan)}
         mutants = {pool.submit(work.mutant, mutant): mutant for mutant in plan.mutants}
@@ -121,7 +124,7 @@ def try_all(plan: AuditPlan, trials: Trials, store: Store, progress: AuditProgre
                 future.result()
                 progress.done()
         except BaseException:
-            # Ctrl-C, or a fault: nobody wants to wait for what is under way.
+            # After Ctrl-C or a fault, do not wait for the trials in progress.
             trials.runs.stopped.set()
             raise
         finally:
@@ -133,13 +136,13 @@ def try_all(plan: AuditPlan, trials: Trials, store: Store, progress: AuditProgre
     return tried
 
 
-def spin_on(plan: AuditPlan, tried: Tried, trials: Trials, store: Store) -> None:
-    """Run through every scenario those mutants that settle a doubt about the checks."""
-    evidence = {**{one.name: tried.programs[one.name] for one in plan.mistakes}, **tried.mutants}
-    wanted = set(worth_spinning_on(trials.checks, evidence, tried.mutants))
+def run_on(plan: AuditPlan, tried: Tried, trials: Trials, store: Store) -> None:
+    """Run those mutants through every scenario that settle a doubt about the checks."""
+    evidence = {**{mistake.name: tried.programs[mistake.name] for mistake in plan.mistakes}, **tried.mutants}
+    doubtful = set(worth_running_on(trials.checks, evidence, tried.mutants))
     work = _Work(plan, trials, store)
     with ThreadPoolExecutor(trials.grading.runner.options.parallel) as pool:
-        futures = {m.id: pool.submit(work.mutant, m, "the end") for m in plan.mutants if m.id in wanted}
+        futures = {m.id: pool.submit(work.mutant, m, "the end") for m in plan.mutants if m.id in doubtful}
         try:
             tried.mutants.update({id_: future.result() for id_, future in futures.items()})
         except BaseException:
@@ -167,7 +170,7 @@ class _Work:
         return self.store.trial({"code": program.submission.digest, "only": only}, make)
 
     def mutant(self, mutant: Mutant, until: Until = "a failure") -> Trial:
-        """Any failure is enough, unless the audit needs to know more."""
+        """Stop at the first failure, unless the audit needs to know more."""
         submission = of_source(mutant.id, mutant.source.encode(), self.trials.grading.runner.exercise)
         make: Callable[[], Trial] = lambda: self.trials.try_(submission, until=until)  # noqa: E731
         return self.store.trial({"code": submission.digest, "until": until}, make)
@@ -184,9 +187,9 @@ def audit(
 ) -> Audit:
     """Audit one exercise.
 
-    A `quick` audit asks of each mistake only whether the checks that it names catch it, tries a sample of the mutants,
-    and leaves out the other right solutions and the seeds. With `most`, it tries at most this many mutants; with 0, it
-    does not say what each check is worth. Otherwise right solutions must be right with this many `seeds`. Raises what
+    A `quick` audit judges each mistake only by the checks that it names, tries a sample of the mutants, and leaves out
+    the other right solutions and the seeds. `most` limits the number of mutants; without mutants (0), the audit does
+    not say what each check is worth. A full audit tries the right solutions with this many `seeds`. Raises what
     `grading_of` raises.
     """
     began = time.monotonic()
@@ -199,7 +202,7 @@ def audit(
     plan = planned(trials, quick, most, seeds)
     tried = try_all(plan, trials, store, progress)
     if not plan.quick:
-        spin_on(plan, tried, trials, store)
+        run_on(plan, tried, trials, store)
     tidy(exercise.name)
 
     mutants = tuple(result_of(mutant, tried.mutants[mutant.id], reasons) for mutant in plan.mutants)

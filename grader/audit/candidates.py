@@ -1,4 +1,4 @@
-"""The programs with which an exercise is audited: its author's files, and the score that each must get."""
+"""The programs that an audit tries: the author's files and three baselines, and the score that each must get."""
 
 from __future__ import annotations
 
@@ -30,7 +30,10 @@ rclpy.spin(rclpy.create_node({name!r}))
 
 @dataclass(frozen=True)
 class Candidate:
-    """One program: its kind, its file, and for a mistake the checks that must catch it, and the line that says so."""
+    """One program, with its kind and its file.
+
+    For a mistake, `caught_by` names the checks that must catch it, and `line` is where its file names them.
+    """
 
     kind: Literal["solution", "right", "mistake", "nothing"]
     name: str
@@ -41,15 +44,15 @@ class Candidate:
     line: int = 1
 
 
-def right_ones(exercise: Exercise) -> list[Candidate]:
-    """The solution, then every other right one."""
+def right_solutions(exercise: Exercise) -> list[Candidate]:
+    """Return the solution, then the other right solutions."""
     solution = solution_file(exercise)
     files = [solution, *sorted((solution.parent / "right").glob("*.py"))]
     return [_candidate("solution" if file == solution else "right", file, exercise) for file in files]
 
 
 def mistakes(exercise: Exercise) -> list[Candidate]:
-    """Every usual mistake."""
+    """Return every usual mistake."""
     return [_of_mistake(mistake, exercise) for mistake in mistakes_of(exercise)]
 
 
@@ -60,7 +63,7 @@ def _of_mistake(mistake: Mistake, exercise: Exercise) -> Candidate:
 
 
 def baselines(exercise: Exercise) -> list[Candidate]:
-    """The programs that must get no points: the starter, an empty file, a node that does nothing."""
+    """Return the programs that must get no points: the starter, an empty file, and a node that does nothing."""
     solution = solution_file(exercise)
     sources = {
         "the starter": starter(solution.read_text(encoding="utf-8")),
@@ -89,7 +92,7 @@ def _docstring(text: str) -> str:
 
 @dataclass(frozen=True)
 class Seed:
-    """One seed, with the scenarios that differ from those with the audit's own seed."""
+    """One seed, with the scenarios that differ from those of the audit's own seed."""
 
     number: int
     scenarios: tuple[Scenario, ...]
@@ -97,28 +100,28 @@ class Seed:
 
 
 def seeds_of(trials: Trials, count: int) -> list[Seed]:
-    """The seeds that, with the audit's own, make `count`; none if no scenario has random values."""
+    """Return the seeds that make `count` together with the audit's own; none if no scenario has random values."""
     runner = trials.grading.runner
     usual = {scenario.digest for scenario in runner.scenarios}
-    found = []
+    seeds = []
     for number in range(1, count + 1):
         if number != runner.options.seed:
             scenarios = declared(runner.exercise, number)
             changed = tuple(scenario for scenario in scenarios if scenario.digest not in usual)
             if changed:
-                found.append(Seed(number, scenarios, changed))
-    return found
+                seeds.append(Seed(number, scenarios, changed))
+    return seeds
 
 
 def over_seed(trials: Trials, store: Store, seed: Seed, candidates: list[Candidate]) -> dict[str, Trial]:
-    """The trial of each candidate (the solution is the first) with this seed, by name."""
+    """Try each candidate (the solution is the first) with this seed. Return the trials by name."""
     made: dict[str, Recording] = {}
 
     def references() -> dict[str, Recording]:
         if not made:
             solution = candidates[0].submission
             made.update(trials.grading.references)
-            made.update(_spun(trials, solution, seed.randomised))
+            made.update(_recordings(trials, solution, seed.randomised))
         return made
 
     def trial_of(candidate: Candidate) -> Trial:
@@ -127,8 +130,8 @@ def over_seed(trials: Trials, store: Store, seed: Seed, candidates: list[Candida
         with_seed = replace(trials, grading=replace(grading, runner=runner, references=references()))
         if candidate is candidates[0]:
             return with_seed.trial_of_recordings(references())
-        spun = _spun(trials, candidate.submission, seed.randomised)
-        return with_seed.trial_of_recordings({**references(), **spun})
+        recordings = _recordings(trials, candidate.submission, seed.randomised)
+        return with_seed.trial_of_recordings({**references(), **recordings})
 
     digests = [scenario.digest for scenario in seed.randomised]
     return {
@@ -140,38 +143,38 @@ def over_seed(trials: Trials, store: Store, seed: Seed, candidates: list[Candida
     }
 
 
-def _spun(trials: Trials, submission: Submission, scenarios: tuple[Scenario, ...]) -> dict[str, Recording]:
-    """The recordings, by scenario.
+def _recordings(trials: Trials, submission: Submission, scenarios: tuple[Scenario, ...]) -> dict[str, Recording]:
+    """Return the recordings by scenario.
 
     A scenario with the same messages and steps as another is not run again, because only the numbers matter here.
     """
-    spun: list[Scenario] = []
+    done: list[Scenario] = []
     made: dict[str, Recording] = {}
     with trials.runs.process() as process:
         for scenario in scenarios:
-            like = next((one for one in spun if _content(one) == _content(scenario)), None)
+            like = next((other for other in done if _content(other) == _content(scenario)), None)
             if like:
                 made[scenario.name] = replace(made[like.name], scenario=scenario.name)
             else:
-                made[scenario.name] = trials.spin(submission, scenario, process)
-                spun.append(scenario)
+                made[scenario.name] = trials.run(submission, scenario, process)
+                done.append(scenario)
     return made
 
 
 def _content(scenario: Scenario) -> Scenario:
-    """The part of a scenario that its random numbers can change."""
+    """Return the part of a scenario that its random numbers can change."""
     return replace(scenario, name="", title="", computer_time="apart")
 
 
 def judged(candidate: Candidate, trial: Trial, checks: tuple[AuditedCheck, ...]) -> Judged:
-    """The result of a program."""
+    """Return the result of a program."""
     return Judged(candidate.name, candidate.kind, candidate.title, trial.failed, _score(trial, checks))
 
 
 def problems_of(
     candidates: list[Candidate], trials: dict[str, Trial], checks: tuple[AuditedCheck, ...], seed: int | None = None
 ) -> list[AuditProblem]:
-    """The results that are not as they must be; `seed` is set if it is not the default one."""
+    """Return the results that are not as they must be; `seed` is set if it is not the default one."""
     found: list[AuditProblem] = []
     for candidate in candidates:
         trial = trials[candidate.name]

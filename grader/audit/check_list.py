@@ -26,15 +26,15 @@ from grader.grading.reference import solution_file
 from grader.recording.recording import Recording
 
 if TYPE_CHECKING:
-    from grader.sandbox.fork_server import ForkServer  # the worker hands it in
+    from grader.sandbox.fork_server import ForkServer  # the worker passes it
 
 
 @dataclass(frozen=True)
 class AuditedCheck:
     """One check as its author wrote it.
 
-    `scenarios` are those that it uses, `rule` is the sentence of the task that it is based on. `seconds` is the time it
-    took to judge the solution. `file` and `line` say where the check is.
+    `scenarios` are those that it uses, and `rule` is the sentence of the task that it is based on. `seconds` is how
+    long it took to judge the solution. `file` and `line` say where the check is.
     """
 
     name: str
@@ -58,7 +58,7 @@ class ChecksJob:
     references: dict[str, Recording]
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
-        """A tuple of `AuditedCheck`. Raises `ExerciseError` if the files of checks are unusable."""
+        """Return a tuple of `AuditedCheck`. Raises `ExerciseError` if the files of checks are unusable."""
         ready()
         runs = {name: Run(self.exercise, recording, recording) for name, recording in self.references.items()}
         listing = _Listing(set(runs))
@@ -106,12 +106,12 @@ SHORTEST = 12
 
 
 def problem_of(check: AuditedCheck, found: str, fix: str) -> AuditProblem:
-    """Something to fix in a check."""
+    """Return a problem of this check."""
     return AuditProblem(check.file, check.line, found, fix, about=check.name)
 
 
 def problems_in_text(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
-    """Hidden checks without their sentence in the task; hints and titles that contain a line of the solution."""
+    """Return hidden checks without a sentence in the task, and hints and titles that contain a line of the solution."""
     return [*_rules(exercise, checks), *_giveaways(exercise, checks)]
 
 
@@ -129,15 +129,15 @@ def _rules(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditPr
 
 def _giveaways(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
     source = solution_file(exercise).read_text(encoding="utf-8")
-    given = {_squeezed(line) for line in starter(source).splitlines()}
+    in_starter = {_squeezed(line) for line in starter(source).splitlines()}
     lines = {line.split("  #")[0].strip() for line in source.splitlines() if not line.strip().startswith("#")}
-    secret = {_squeezed(line): line for line in lines if len(line) >= SHORTEST and _squeezed(line) not in given}
+    secret = {_squeezed(line): line for line in lines if len(line) >= SHORTEST and _squeezed(line) not in in_starter}
     found = []
     for check in checks:
         for name, text in (("hint", check.hint), ("title", check.title)):
             for squeezed, line in secret.items():
                 if squeezed in _squeezed(text):
-                    message = f"the {name} of {check.name} holds a line of the solution: {line}"
+                    message = f"the {name} of {check.name} contains a line of the solution: {line}"
                     fix = "Say where to look, not what to write."
                     found.append(problem_of(check, message, fix))
     return found

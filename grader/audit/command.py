@@ -63,7 +63,7 @@ def audit(
       spinbook audit                              every exercise of the course
       spinbook audit joint_velocity               one
       spinbook audit --quick                      a sample, in seconds
-      spinbook audit --solutions                  is each file of solutions/ graded as it has to be?
+      spinbook audit --solutions                  does each file of solutions/ get the grade it must?
       spinbook audit joint_velocity --html a.html how much each check catches, and what it costs
       spinbook audit joint_velocity --show fixed_dt   one of its usual mistakes, as a whole program
 
@@ -129,7 +129,7 @@ class _Audits:
 
     @property
     def nothing_to_fix(self) -> bool:
-        """Whether no exercise has a problem."""
+        """Return whether no exercise has a problem."""
         return not self.faulty and not any(result.problems for result in self.results)
 
     def run(self, folders: Sequence[Path]) -> None:
@@ -188,8 +188,8 @@ def _folder(exercise: str) -> Path:
 
 
 def _all_here() -> list[Path]:
-    """Every exercise of this folder's course, or of the nearest one above it."""
+    """Return every exercise of the course in this folder or the nearest one above it."""
     for course in (Path.cwd(), *Path.cwd().parents):
-        if found := sorted(file.parent for file in course.glob("exercises/*/exercise.toml")):
-            return found
+        if exercises := sorted(file.parent for file in course.glob("exercises/*/exercise.toml")):
+            return exercises
     raise click.UsageError("There are no exercises here. Start in a course's folder, the one with exercises/ in it.")

@@ -55,7 +55,7 @@ def _show_problem(problem: AuditProblem, console: Console) -> None:
 
 
 def _short(place: str) -> str:
-    """The path relative to the current folder."""
+    """Return the path relative to the current folder."""
     here = f"{Path.cwd()}/"
     return place.removeprefix(here)
 
@@ -73,7 +73,7 @@ def _checks(audit: Audit) -> Table:
             f"{check.score:.0%}",
             str(check.alone),
             str(len(check.mistakes)),
-            f"{check.spinning_s + check.judging_s:.2f}",
+            f"{check.running_s + check.judging_s:.2f}",
         )
     return table
 
@@ -98,7 +98,7 @@ def _score(audit: Audit) -> str:
 
 
 class ProgressBar:
-    """A bar on a terminal; otherwise, such as in a log, one line for each tenth."""
+    """A bar on a terminal. Elsewhere, such as in a log, it is one line for each tenth."""
 
     def __init__(self, console: Console, bar: Progress) -> None:
         self._console, self._bar = console, bar
@@ -107,13 +107,13 @@ class ProgressBar:
         self._done, self._total = 0, 0
 
     def begin(self, exercise: str, total: int) -> None:
-        """There are `total` things to try."""
+        """Start to count to `total`."""
         self._exercise, self._done, self._total = exercise, 0, total
         if self._console.is_terminal:
             self._task = self._bar.add_task(exercise, total=total)
 
     def done(self) -> None:
-        """One of them is tried."""
+        """Count one more."""
         self._done += 1
         if self._task is not None:
             self._bar.update(self._task, advance=1)
@@ -123,7 +123,7 @@ class ProgressBar:
 
 @contextmanager
 def on(console: Console) -> Iterator[ProgressBar]:
-    """A bar on this console, which disappears afterwards."""
+    """Show a bar on this console, and remove it afterwards."""
     columns = (
         TextColumn("{task.description:<40.40}"),
         BarColumn(),
@@ -135,7 +135,7 @@ def on(console: Console) -> Iterator[ProgressBar]:
 
 
 def write_json(audits: list[Audit], faults: list[AuditProblem], file: Path) -> None:
-    """Write everything the audits found, and the `faults` for which an exercise could not be audited."""
+    """Write everything that the audits found, and the `faults` because of which exercises could not be audited."""
     entries = {
         "audits": [_entries(audit) for audit in audits],
         "faults": [_problem_entries(fault) for fault in faults],
@@ -166,7 +166,7 @@ FATES: dict[Fate, tuple[str, str]] = {
 
 
 def write_html(audits: list[Audit], faults: list[AuditProblem], file: Path) -> None:
-    """Write a page about these audits, and the `faults` for which an exercise could not be audited.
+    """Write a page about these audits, and the `faults` because of which exercises could not be audited.
 
     It is one file, needs no network and runs no script.
     """
@@ -187,7 +187,7 @@ def write_html(audits: list[Audit], faults: list[AuditProblem], file: Path) -> N
 
 
 def _by_operator(audit: Audit) -> list[tuple[str, list[MutantResult]]]:
-    """The mutants, grouped by kind; those that no check catches come first."""
+    """Return the mutants, grouped by kind; those that no check catches come first."""
     order = list(FATES)
     groups: dict[str, list[MutantResult]] = {}
     for result in sorted(audit.mutants, key=lambda result: (result.mutant.operator, order.index(result.fate))):
@@ -196,6 +196,6 @@ def _by_operator(audit: Audit) -> list[tuple[str, list[MutantResult]]]:
 
 
 def _lines(diff: str) -> list[tuple[str, str]]:
-    """A diff's lines, without its header, each with its kind: `added`, `removed` or nothing."""
+    """Return a diff's lines, without its header, each with its kind: `added`, `removed` or nothing."""
     kinds = {"+": "added", "-": "removed"}
     return [(line, kinds.get(line[:1], "")) for line in diff.splitlines()[2:]]

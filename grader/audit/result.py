@@ -13,52 +13,56 @@ from groundwork.problem import Problem
 LEAST_SCORE = 0.95
 
 #: `caught`: a check failed. `equivalent`: it does not differ from the solution. `listed`: no check failed, and
-#: the author has judged it in survivors.toml. `survived`: no check failed, and nobody has said why.
+#: survivors.toml gives the author's reason. `survived`: no check failed, and there is no reason in the file.
 Fate = Literal["caught", "equivalent", "listed", "survived"]
 
 
 @dataclass(frozen=True)
 class RecordingDifference:
-    """One thing that differs in one scenario, in words."""
+    """One difference from the solution in one scenario, in words."""
 
     scenario: str
-    what: str
+    description: str
 
 
-#: Where a trial may stop early.
+#: When a trial ends.
 Until = Literal["a failure", "the end"]
 
 
 @dataclass(frozen=True)
 class Trial:
-    """The result of one program. `statuses` has the status of each check that could be judged, `findings` the findings
-    of those that failed or crashed. `spun` are the scenarios that were needed; `differences` are the differences from
-    the solution there, and `messages` is the number of messages that arrived. `seconds` is the duration of each run.
+    """The result of one program.
+
+    `statuses` has the status of each check that could be judged, `findings` those of the checks that failed or crashed.
+    `run_in` are the scenarios that were needed. `differences` are the differences from the solution there, and
+    `messages` is the number of messages that arrived. `seconds` is the duration of each run.
     """
 
     message: str
     statuses: dict[str, Status]
     findings: dict[str, Finding]
-    spun: tuple[str, ...]
+    run_in: tuple[str, ...]
     messages: int
     differences: tuple[RecordingDifference, ...]
     seconds: dict[str, float] = field(default_factory=dict, compare=False)
 
     @property
     def failed(self) -> tuple[str, ...]:
-        """The checks that failed, in their order."""
+        """Return the checks that failed, in their order."""
         return tuple(name for name, status in self.statuses.items() if status == "failed")
 
     @property
     def caught(self) -> bool:
-        """Whether any check failed."""
+        """Return whether any check failed."""
         return bool(self.failed)
 
 
 @dataclass(frozen=True)
 class AuditProblem(Problem):
-    """Something for the exercise's author to fix. `about` names the check, the mistake or the mutant. For a mutant,
-    `diff` is the change, and `evidence` says what differs.
+    """Something for the exercise's author to fix.
+
+    `about` names the check, the mistake or the mutant. For a mutant, `diff` is the change, and `evidence` says what
+    differs.
     """
 
     about: str = ""
@@ -68,7 +72,9 @@ class AuditProblem(Problem):
 
 @dataclass(frozen=True)
 class Judged:
-    """A program of the author's, and its result. `failed` are the checks that it did not pass, `score` its points."""
+    """One of the author's programs, and its result. `failed` are the checks that it did not pass, `score` is its
+    points.
+    """
 
     name: str
     kind: Literal["solution", "right", "mistake", "nothing"]
@@ -79,7 +85,7 @@ class Judged:
 
 @dataclass(frozen=True)
 class MutantResult:
-    """The result of one mutant. `evidence` says how it was caught, or in what it does not differ."""
+    """The result of one mutant. `evidence` says how it was caught, or why it counts as equal to the solution."""
 
     mutant: Mutant
     fate: Fate
@@ -90,10 +96,12 @@ class MutantResult:
 
 @dataclass(frozen=True)
 class CheckResult:
-    """What one check is worth. `kills` are the mutants that it catches, `score` is their share of all that differ from
-    the solution, between 0 and 1; `alone` are those that no other check catches, as far as they were run. `mistakes`
-    are those of the author's that it catches. `judging_s` is how long it takes to judge the solution, `spinning_s` is
-    how long its scenarios run, `alone_s` the same for those that no other check uses; all in seconds.
+    """What one check is worth.
+
+    `kills` are the mutants that it catches, and `score` is their share of all that differ from the solution, between 0
+    and 1. `alone` are those that no other check catches, as far as they were run. `mistakes` are the author's mistakes
+    that it catches. All times are in seconds: `judging_s` to judge the solution, `running_s` to run its scenarios,
+    `alone_s` to run those that no other check uses.
     """
 
     name: str
@@ -107,20 +115,19 @@ class CheckResult:
     mistakes: tuple[str, ...]
     scenarios: tuple[str, ...]
     judging_s: float
-    spinning_s: float
+    running_s: float
     alone_s: float
 
 
 @dataclass(frozen=True)
 class ScenarioResult:
-    """What one scenario costs: `spinning_s` is the median duration of its runs, `simulated_s` how long it lasts for a
-    node."""
+    """What one scenario costs: `running_s` is the median duration of a run, `simulated_s` its simulated time."""
 
     name: str
     title: str
     messages: int
     simulated_s: float
-    spinning_s: float
+    running_s: float
     checks: int
 
 
@@ -128,8 +135,8 @@ class ScenarioResult:
 class Audit:
     """The audit of one exercise.
 
-    `sampled` is whether not all mutants were tried, `seeds` is the number of seeds with which the randomised scenarios
-    were run, `made` and `kept` are the numbers of programs that were tried now and reused from earlier runs.
+    `sampled` says that not all mutants were tried. `seeds` is the number of seeds that the randomised scenarios were
+    run with. `made` and `kept` count the programs tried now and those reused from earlier audits.
     """
 
     exercise: str
@@ -148,27 +155,27 @@ class Audit:
     kept: int
 
     def count(self, fate: Fate) -> int:
-        """The number of mutants with this result."""
+        """Return the number of mutants with this result."""
         return sum(result.fate == fate for result in self.mutants)
 
     @property
     def different(self) -> int:
-        """The number of mutants that differ from the solution."""
+        """Return the number of mutants that differ from the solution."""
         return different(self.mutants)
 
     @property
     def score(self) -> float:
-        """The part of those that is caught, between 0 and 1."""
+        """Return the share of those that is caught, between 0 and 1."""
         return score_of(self.mutants)
 
 
 def different(mutants: tuple[MutantResult, ...]) -> int:
-    """The number of mutants that differ from the solution."""
+    """Return the number of mutants that differ from the solution."""
     return sum(result.fate != "equivalent" for result in mutants)
 
 
 def score_of(mutants: tuple[MutantResult, ...]) -> float:
-    """The part of those that is caught, between 0 and 1; 1 where there are none."""
+    """Return the share of those that is caught, between 0 and 1; 1 if there are none."""
     many = different(mutants)
     return sum(result.fate == "caught" for result in mutants) / many if many else 1.0
 
@@ -177,7 +184,7 @@ class AuditProgress(Protocol):
     """Shows the progress of an audit."""
 
     def begin(self, exercise: str, total: int) -> None:
-        """There are `total` things to try."""
+        """Start to count to `total`."""
 
     def done(self) -> None:
-        """One of them is tried."""
+        """Count one more."""

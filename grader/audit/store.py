@@ -1,6 +1,6 @@
 """Keeps the results of audits: what programs published, and how they were judged.
 
-After a change to a check no program has to run again; what has been judged is not judged again while nothing that it
+After a change to a check, no program has to run again. A program is judged again only if something that its verdict
 depends on has changed.
 """
 
@@ -31,11 +31,11 @@ from grader.workers.pool import Worker
 from groundwork.files import write_if_changed
 
 #: The parts of the grader that decide what a recording contains.
-SPINNING = ("workers", "exercise", "recording", "runner", "sandbox", "scenario", "submission")
-SPINNING_FILES = ("grading/running.py",)
+RECORDING = ("workers", "exercise", "recording", "runner", "sandbox", "scenario", "submission")
+RECORDING_FILES = ("grading/scenario_runner.py",)
 
 #: What decides a trial, besides what decides a recording.
-JUDGING = ("checking", "audit/trial.py", "audit/listing.py")
+JUDGING = ("checking", "audit/trial.py", "audit/check_list.py")
 
 #: Entries that were not used for this long are deleted.
 KEPT_DAYS = 30
@@ -49,7 +49,7 @@ class AuditStopped(Exception):
 
 
 class RecordedRuns:
-    """The kept recordings of one exercise's programs. Once `stopped` is set, no more are made."""
+    """The stored recordings of one exercise's programs. Once `stopped` is set, no more are made."""
 
     def __init__(self, grading: Grading) -> None:
         self.stopped = threading.Event()
@@ -57,20 +57,21 @@ class RecordedRuns:
         self._folder = audit_folder(grading.runner.exercise.name)
 
     def process(self) -> Worker:
-        """A process for the spins of one program: what it has made ready for one, it has ready for the next."""
+        """Return a process for the runs of one program, so that what it loads for one run is there for the next."""
         return self._grading.runner.workers.reserve()
 
-    def spin(self, submission: Submission, scenario: Scenario, turn: int, process: Worker) -> Recording:
-        """The recording of a program in one scenario, kept or made now; `turn` chooses the core that it runs on.
+    def run(self, submission: Submission, scenario: Scenario, turn: int, process: Worker) -> Recording:
+        """Return the recording of a program in one scenario, stored or made now; `turn` chooses the core that it runs
+        on.
 
-        Raises `HostFault` if the machine or the grader is at fault, `AuditStopped` when no more recordings are wanted.
+        Raises `HostFault` if the machine or the grader is at fault, and `AuditStopped` once the audit is stopped.
         """
         runner = self._grading.runner
         made_by = (str(runner.isolation), engine())
         exercise = runner.exercise
         interface = (exercise.topics, exercise.endpoints, exercise.parameters, exercise.programs, exercise.node_name)
         key = (submission.digest, scenario.digest, interface, exercise.reference_node, *made_by)
-        file = self._folder / f"{hashlib.sha256(repr(key).encode()).hexdigest()[:32]}.spin.gz"
+        file = self._folder / f"{hashlib.sha256(repr(key).encode()).hexdigest()[:32]}.run.gz"
         try:
             kept = from_json(gzip.decompress(file.read_bytes()).decode())[scenario.name]
             file.touch()
@@ -86,12 +87,12 @@ class RecordedRuns:
 
 
 def audit_folder(exercise: str) -> Path:
-    """The folder in which an exercise's audits keep their results."""
+    """Return the folder in which an exercise's audits keep their results."""
     return cache_folder().parent / "audit" / exercise
 
 
 def keep(file: Path, content: bytes) -> None:
-    """Write a file completely. If it can't be written, it is made again each time."""
+    """Write a whole file. If it can't be written, its content is made again each time."""
     with contextlib.suppress(OSError):
         write_if_changed(file, content)
 
@@ -107,19 +108,19 @@ def tidy(exercise: str) -> None:
 
 @cache
 def engine(also: tuple[str, ...] = ()) -> str:
-    """A digest of our code that decides what a recording contains, and of the versions of Python, ROS and the
+    """Return a digest of our code that decides what a recording contains, and of the versions of Python, ROS and the
     middleware.
 
     `also` names further files and folders, by their paths below grader/.
     """
-    named = [GRADER / name for name in (*SPINNING_FILES, *SPINNING, *also)]
+    named = [GRADER / name for name in (*RECORDING_FILES, *RECORDING, *also)]
     files = [file for path in named for file in (sorted(path.rglob("*.py")) if path.is_dir() else [path])]
     others = {name: version for name, version in versions().items() if name != "grader"}
     return f"{digest_of(files)} {json.dumps(others, sort_keys=True)}"
 
 
 class Store:
-    """The kept trials of one exercise. `made` and `kept` count those made now and those reused."""
+    """The stored trials of one exercise. `made` and `kept` count those made now and those reused."""
 
     def __init__(self, runner: ScenarioRunner) -> None:
         exercise = runner.exercise
@@ -136,7 +137,7 @@ class Store:
         self.kept = 0
 
     def trial(self, key: dict[str, Any], make: Callable[[], Trial]) -> Trial:
-        """The trial for `key`, kept or made now."""
+        """Return the trial for `key`, stored or made now."""
         text = json.dumps({**self._common, **key}, sort_keys=True)
         file = self._folder / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.json"
         try:
@@ -159,7 +160,7 @@ def _from_json(text: str) -> Trial:
         **{
             **entries,
             "findings": {name: Finding(**finding) for name, finding in entries["findings"].items()},
-            "spun": tuple(entries["spun"]),
+            "run_in": tuple(entries["run_in"]),
             "differences": tuple(RecordingDifference(**difference) for difference in entries["differences"]),
         }
     )

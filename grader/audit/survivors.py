@@ -24,12 +24,12 @@ NOW = {
 
 
 def survivors_file(exercise: Exercise) -> Path:
-    """The file that lists them."""
+    """Return the file that lists them."""
     return exercise.folder / "survivors.toml"
 
 
 def listed(exercise: Exercise) -> dict[str, str]:
-    """Mutant's id -> why it is right that no check catches it. Raises `ExerciseError` if the file can't be read."""
+    """Return the author's reasons, by mutant id. Raises `ExerciseError` if the file can't be read."""
     file = survivors_file(exercise)
     if not file.exists():
         return {}
@@ -47,7 +47,7 @@ def listed(exercise: Exercise) -> dict[str, str]:
 
 
 def stale(exercise: Exercise, reasons: dict[str, str], fates: dict[str, Fate]) -> list[AuditProblem]:
-    """The entries that are out of date."""
+    """Return the entries that are out of date."""
     file = survivors_file(exercise)
     lines = file.read_text(encoding="utf-8").splitlines() if reasons else []
     found = []
@@ -64,31 +64,31 @@ QUESTION = "Is this a right solution? Then list it in {}, as mutant = {!r}, with
 
 
 def result_of(mutant: Mutant, trial: Trial, reasons: dict[str, str]) -> MutantResult:
-    """The result of one mutant, with the evidence."""
+    """Return the result of one mutant, with the evidence."""
     if trial.caught:
         first = trial.failed[0]
         message = trial.message or trial.findings[first].text
         return MutantResult(mutant, "caught", trial.failed, f"{first}: {message}")
     if not trial.differences:
-        same = f"all {trial.messages} messages of {len(trial.spun)} scenarios, the graph and the end are the solution's"
-        return MutantResult(mutant, "equivalent", (), same)
+        messages = f"all {trial.messages} messages of {len(trial.run_in)} scenarios"
+        return MutantResult(mutant, "equivalent", (), f"{messages}, the graph and the end are the solution's")
     fate: Fate = "listed" if mutant.id in reasons else "survived"
     return MutantResult(mutant, fate, (), _evidence(trial), reasons.get(mutant.id, ""))
 
 
 def _evidence(trial: Trial) -> str:
-    """The differences that no check catches, each with the scenarios in which it was seen."""
-    seen = Counter(difference.what for difference in trial.differences)
-    first = {difference.what: difference.scenario for difference in reversed(trial.differences)}
+    """Return the differences that no check catches, each with the scenarios in which it was seen."""
+    seen = Counter(difference.description for difference in trial.differences)
+    first = {difference.description: difference.scenario for difference in reversed(trial.differences)}
     text = [
-        f"{what} (in {first[what]}{f' and {count - 1} more' if count > 1 else ''})"
-        for what, count in seen.most_common(4)
+        f"{text} (in {first[text]}{f' and {count - 1} more' if count > 1 else ''})"
+        for text, count in seen.most_common(4)
     ]
     return "; ".join([*text, *([f"and {len(seen) - 4} more"] if len(seen) > 4 else [])])
 
 
 def problems_of_survivors(exercise: Exercise, results: tuple[MutantResult, ...]) -> list[AuditProblem]:
-    """A question for each mutant that no check catches and nobody has judged."""
+    """Return a question for each mutant that no check catches and that has no reason."""
     file = survivors_file(exercise)
     return [
         AuditProblem(

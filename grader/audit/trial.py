@@ -21,10 +21,12 @@ from grader.workers.pool import Worker
 
 
 def differences(recording: Recording, reference: Recording) -> tuple[RecordingDifference, ...]:
-    """Every difference that can be seen from outside a node: messages, graph, how it ended. Its log does not count."""
+    """Return every difference that can be seen from outside a node: messages, graph, how it ended. Its log does not
+    count.
+    """
     found: list[str] = []
     if recording.ending != reference.ending:
-        found.append(f"it ended otherwise: {recording.ending.message or recording.ending.traceback or 'not in time'}")
+        found.append(f"it ended differently: {recording.ending.message or recording.ending.traceback or 'not in time'}")
     if recording.nodes != reference.nodes:
         found.append(f"nodes {_named(recording.nodes)}, the solution's {_named(reference.nodes)}")
     found += _ends(recording, reference)
@@ -32,7 +34,7 @@ def differences(recording: Recording, reference: Recording) -> tuple[RecordingDi
         found.append("its clock differs")
     found += _messages(recording.received, reference.received)
     found += _events(recording, reference)
-    return tuple(RecordingDifference(recording.scenario, what) for what in found)
+    return tuple(RecordingDifference(recording.scenario, text) for text in found)
 
 
 def _named(names: tuple[str, ...]) -> str:
@@ -61,7 +63,7 @@ def _messages(mine: tuple[ReceivedMessage, ...], its: tuple[ReceivedMessage, ...
 
 
 def _events(recording: Recording, reference: Recording) -> list[str]:
-    """The differences in calls, goals, parameters and ends of programs."""
+    """Return the differences in calls, goals, parameters and ends of programs."""
     found = []
     events: tuple[tuple[str, Sequence[Any], Sequence[Any]], ...] = (
         ("calls of services", recording.calls, reference.calls),
@@ -79,7 +81,7 @@ def _events(recording: Recording, reference: Recording) -> list[str]:
 
 
 def _text(value: Any) -> str:
-    """NaN is not equal to itself; its text is."""
+    """Return the value as text: NaN is not equal to itself, but its text is."""
     return json.dumps(value, sort_keys=True)
 
 
@@ -93,20 +95,22 @@ class Trials:
     _turn: itertools.count[int] = field(default_factory=itertools.count, compare=False)
 
     def try_(self, submission: Submission, only: tuple[str, ...] = (), until: Until = "the end") -> Trial:
-        """Run and judge a program. The first scenario comes first, then the others, shorter ones before longer ones. A
-        scenario is run only if an unblocked check needs it. That changes no verdict, because a blocked check never
-        looks at its recording. With `only`, only these checks count. With `until`, the trial ends as soon as a check
-        fails; then nothing is known about the checks that were not judged. A program that no check fails runs through
+        """Run and judge a program.
+
+        The exercise's first scenario comes first, then the others, the shorter ones before the longer ones. A scenario
+        is run only if an unblocked check needs it. That changes no verdict, because a blocked check never looks at its
+        recording. With `only`, only these checks count. With `until="a failure"`, the trial ends as soon as a check
+        fails, and nothing is known about the checks that were not judged. A program that no check fails runs through
         every scenario. Raises `HostFault` if the machine or the grader is at fault.
         """
         if not submission.program:
             return self._nothing(submission.problem)
         with self.runs.process() as process:
-            return self._tried(lambda scenario: self.spin(submission, scenario, process), only, until)
+            return self._tried(lambda scenario: self.run(submission, scenario, process), only, until)
 
-    def _tried(self, spin: Callable[[Scenario], Recording], only: tuple[str, ...], until: Until) -> Trial:
+    def _tried(self, run: Callable[[Scenario], Recording], only: tuple[str, ...], until: Until) -> Trial:
         first = self.grading.runner.scenarios[0]
-        recordings = {first.name: spin(first)}
+        recordings = {first.name: run(first)}
         if recordings[first.name].ending.outcome != "completed":
             return self._broke_off(recordings)
         wanted_checks = self._with_what_they_depend_on(only)
@@ -115,16 +119,16 @@ class Trials:
             decided = tuple(check for check in self.checks if set(check.scenarios) <= set(recordings))
             failed = any(verdicts[check.name].status == "failed" for check in decided)
             caught = failed and until == "a failure"
-            wanted = [] if caught else self._wanted(wanted_checks, verdicts, recordings)
-            if not wanted and not failed and not only:
-                wanted = [one for one in self._shorter_first() if one.name not in recordings]
-            if not wanted:
+            needed = [] if caught else self._needed(wanted_checks, verdicts, recordings)
+            if not needed and not failed and not only:
+                needed = [other for other in self._shorter_first() if other.name not in recordings]
+            if not needed:
                 return self._trial("", recordings, verdicts, decided)
-            for scenario in wanted[: 1 if until == "a failure" else None]:
-                recordings[scenario.name] = spin(scenario)
+            for scenario in needed[: 1 if until == "a failure" else None]:
+                recordings[scenario.name] = run(scenario)
 
     def _broke_off(self, recordings: dict[str, Recording]) -> Trial:
-        """The trial of a program that does not complete the first scenario: it has run through no other."""
+        """Return the trial of a program that does not complete the first scenario: it was run in no other."""
         [first] = recordings.values()
         ending = Ending(first.ending.outcome, first.ending.message)
         names = [scenario.name for scenario in self.grading.runner.scenarios]
@@ -135,18 +139,18 @@ class Trials:
         return sorted(self.grading.runner.scenarios, key=lambda scenario: scenario.seconds)
 
     def judge(self, recordings: dict[str, Recording], references: dict[str, Recording]) -> dict[str, Verdict]:
-        """The verdicts on these recordings, by check."""
+        """Return the verdicts on these recordings, by check."""
         verdicts = self.grading.runner.judge(recordings, references)
         return {verdict.name: verdict for verdict in verdicts}
 
     def trial_of_recordings(self, recordings: dict[str, Recording]) -> Trial:
-        """The trial that these recordings of every scenario make."""
+        """Return the trial that these recordings of every scenario make."""
         return self._trial("", recordings, self._judged(recordings), self.checks)
 
-    def spin(self, submission: Submission, scenario: Scenario, process: Worker) -> Recording:
-        """The recording of one scenario. Raises `HostFault` where the machine or we are at fault."""
-        # Turn by turn on each core: a program stays on the one it is given.
-        return self.runs.spin(submission, scenario, next(self._turn), process)
+    def run(self, submission: Submission, scenario: Scenario, process: Worker) -> Recording:
+        """Return the recording of one scenario. Raises `HostFault` if the machine or the grader is at fault."""
+        # Programs take turns on the cores; each stays on the core where it starts.
+        return self.runs.run(submission, scenario, next(self._turn), process)
 
     def _nothing(self, problem: str) -> Trial:
         scenarios = self.grading.runner.scenarios
@@ -158,31 +162,32 @@ class Trials:
         return self.judge(recordings, self.grading.references)
 
     def _judged_where_different(self, recordings: dict[str, Recording]) -> dict[str, Verdict]:
-        """The verdicts of the checks whose scenarios were run. If nothing differs from the solution, every check
-        passes, as it does for the solution.
+        """Return the verdicts of the checks whose scenarios were run.
+
+        If nothing differs from the solution, every check passes, as it does for the solution.
         """
         references = self.grading.references
         if not any(differences(recording, references[name]) for name, recording in recordings.items()):
             return {c.name: Verdict(c.name, c.title, "passed", c.points, c.hint) for c in self.checks}
-        missing = Ending("did-not-start", "not spun")
+        missing = Ending("did-not-start", "not run")
         places = {
             name: Recording(name, (), (), (), (), False, missing) for name in references if name not in recordings
         }
         return self._judged({**recordings, **places})
 
-    def _wanted(
+    def _needed(
         self, names: set[str], verdicts: dict[str, Verdict], recordings: dict[str, Recording]
     ) -> list[Scenario]:
-        """The scenarios that unblocked checks need."""
-        spun = set(recordings)
-        passed = {c.name for c in self.checks if set(c.scenarios) <= spun and verdicts[c.name].status == "passed"}
+        """Return the scenarios that unblocked checks need."""
+        done = set(recordings)
+        passed = {c.name for c in self.checks if set(c.scenarios) <= done and verdicts[c.name].status == "passed"}
         asked = {
             scenario
             for check in self.checks
             if check.name in names and set(check.depends) <= passed
             for scenario in check.scenarios
         }
-        return [scenario for scenario in self._shorter_first() if scenario.name in asked - spun]
+        return [scenario for scenario in self._shorter_first() if scenario.name in asked - done]
 
     def _with_what_they_depend_on(self, only: tuple[str, ...]) -> set[str]:
         if not only:
@@ -217,7 +222,7 @@ class Trials:
             message=message,
             statuses=statuses,
             findings=findings,
-            spun=tuple(recordings),
+            run_in=tuple(recordings),
             messages=sum(len(recording.received) for recording in recordings.values()),
             differences=tuple(d for name, r in recordings.items() for d in differences(r, references[name])),
             seconds={name: recording.seconds for name, recording in recordings.items()},

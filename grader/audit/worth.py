@@ -14,44 +14,47 @@ from grader.scenario.scenario import Scenario
 #: A message without an expected value must say in words what was expected.
 WORDS = re.compile(r"expect|must|should|has to|have to|was to|were to|instead of|may not", re.IGNORECASE)
 
-#: How many mutants are run further for each check that has not failed yet, and for each two that look alike.
+#: How many mutants are run through all scenarios for each check that has not failed yet, and for each two that look
+#: alike.
 EACH = 4
 
 
 def problems_of_checks(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
-    """`trials` are those of mistakes and of mutants that differ from the solution, by name."""
+    """Return the problems of checks; `trials` are those of mistakes and of mutants that differ from the solution, by
+    name.
+    """
     return [*_that_never_fail(checks, trials), *_that_fail_together(checks, trials), *messages(checks, trials)]
 
 
 def never_failing(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditedCheck]:
-    """The checks that failed in none of these trials."""
+    """Return the checks that failed in none of these trials."""
     failed = {name for trial in trials.values() for name in trial.failed}
     return [check for check in checks if check.name not in failed]
 
 
 def alike(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[tuple[AuditedCheck, AuditedCheck, int]]:
-    """Pairs of checks that always failed together, with the number of times."""
+    """Return pairs of checks that always failed together, with the number of times."""
     found = []
-    for one, other in combinations(checks, 2):
+    for check, other in combinations(checks, 2):
         # If only one of them was judged, nothing is known about the other.
-        pairs = [(trial.statuses.get(one.name), trial.statuses.get(other.name)) for trial in trials.values()]
+        pairs = [(trial.statuses.get(check.name), trial.statuses.get(other.name)) for trial in trials.values()]
         judged = [pair for pair in pairs if set(pair) <= {"passed", "failed"}]
         many = judged.count(("failed", "failed"))
         if many and all(first == second for first, second in judged):
-            found.append((one, other, many))
+            found.append((check, other, many))
     return found
 
 
-def worth_spinning_on(
+def worth_running_on(
     checks: tuple[AuditedCheck, ...], trials: dict[str, Trial], mutants: dict[str, Trial]
 ) -> list[str]:
-    """The mutants that may show that a check can fail, or that two are not alike: a few for each such doubt.
+    """Return the mutants that may show that a check can fail, or that two are not alike: a few for each such doubt.
 
     They were run until a check caught them, so nothing is known yet about the checks of other scenarios.
     """
-    wanted: set[str] = set()
+    chosen: set[str] = set()
     for check in never_failing(checks, trials):
-        wanted.update([id_ for id_, trial in mutants.items() if _undecided(check, trial)][:EACH])
+        chosen.update([id_ for id_, trial in mutants.items() if _undecided(check, trial)][:EACH])
     for one, other, _ in alike(checks, trials):
         tells = [
             id_
@@ -59,8 +62,8 @@ def worth_spinning_on(
             for failed, open_ in ((one, other), (other, one))
             if failed.name in trial.failed and _undecided(open_, trial)
         ]
-        wanted.update(tells[:EACH])
-    return [id_ for id_ in mutants if id_ in wanted]
+        chosen.update(tells[:EACH])
+    return [id_ for id_ in mutants if id_ in chosen]
 
 
 def _undecided(check: AuditedCheck, trial: Trial) -> bool:
@@ -83,7 +86,7 @@ def _that_fail_together(checks: tuple[AuditedCheck, ...], trials: dict[str, Tria
     return [
         problem_of(
             other,
-            f"{one.name} and {other.name} always fail together ({many} times): Do both judge the same thing?",
+            f"{one.name} and {other.name} always fail together ({many} times): do both judge the same thing?",
             fix,
         )
         for one, other, many in alike(checks, trials)
@@ -91,7 +94,7 @@ def _that_fail_together(checks: tuple[AuditedCheck, ...], trials: dict[str, Tria
 
 
 def problems_of_broken(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
-    """Checks that crashed on what some program published; `trials` are those of all programs, by name."""
+    """Return the checks that crashed on what some program published; `trials` are those of all programs, by name."""
     found = []
     for check in checks:
         for name, trial in trials.items():
@@ -104,12 +107,15 @@ def problems_of_broken(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial
 
 
 def _broke_off(finding: Finding) -> bool:
-    """Whether the program did not come through the scenario: then the message is why, and not what a check wanted."""
+    """Return whether the program did not complete the scenario.
+
+    The finding's text then says why, not what a check expected.
+    """
     return bool(finding.scenario) and finding.message is None
 
 
 def messages(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
-    """Checks that failed and did not say what they expected."""
+    """Return the checks that failed and did not say what they expected."""
     found = []
     for check in checks:
         for name, trial in trials.items():
@@ -124,14 +130,14 @@ def messages(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list
 def scenario_results(
     scenarios: tuple[Scenario, ...], checks: tuple[AuditedCheck, ...], trials: list[Trial]
 ) -> tuple[ScenarioResult, ...]:
-    """What each scenario costs, over all its runs in these trials."""
+    """Return what each scenario costs, over all its runs in these trials."""
     return tuple(
         ScenarioResult(
             name=scenario.name,
             title=scenario.title,
             messages=len(scenario.messages),
             simulated_s=scenario.seconds,
-            spinning_s=median([t.seconds[scenario.name] for t in trials if scenario.name in t.seconds] or [0.0]),
+            running_s=median([t.seconds[scenario.name] for t in trials if scenario.name in t.seconds] or [0.0]),
             checks=sum(scenario.name in check.scenarios for check in checks),
         )
         for scenario in scenarios
@@ -144,8 +150,8 @@ def check_results(
     mutants: dict[str, Trial],
     mistakes: dict[str, Trial],
 ) -> tuple[CheckResult, ...]:
-    """What each check is worth; `mutants` are the trials of those that differ from the solution."""
-    seconds = {scenario.name: scenario.spinning_s for scenario in scenarios}
+    """Return what each check is worth; `mutants` are the trials of those that differ from the solution."""
+    seconds = {scenario.name: scenario.running_s for scenario in scenarios}
     asked_by_one = {scenario.name for scenario in scenarios[1:] if scenario.checks == 1}
     kills = {check.name: sum(check.name in trial.failed for trial in mutants.values()) for check in checks}
     return tuple(
@@ -161,7 +167,7 @@ def check_results(
             mistakes=tuple(name for name, trial in mistakes.items() if check.name in trial.failed),
             scenarios=check.scenarios,
             judging_s=check.seconds,
-            spinning_s=sum(seconds[name] for name in check.scenarios),
+            running_s=sum(seconds[name] for name in check.scenarios),
             alone_s=sum(seconds[name] for name in check.scenarios if name in asked_by_one),
         )
         for check in checks

@@ -14,21 +14,21 @@ from grader.recording.recording import Ending, Recording
 from grader.sandbox.program import Isolation, Limits
 from grader.submission.python_version import newer_name
 
-#: What happened. `host-error` is not the student's fault: it gives no score and has to be graded again. `missing` is a
-#: student who handed in nothing; `undecided` waits for the instructor to say which submission counts.
+#: What happened. `host-error` is not the student's fault: there is no score, and the submission must be graded again.
+#: `missing`: the student handed in nothing. `undecided`: the instructor must say which submission counts.
 Outcome = Literal["graded", "did-not-start", "crashed", "timed-out", "over-limit", "host-error", "missing", "undecided"]
 
 
 @dataclass(frozen=True)
 class Grade:
-    """One grading. Two gradings of one submission are equal: what may differ (timings, logs) does not count.
+    """One grading. Two gradings of one submission are equal, because timings and logs do not count.
 
-    `message` tells the student, or for a host error the instructor, what happened; `line` is the line of the student's
-    file that is to blame, if known.
-    `recordings` and `references` are what the node and the solution published, by scenario.
+    `message` says to the student, or for a host error to the instructor, what happened. `line` is the line of the
+    student's file that is to blame, if known. `recordings` and `references` are what the node and the solution
+    published, by scenario.
 
-    A `self_check` judges by the public checks only, and is not the official grade; `hidden_checks` and `hidden_points`
-    are how many more checks there are, and how many points they give together.
+    A `self_check` judges by the public checks only, and is not the official grade. `hidden_checks` and `hidden_points`
+    are the number of hidden checks, and the points that they give together.
     """
 
     exercise: str
@@ -53,12 +53,12 @@ class Grade:
 
     @property
     def has_score(self) -> bool:
-        """Whether the score counts: after a fault of ours, or before a decision, there is none."""
+        """Return whether there is a score: after a fault of ours, or before a decision, there is none."""
         return self.outcome not in ("host-error", "undecided")
 
     @property
     def full_marks(self) -> bool:
-        """Whether no points are missing."""
+        """Return whether no points are missing."""
         return self.outcome == "graded" and self.score == self.points
 
 
@@ -69,8 +69,8 @@ class Options:
     `seed` chooses the numbers of scenarios with random parts. `pace` is 1.0 for real time, None for as fast as
     possible.
 
-    `parallel` is how many scenarios run at once: more than there are cores, since much of a run is waiting.
-    `core` is the CPU to keep the program on; None lets its runs take turns on all of them.
+    `parallel` is the number of scenarios that run at once. It is higher than the number of cores, since much of a run
+    is waiting. `core` is the CPU that runs the program; None lets its runs take turns on all of them.
     """
 
     isolation: Isolation | None = None
@@ -101,7 +101,7 @@ ADVICE = (
     (re.compile(r"NameError"), "Is the name spelled as in its definition, and defined before this line?"),
     (re.compile(r"ZeroDivisionError"), "When is the number that this line divides by zero?"),
     (re.compile(r"KeyError|IndexError"), "When is this key or index missing?"),
-    (re.compile(r"AttributeError: 'NoneType'"), "What does it hold before the first message has arrived?"),
+    (re.compile(r"AttributeError: 'NoneType'"), "What is its value before the first message has arrived?"),
 )
 
 
@@ -130,7 +130,7 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
 
 @dataclass(frozen=True)
 class Student:
-    """Whose submission it is.
+    """The person whose submission it is.
 
     `id` is unique in the class and names the student's folder. `lms` keeps the values of a learning platform's export
     for the student, by the platform's own column names, so that grades can be imported there.
@@ -144,7 +144,7 @@ class Student:
 
 @dataclass(frozen=True)
 class Adjustment:
-    """Points that were added (or, below zero, taken) after grading, and why."""
+    """Points that were added after grading (or subtracted, below zero), and why."""
 
     kind: Literal["late", "override", "extra"]
     points: float
@@ -156,7 +156,7 @@ class Entry:
     """One student's submission, its grade, and what happened to the score.
 
     `file` is what was graded, relative to the class's folder. `submitted` is when it was submitted, with a time zone,
-    if known, and `submitted_from` is where that comes from: "timestamp.txt", "the CSV file", "the file's date" or the
+    if known. `submitted_from` is the source of that time: "timestamp.txt", "the CSV file", "the file's date" or the
     platform. A grade that was read back from results has no recordings.
     """
 
@@ -169,7 +169,9 @@ class Entry:
 
     @property
     def final(self) -> float | None:
-        """The points that count, at least 0; more than the exercise's with extra credit. None if there is no score."""
+        """Return the points that count, at least 0; with extra credit, more than the exercise's. None if there is no
+        score.
+        """
         if not self.grade.has_score and not any(a.kind == "override" for a in self.adjustments):
             return None
         return max(0.0, self.grade.score + sum(adjustment.points for adjustment in self.adjustments))

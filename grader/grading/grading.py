@@ -22,7 +22,7 @@ from grader.workers.pool import HostFault, WorkerPool
 
 @dataclass(frozen=True)
 class Grading:
-    """Everything needed to grade one exercise's submissions, verified: create it once and grade any number of them."""
+    """Everything needed to grade submissions of one exercise. Create it once, and grade any number of them."""
 
     runner: ScenarioRunner
     references: dict[str, Recording]
@@ -30,7 +30,9 @@ class Grading:
     """Set if only the public checks judge."""
 
     def grade(self, submission: Submission) -> Grade:
-        """Return the grade of one submission; a fault of the machine or ours becomes a `host-error`, never a score."""
+        """Return the grade of one submission. A fault of the machine or the grader becomes a `host-error`, never a
+        score.
+        """
         began = time.monotonic()
         if submission.question:
             return self._grade(submission, {}, (), "undecided", submission.question, began)
@@ -42,7 +44,7 @@ class Grading:
         return self._judged(submission, recordings, began)
 
     def judge(self, submission: Submission, recordings: dict[str, Recording]) -> Grade:
-        """Return the grade of a submission from its recordings, by scenario; nothing is run."""
+        """Return the grade of a submission from its recordings, by scenario, without running anything."""
         return self._judged(submission, recordings, time.monotonic())
 
     def _judged(self, submission: Submission, recordings: dict[str, Recording], began: float) -> Grade:
@@ -61,7 +63,7 @@ class Grading:
 
     def _recordings(self, submission: Submission) -> dict[str, Recording]:
         if submission.program:
-            return self.runner.spin(submission)
+            return self.runner.run(submission)
         ending = Ending("did-not-start", submission.problem)
         return {
             scenario.name: Recording(scenario.name, (), (), (), (), False, ending) for scenario in self.runner.scenarios
@@ -80,7 +82,7 @@ class Grading:
         none = outcome in ("host-error", "undecided")
         score = 0.0 if none else sum(verdict.earned for verdict in verdicts)
         points = sum(verdict.points for verdict in verdicts) or self.runner.exercise.points
-        # A newer Python is worth a word only if something is wrong.
+        # The version of Python matters only if something is wrong.
         newer = "" if outcome == "graded" and score == points else submission.newer_python
         return Grade(
             exercise=self.runner.exercise.name,
@@ -114,7 +116,7 @@ def grading_of(exercise: Exercise, options: Options, workers: WorkerPool) -> Gra
     In a student's copy, or with `exercise.public()`, only the public checks judge: a self-check. The code that runs is
     then the user's own, so it may also run without isolation; the grade's `isolation` says so.
     """
-    used = [*(topic.type for topic in exercise.topics), *(one.type for one in exercise.endpoints)]
+    used = [*(topic.type for topic in exercise.topics), *(endpoint.type for endpoint in exercise.endpoints)]
     workers.prepare_types(type_name.rpartition("/")[0].replace("/", ".") for type_name in used)
     if exercise.public_only or (exercise.solution_folder is None and exercise.public_file.exists()):
         isolation = _isolation_of_ones_own(options)

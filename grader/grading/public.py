@@ -29,13 +29,13 @@ from grader.workers.pool import WorkerPool
 if TYPE_CHECKING:
     from grader.checking.judge import Listed  # it imports pytest, which the judging process has anyway
 
-#: Changes when older versions can no longer read the file. Format 1 had messages only.
+#: Increase this when older versions can no longer read the file. Format 1 had messages only.
 FORMAT = 2
 
 
 @dataclass(frozen=True)
 class PublicPart:
-    """Public scenarios, the solution's recordings of them by name, and how many checks and points stay hidden."""
+    """Public scenarios, the solution's recordings of them by name, and the numbers of hidden checks and points."""
 
     scenarios: tuple[Scenario, ...]
     references: dict[str, Recording]
@@ -44,9 +44,9 @@ class PublicPart:
 
 
 def public_part(exercise: Exercise, options: Options, isolation: Isolation, workers: WorkerPool) -> PublicPart:
-    """Return the public part of an exercise: read in a student's copy, made from the solution if there is one.
+    """Return the public part of an exercise: read from a student's copy, or made from the solution if there is one.
 
-    Raises `ExerciseError` if there is something to fix for the author, or for anybody who changed a student's copy.
+    Raises `ExerciseError` if the author, or a student who changed the copy, has something to fix.
     """
     if exercise.solution_folder is None:
         return _read(exercise)
@@ -75,7 +75,7 @@ def to_json(exercise: Exercise, public: PublicPart) -> str:
 
 
 def modules_of(public: PublicPart) -> Iterator[Path]:
-    """Yield the author's files that the public scenarios need code of, once each. `to_json` refuses hidden ones."""
+    """Yield each of the author's files whose code the public scenarios need. `to_json` refuses hidden ones."""
     files = {code.file for scenario in public.scenarios for code in code_in(scenario)}
     yield from sorted(Path(file) for file in files if Path(file).name not in HIDDEN_FILES)
 
@@ -117,8 +117,8 @@ def _of_messages(scenario: Scenario) -> Any:
     """Return the recording in format 1, which older versions and web pages can read."""
     names = ("at", "topic", "type", "fields", "publisher")
     messages = [{name: getattr(message, name) for name in names} for message in scenario.messages]
-    found = {"name": scenario.name, "title": scenario.title, "messages": messages, "interrupt": scenario.interrupt}
-    return {**found, "computer_time": scenario.computer_time}
+    entries = {"name": scenario.name, "title": scenario.title, "messages": messages, "interrupt": scenario.interrupt}
+    return {**entries, "computer_time": scenario.computer_time}
 
 
 def _for_students(exercise: Exercise, scenario: Scenario) -> Any:

@@ -86,7 +86,7 @@ def solution_file(exercise: Exercise) -> Path:
 
 
 def reference_key(runner: ScenarioRunner) -> str:
-    """Return a digest of everything that gradings by `spinner` depend on, except the submissions."""
+    """Return a digest of everything that gradings by `runner` depend on, except the submissions."""
     exercise = runner.exercise
     key = {
         "solution": digest_of([solution_file(exercise)]),
@@ -110,11 +110,11 @@ def _made(runner: ScenarioRunner) -> dict[str, Recording]:
         starter(code.decode("utf-8"))
     except MarkerError as error:
         raise ExerciseError(file, str(error), "Fix the markers; the starter is made from them.") from None
-    recordings = runner.spin(of_source("the solution", code, runner.exercise))
+    recordings = runner.run(of_source("the solution", code, runner.exercise))
     for recording in recordings.values():
         ending = recording.ending
         if ending.outcome != "completed":
-            found = f"the solution does not come through the scenario {recording.scenario}: {ending.message}"
+            found = f"the solution does not complete the scenario {recording.scenario}: {ending.message}"
             raise ExerciseError(file, found, "Fix the solution or the scenario.", ending.line)
     return recordings
 

@@ -25,10 +25,10 @@ from grader.workers.shared import Sandbox
 
 
 class TaskQueue:
-    """Some runs that may be done in any order and at the same time. Any thread may call any method."""
+    """Runs that may be done in any order and at the same time. Any thread may call any method."""
 
     def __init__(self, jobs: Sequence[RunJob], workers: WorkerPool) -> None:
-        """The first of `jobs` is the first to be started."""
+        """Queue `jobs`; the first one is started first."""
         self._workers = workers
         self._waiting = deque(jobs)
         self._recordings: dict[str, Future[Recording]] = {job.scenario.name: Future() for job in jobs}
@@ -36,7 +36,7 @@ class TaskQueue:
 
     @property
     def left(self) -> int:
-        """How many have not been started yet."""
+        """Return how many have not been started yet."""
         return len(self._waiting)
 
     def work(self, core: int | None = None) -> None:
@@ -70,7 +70,7 @@ class TaskQueue:
 
 
 class WorkStealing:
-    """Where help is offered and found. Any thread may call any method."""
+    """Lets idle workers help those with a long queue. Any thread may call any method."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
@@ -79,7 +79,7 @@ class WorkStealing:
 
     @contextlib.contextmanager
     def wanted(self, queue: TaskQueue) -> Iterator[None]:
-        """Let others help with these runs inside the `with` block."""
+        """Let idle workers help with these runs inside the `with` block."""
         with self._changed:
             self._under_way.append(queue)
             self._changed.notify_all()
@@ -90,7 +90,7 @@ class WorkStealing:
                 self._under_way.remove(queue)
 
     def help(self, core: int | None) -> None:
-        """Help where the most runs are waiting, with the program on CPU `core`; return once this is closed."""
+        """Help the longest queue, with the program on CPU `core`. Return once this is closed."""
         while self._help_with_one(core):
             pass
 
@@ -112,8 +112,8 @@ class WorkStealing:
             self._changed.notify_all()
 
 
-#: What a submission may publish in all scenarios together (bytes). Each scenario gets an equal share, but not less than
-#: this. As Python objects, in the grader's memory, it takes about ten times as much.
+#: What a submission may publish in all scenarios together, and the least that each scenario gets of it (bytes). As
+#: Python objects, in the grader's memory, it takes about ten times as much.
 MOST_BYTES, LEAST_BYTES = 24_000_000, 1_000_000
 
 
@@ -127,16 +127,16 @@ class ScenarioRunner:
     options: Options
     workers: WorkerPool
     work_stealing: WorkStealing = field(default_factory=WorkStealing, compare=False)
-    """Lets others help, besides the `options.parallel` workers of each submission."""
+    """Lets idle workers help the `options.parallel` workers of each submission."""
 
-    def spin(self, submission: Submission) -> dict[str, Recording]:
+    def run(self, submission: Submission) -> dict[str, Recording]:
         """Return the recording of each scenario. Raises `HostFault` when there is none.
 
         The first scenario decides whether the program works at all; if it does not, no other is run, and every
         recording ends as that one does.
         """
         jobs = [self.job(submission, scenario, i) for i, scenario in enumerate(self.scenarios)]
-        # The longest first, so that none is left over at the end; the very first is needed at once.
+        # The first scenario is needed at once. Then the longest ones start first, so that none is left over at the end.
         queue = TaskQueue((jobs[0], *sorted(jobs[1:], key=lambda job: -job.scenario.size)), self.workers)
         with ThreadPoolExecutor(self.options.parallel) as pool, self.work_stealing.wanted(queue):
             for _ in range(self.options.parallel):
@@ -156,13 +156,13 @@ class ScenarioRunner:
         return self.workers.judge(JudgeJob(self.exercise, recordings, references, titles))
 
     def share(self, references: Iterable[Recording] = ()) -> None:
-        """Let the worker have what all jobs need: call it once, before the first submission."""
+        """Give the worker what all jobs need. Call this once, before the first submission."""
         sandbox = Sandbox((), self._hidden, self.options.limits.file_bytes)
         self.workers.share([self.exercise, *self.scenarios, *references, sandbox])
 
     @property
     def _hidden(self) -> tuple[Path, ...]:
-        """What no submission may see of this machine, wherever it lies."""
+        """Return the folders that no submission may see, wherever they are on this machine."""
         return self.exercise.folder, *([self.exercise.solution_folder] if self.exercise.solution_folder else [])
 
     def only(self, scenario: str) -> ScenarioRunner:

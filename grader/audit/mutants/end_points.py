@@ -1,4 +1,4 @@
-"""Mutation operators for a node's end points: its name, topics, types, quality of service, callbacks and timers."""
+"""Mutation operators for a node's endpoints: its name, topics, types, quality of service, callbacks and timers."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ENDS = {
     "ActionClient": {"type": (1, "action_type"), "topic": (2, "action_name")},
 }
 
-#: The type to use for an end point that does not belong to a topic, and the module of that type.
+#: The type to use for an endpoint that does not belong to a topic, and the module of that type.
 OTHER_TYPES = {
     "create_service": ("std_srvs.srv.Empty", "std_srvs.srv"),
     "create_client": ("std_srvs.srv.Empty", "std_srvs.srv"),
@@ -43,13 +43,13 @@ PROFILES = (
 
 
 def topic_name(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """An end has another topic: misspelled, below a namespace, or another of the exercise's."""
+    """Give an endpoint another topic: misspelled, in a namespace, or another one of the exercise."""
     place = _argument(node, "topic")
     if place is None or not isinstance(place.value, cst.SimpleString):
         return
     name = str(place.value.evaluated_value)
     exercise = program.exercise
-    known = [*(topic.name for topic in exercise.topics), *(one.name for one in exercise.endpoints)]
+    known = [*(topic.name for topic in exercise.topics), *(other.name for other in exercise.endpoints)]
     others = [other for other in known if other != name]
     word = "topic" if "qos" in ENDS[called(node)] else "name"
     for other in (f"{name}s", f"/robot{name}", f"~{name}", *others):
@@ -57,7 +57,7 @@ def topic_name(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def message_type(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """An end has another type."""
+    """Give an endpoint another type."""
     place = _argument(node, "type")
     if place is not None:
         other, module = OTHER_TYPES.get(called(node), ("std_msgs.msg.String", "std_msgs.msg"))
@@ -66,7 +66,7 @@ def message_type(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def quality_of_service(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """An end has another depth, is not reliable, is transient local."""
+    """Give an endpoint another depth, or make it best effort or transient local."""
     place = _argument(node, "qos")
     if place is not None:
         for new, what, imports in PROFILES:
@@ -74,14 +74,14 @@ def quality_of_service(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Ch
 
 
 def callback_left_out(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """Messages that arrive are not passed to the callback."""
+    """Do not pass messages to the callback."""
     place = _argument(node, "callback")
     if place is not None:
         yield Change(node, place.value, expression("lambda *_: None"), f"does not call {program.text(place.value)}")
 
 
 def timer_period(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A timer has twice or half its period."""
+    """Double or halve a timer's period."""
     place = _argument(node, "period")
     if place is not None:
         text = program.text(place.value)
@@ -90,7 +90,7 @@ def timer_period(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def node_name(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """The node has another name, or a namespace."""
+    """Give the node another name, or a namespace."""
     if isinstance(node, cst.Call) and called(node) in ("__init__", "create_node", "Node") and node.args:
         first = node.args[0]
         if isinstance(first.value, cst.SimpleString):
@@ -104,7 +104,7 @@ def node_name(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def one_publisher_a_message(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """The publisher is created again for each message."""
+    """Create the publisher again for each message."""
     if isinstance(node, cst.SimpleStatementLine) and "self.create_publisher(" in program.text(node):
         for callback in program.callbacks():
             if isinstance(callback.body, cst.IndentedBlock) and program.has_self(callback.body):
@@ -114,7 +114,7 @@ def one_publisher_a_message(node: cst.CSTNode, program: ParsedProgram) -> Iterat
 
 
 def publisher_on_other_topic(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """There is one more publisher, on another node's topic."""
+    """Add a publisher on another node's topic."""
     if isinstance(node, cst.SimpleStatementLine) and "self.create_publisher(" in program.text(node):
         kinds = {topic.name: topic.type for topic in program.exercise.inputs} | {"/clock": "rosgraph_msgs/msg/Clock"}
         for topic, kind in kinds.items():
@@ -125,7 +125,7 @@ def publisher_on_other_topic(node: cst.CSTNode, program: ParsedProgram) -> Itera
 
 
 def spinning(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """The node spins once; it shuts down although the signal has already done so."""
+    """Spin the node only once; shut down although the signal has already done so."""
     if isinstance(node, cst.Call) and isinstance(node.func, cst.Attribute):
         for old, new in (("spin", "spin_once"), ("try_shutdown", "shutdown")):
             if called(node) == old:
@@ -133,7 +133,7 @@ def spinning(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def _argument(node: cst.CSTNode, which: str) -> cst.Arg | None:
-    """An argument of a call that makes an end."""
+    """Return an argument of a call that creates an endpoint."""
     if not isinstance(node, cst.Call) or which not in ENDS.get(called(node), {}):
         return None
     position, keyword = ENDS[called(node)][which]

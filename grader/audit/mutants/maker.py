@@ -19,11 +19,11 @@ from grader.exercise.exercise import Exercise
 
 @dataclass(frozen=True)
 class Mutant:
-    """A program with one change to a right one.
+    """A copy of a right program with one change.
 
-    `id` names the change: it stays the same as long as the changed lines and the function around them do, whatever the
-    exercise, its class and its node are called. `operator` is the kind of change, `what` says it in words, `line` is
-    where, counted from 1. `source` is the whole program, `diff` the change as a unified diff.
+    `id` names the change. It stays the same as long as the changed lines and the function around them do, whatever the
+    names of the exercise, its class and its node are. `operator` is the kind of change, `what` describes it in words,
+    and `line` is where it is, counted from 1. `source` is the whole program, and `diff` the change as a unified diff.
     """
 
     id: str
@@ -50,8 +50,10 @@ OPERATORS: tuple[Operator, ...] = (
 
 
 def mutants_of(source: str, exercise: Exercise) -> tuple[Mutant, ...]:
-    """Every mutant of a program, in the order of its lines; none twice, and none that means the same to Python. All of
-    them compile, because Python itself reports the others to a student.
+    """Return every mutant of a program, in the order of its lines.
+
+    No mutant occurs twice, and none means the same to Python as the program. All of them compile, because Python itself
+    reports the others to a student.
     """
     program = ParsedProgram(source, exercise)
     seen = {_meaning(source)}
@@ -84,15 +86,15 @@ def _mutant(program: ParsedProgram, operator: str, change: Change, changed: str,
 
 
 def _without_names(text: str, exercise: Exercise) -> str:
-    """The text without the names that differ between two exercises made from one template: its class and its node."""
+    """Return the text without the names that differ between two exercises made from one template: class and node."""
     if exercise.class_name and not exercise.programs:
         text = re.sub(rf"\b{re.escape(exercise.class_name)}\b", "CLASS", text)
-    # A node's name may be a word that the program uses for something else, such as `goal`: it is one only in quotes.
+    # A node's name may be a word that the program uses for something else, such as `goal`: replace it only in quotes.
     return re.sub(rf"(?<=[\"']){re.escape(exercise.node_name)}", "node", text)
 
 
 def _meaning(source: str) -> str:
-    """The meaning of a program for Python, whatever its layout; empty if it does not compile."""
+    """Return what a program means to Python, whatever its layout; empty if it does not compile."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

@@ -22,7 +22,7 @@ WALL_CLOCK = "rclpy.clock.Clock().now().to_msg()"
 
 
 def other_clock(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """The node's clock or the computer's is used instead of a message's stamp."""
+    """Use the node's clock or the computer's instead of a message's stamp."""
     if isinstance(node, cst.Attribute) and program.text(node).endswith(".header.stamp"):
         if isinstance(program.parent(node), cst.AssignTarget):
             return
@@ -32,14 +32,14 @@ def other_clock(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def part_of_stamp(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """sec is used instead of nanosec, and the reverse."""
+    """Use sec instead of nanosec, and the reverse."""
     if isinstance(node, cst.Attribute) and node.attr.value in ("sec", "nanosec"):
         other = "nanosec" if node.attr.value == "sec" else "sec"
         yield Change(node, node.attr, cst.Name(other), f"takes {other} for {node.attr.value}")
 
 
 def header(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """When a header is copied, the stamp or the frame is dropped, or the stamp is the current time."""
+    """When a header is copied, drop the stamp or the frame, or stamp with the current time."""
     assignment = only_assignment(node)
     if assignment is None:
         return
@@ -53,7 +53,7 @@ def header(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def unit(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A field that has a unit is given in degrees, or in thousandths."""
+    """Give a field that has a unit in degrees, or in thousandths."""
     declared: tuple[Topic | ServiceOrAction, ...] = (*program.exercise.outputs, *program.exercise.endpoints)
     fields = {field for one in declared for field in one.units}
     value: cst.BaseExpression | None = None
@@ -77,7 +77,7 @@ _EACH = ("[math.degrees(v) for v in {}]", "[v * 1000.0 for v in {}]")
 
 
 def before_publishing(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """The message is changed before it is published: its stamp, its frame, its order, one entry too few or too many."""
+    """Change the message before it is published: its stamp, frame or order, or one entry too few or too many."""
     call = only_call(node, "publish")
     if call is None or not call.args or not isinstance(call.args[0].value, cst.Name):
         return
@@ -96,18 +96,18 @@ def before_publishing(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Cha
 
 
 def _lists(program: ParsedProgram, name: str) -> list[str]:
-    """The fields of the message `name` that are appended to or assigned."""
-    found: dict[str, None] = {}
+    """Return the fields of the message `name` that are appended to or assigned."""
+    fields: dict[str, None] = {}
     for node in program.nodes():
         if isinstance(node, cst.Call) and called(node) == "append":
             parts = program.text(node.func).split(".")
             if len(parts) == 3 and parts[0] == name:
-                found[parts[1]] = None
-    return list(found)
+                fields[parts[1]] = None
+    return list(fields)
 
 
 def publishing(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """Published in the wrong place: in the loop, before the message is filled, without its guard, every second time."""
+    """Publish in the wrong place: in the loop, before the message is filled, without its guard, every second time."""
     call = only_call(node, "publish")
     if call is None:
         return

@@ -18,12 +18,12 @@ ARITHMETIC = {
     "**": ("*",),
 }
 
-#: How many nanoseconds a second has, and what it is mistaken for.
+#: The nanoseconds of a second, and the numbers that they are mistaken for.
 NANOSECONDS, MISTAKEN = 10**9, (10**6, 10**3)
 
 
 def arithmetic(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """`a + b` becomes `a - b`, `a / b` becomes `a * b` and `a // b`, and so on."""
+    """Replace an operator: `a + b` with `a - b`, `a / b` with `a * b` and `a // b`, and so on."""
     if isinstance(node, cst.BinaryOperation):
         sign = program.text(node.operator).strip()
         for other in ARITHMETIC.get(sign, ()):
@@ -33,7 +33,7 @@ def arithmetic(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def operand(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """`a - b` becomes `b - a`, `a` alone, `b` alone."""
+    """Replace `a - b` with `b - a`, `a` alone and `b` alone."""
     if isinstance(node, cst.BinaryOperation):
         if program.text(node.operator).strip() in ("-", "/", "//", "%", "**"):
             yield Change(node, node, node.with_changes(left=node.right, right=node.left), "swaps the two sides")
@@ -42,7 +42,7 @@ def operand(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def divisor(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """`a / b` becomes `a / round(b, 1)`, and `b` is kept from becoming small or large."""
+    """Replace `a / b` with `a / round(b, 1)`, or keep `b` from becoming small or large."""
     if isinstance(node, cst.BinaryOperation) and isinstance(node.operator, cst.Divide):
         if isinstance(node.right, (cst.Integer, cst.Float)) or program.text(node.right).isupper():
             return  # a constant
@@ -56,13 +56,13 @@ def divisor(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def constant(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A number is one more, one less, nothing, twice as large; a text has more in it; None is 0; True is False."""
+    """Make a number one more, one less, zero or twice as large; change a text; swap None and 0, True and False."""
     if isinstance(node, cst.Integer):
         value = node.evaluated_value
         for other in (value + 1, value - 1, 0):
             yield Change(node, node, expression(f"{other}"), f"{node.value} is {other}")
     elif isinstance(node, cst.Float):
-        # Twice nothing is nothing: it would be spun for nothing, too.
+        # Twice 0 is 0: that mutant would be equal to the solution.
         others = (f"{node.value} * 2", f"{node.value} / 2", "0.0") if node.evaluated_value else ("1.0",)
         for new in others:
             yield Change(node, node, expression(f"({new})"), f"{node.value} is {new}")
@@ -76,7 +76,7 @@ def constant(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def time_unit(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A second has a million nanoseconds, or a thousand."""
+    """Give a second a million nanoseconds, or a thousand."""
     is_it = isinstance(node, (cst.Integer, cst.Float)) and node.evaluated_value == NANOSECONDS
     is_power = isinstance(node, cst.BinaryOperation) and program.text(node).replace(" ", "") == "10**9"
     if is_it or is_power:
@@ -85,7 +85,7 @@ def time_unit(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def without_call(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """`f(a)` becomes `a`, where what is called is a plain function of one value."""
+    """Replace `f(a)` with `a`, if `f` is a plain function of one value."""
     if isinstance(node, cst.Call) and len(node.args) == 1 and not node.args[0].keyword and called(node).islower():
         modules = ("math", "np", "numpy")
         is_method = isinstance(node.func, cst.Attribute) and program.text(node.func.value) not in modules
@@ -97,7 +97,7 @@ NUMBERS = (arithmetic, operand, divisor, constant, time_unit, without_call)
 
 
 def remembered(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """What is remembered is one message too old, never renewed, too early, too much, or only after publishing."""
+    """Make what a node remembers one message too old, never renewed, too early, too much, or late."""
     assignment = only_assignment(node)
     function = program.function(node)
     if assignment is None or function is None or function.name.value == "__init__":
@@ -125,7 +125,7 @@ def _begins_as_dictionary(program: ParsedProgram, name: str) -> bool:
 
 
 def _elsewhere(node: cst.CSTNode, program: ParsedProgram, name: str) -> Iterator[Change]:
-    """The statement in the `if` above it, and above that `if`."""
+    """Move the statement into the `if` above it, and above that `if`."""
     block = program.parent(node)
     if not isinstance(block, cst.IndentedBlock):
         return

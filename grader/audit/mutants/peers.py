@@ -50,23 +50,23 @@ CALLBACKS: dict[str, tuple[tuple[int, str], ...]] = {
 
 
 def outcome(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A goal ends in another way."""
+    """End a goal in another way."""
     if isinstance(node, cst.Call) and isinstance(node.func, cst.Attribute) and not node.args:
         for other in OUTCOMES.get(called(node), ()):
             yield Change(node, node.func.attr, cst.Name(other), f"calls {other}() for {called(node)}()")
 
 
 def choice(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A goal or a request to cancel is rejected instead of accepted; a policy is the other one."""
+    """Reject a goal or a request to cancel instead of accepting it; use the other policy."""
     if isinstance(node, cst.Attribute) and node.attr.value in CHOICES:
         other = CHOICES[node.attr.value]
         yield Change(node, node.attr, cst.Name(other), f"takes {other} for {node.attr.value}")
 
 
 def not_asked(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """The node assumes that a goal is canceled or accepted, or that a server is there, without asking."""
+    """Assume that a goal is canceled or accepted, or that a server is there, without asking."""
     above = program.parent(node)
-    is_called = isinstance(above, cst.Call) and above.func is node  # the call itself is looked at
+    is_called = isinstance(above, cst.Call) and above.func is node  # the call itself is handled
     if is_called or isinstance(above, (cst.AssignTarget, cst.Expr)):
         return
     name = node.attr.value if isinstance(node, cst.Attribute) else called(node)
@@ -75,7 +75,7 @@ def not_asked(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def blocking(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A call that waits for its answer instead of one that does not; one thread instead of several."""
+    """Wait for an answer where the program does not; use one thread instead of several."""
     name = called(node)
     if not isinstance(node, cst.Call) or name not in CALLS:
         return
@@ -88,7 +88,7 @@ def blocking(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def slow_callback(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A callback sleeps, or raises."""
+    """Make a callback sleep or raise."""
     if not isinstance(node, cst.FunctionDef) or not isinstance(node.body, cst.IndentedBlock):
         return
     if node.name.value in _called_back(program):
@@ -99,7 +99,7 @@ def slow_callback(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]
 
 
 def empty_result(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A callback returns an empty response or result."""
+    """Return an empty response or result from a callback."""
     function = program.function(node)
     if not isinstance(node, cst.Return) or not isinstance(node.value, cst.Name) or function is None:
         return
@@ -109,7 +109,7 @@ def empty_result(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def declared_type(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A parameter is declared as an integer instead of a double, or without a value."""
+    """Declare a parameter as an integer instead of a double, or without a value."""
     if not isinstance(node, cst.Call) or called(node) != "declare_parameter" or len(node.args) < 2:
         return
     value = node.args[1].value
@@ -120,7 +120,7 @@ def declared_type(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]
 
 
 def timer_clock(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A timer uses the computer's clock."""
+    """Let a timer use the computer's clock."""
     if not isinstance(node, cst.Call) or called(node) != "create_timer" or "clock=" in program.text(node):
         return
     wall = cst.parse_expression("f(clock=rclpy.clock.Clock(clock_type=rclpy.clock.ClockType.STEADY_TIME))")
@@ -132,15 +132,15 @@ def timer_clock(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def _called_back(program: ParsedProgram) -> set[str]:
-    """The names of the functions that are passed as callbacks."""
-    found = set()
+    """Return the names of the functions that are passed as callbacks."""
+    names = set()
     calls = [node for node in program.nodes() if isinstance(node, cst.Call)]
     for node in calls:
         for position, keyword in CALLBACKS.get(called(node), ()):
             for i, arg in enumerate(node.args):
                 if (arg.keyword is None and i == position) or (arg.keyword and arg.keyword.value == keyword):
-                    found.add(program.text(arg.value).rpartition(".")[2])
-    return found
+                    names.add(program.text(arg.value).rpartition(".")[2])
+    return names
 
 
 OPERATORS = (outcome, choice, not_asked, blocking, slow_callback, empty_result, declared_type, timer_clock)

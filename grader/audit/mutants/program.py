@@ -1,4 +1,4 @@
-"""A parsed program whose parts can be found and changed, while the rest keeps every space."""
+"""A parsed program whose parts can be found and changed while the rest stays the same, character by character."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class ParsedProgram:
         self._positions = wrapper.resolve(PositionProvider)
 
     def nodes(self) -> Iterator[cst.CSTNode]:
-        """Every part of the program that does something: no docstrings, imports, annotations or log lines."""
+        """Yield every part of the program that does something: no docstrings, imports, annotations or log lines."""
         waiting: list[cst.CSTNode] = [self.module]
         while waiting:
             node = waiting.pop()
@@ -53,35 +53,35 @@ class ParsedProgram:
         return False
 
     def text(self, node: cst.CSTNode) -> str:
-        """The node's source."""
+        """Return the node's source."""
         return self.module.code_for_node(node)
 
     def line(self, node: cst.CSTNode) -> int:
-        """The node's line, counted from 1."""
+        """Return the node's line, counted from 1."""
         return int(self._positions[node].start.line)
 
     def parent(self, node: cst.CSTNode) -> cst.CSTNode | None:
-        """The node's parent."""
+        """Return the node's parent."""
         return self._parents.get(node)
 
     def around(self, node: cst.CSTNode, kind: type[Kind]) -> Kind | None:
-        """The innermost part of this kind around the node."""
+        """Return the innermost part of this kind around the node."""
         above = self.parent(node)
         while above is not None and not isinstance(above, kind):
             above = self.parent(above)
         return above
 
     def function(self, node: cst.CSTNode) -> cst.FunctionDef | None:
-        """The function or method around the node."""
+        """Return the function or method around the node."""
         return self.around(node, cst.FunctionDef)
 
     def has_self(self, node: cst.CSTNode) -> bool:
-        """Whether `self` is defined where the node is."""
+        """Return whether `self` is defined where the node is."""
         function = self.function(node)
         return bool(function and function.params.params and function.params.params[0].name.value == "self")
 
     def place(self, node: cst.CSTNode) -> str:
-        """The names of the classes and functions around the node, such as `JointVelocity.on_joints`."""
+        """Return the names of the classes and functions around the node, such as `JointVelocity.on_joints`."""
         names: list[str] = []
         above: cst.CSTNode | None = node
         while above is not None:
@@ -91,7 +91,7 @@ class ParsedProgram:
         return ".".join(names)
 
     def callbacks(self) -> list[cst.FunctionDef]:
-        """The functions that the program passes to subscriptions."""
+        """Return the functions that the program passes to subscriptions."""
         named = {
             text.rpartition(".")[2]
             for node in self.nodes()
@@ -103,7 +103,7 @@ class ParsedProgram:
     def instead(
         self, statement: cst.CSTNode, what: str, *new: cst.CSTNode | str, imports: tuple[str, ...] = ()
     ) -> Change:
-        """The change that replaces `statement` with `new` statements, or removes it if `new` is empty."""
+        """Return the change that replaces `statement` with `new` statements, or removes it if `new` is empty."""
         block = self.parent(statement)
         assert isinstance(block, (cst.IndentedBlock, cst.Module))
         body: list[cst.CSTNode] = []
@@ -112,13 +112,13 @@ class ParsedProgram:
         return Change(statement, block, with_body(block, body), what, imports)
 
     def changed(self, change: Change) -> str:
-        """The source with one change made."""
+        """Return the source with one change made."""
         result = self._with(change.old, change.new).code
         missing = [name for name in change.imports if f"import {name}\n" not in result]
         return "".join(_with_imports(result.splitlines(keepends=True), missing))
 
     def _with(self, old: cst.CSTNode, new: cst.CSTNode) -> cst.Module:
-        """The module with one part replaced. libcst's `deep_replace` would make what is not around it anew, too."""
+        """Return the module with one part replaced. libcst's `deep_replace` would also rebuild everything around it."""
         above = self.parent(old)
         while above is not None:
             old, new = above, _with_child(above, old, new)
@@ -127,7 +127,7 @@ class ParsedProgram:
 
 
 def _with_child(node: cst.CSTNode, old: cst.CSTNode, new: cst.CSTNode) -> cst.CSTNode:
-    """The node with another child in place of `old`."""
+    """Return the node with another child in place of `old`."""
     for field in fields(node):
         value = getattr(node, field.name)
         if value is old:
@@ -152,22 +152,22 @@ def _with_imports(lines: list[str], names: list[str]) -> Iterator[str]:
 
 
 def parsed(statement: cst.CSTNode | str) -> cst.CSTNode:
-    """A statement, parsed if it is given as source."""
+    """Return a statement, parsed if it is given as source."""
     return cst.parse_statement(statement) if isinstance(statement, str) else statement
 
 
 def expression(source: str) -> cst.BaseExpression:
-    """An expression, in parentheses if it needs them."""
+    """Parse an expression, and put it in parentheses if it needs them."""
     return cst.parse_expression(source)
 
 
 def with_body(block: cst.IndentedBlock | cst.Module, body: Sequence[cst.CSTNode]) -> cst.CSTNode:
-    """The block with other statements in it; a `pass` if there would be none."""
+    """Return the block with other statements in it; with a `pass` if there would be none."""
     return block.with_changes(body=list(body) or [cst.parse_statement("pass")])
 
 
 def called(node: cst.CSTNode) -> str:
-    """The last name of a call's function: `publish` for `self.publisher.publish(…)`; empty for anything else."""
+    """Return the last name of a call's function: `publish` for `self.publisher.publish(…)`; empty for anything else."""
     if not isinstance(node, cst.Call):
         return ""
     if isinstance(node.func, cst.Attribute):
@@ -176,7 +176,7 @@ def called(node: cst.CSTNode) -> str:
 
 
 def only_call(statement: cst.CSTNode, name: str) -> cst.Call | None:
-    """The call, if a statement is only a call of a function with this name."""
+    """Return the call if a statement is only a call of a function with this name."""
     if isinstance(statement, cst.SimpleStatementLine) and len(statement.body) == 1:
         inner = statement.body[0]
         if isinstance(inner, cst.Expr) and isinstance(inner.value, cst.Call) and called(inner.value) == name:
@@ -185,7 +185,7 @@ def only_call(statement: cst.CSTNode, name: str) -> cst.Call | None:
 
 
 def only_assignment(statement: cst.CSTNode) -> cst.Assign | None:
-    """The assignment, if a statement is only an assignment with one target."""
+    """Return the assignment if a statement is only an assignment with one target."""
     if isinstance(statement, cst.SimpleStatementLine) and len(statement.body) == 1:
         inner = statement.body[0]
         if isinstance(inner, cst.Assign) and len(inner.targets) == 1:

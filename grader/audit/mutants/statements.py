@@ -10,13 +10,13 @@ from grader.audit.mutants.program import Change, ParsedProgram, expression, with
 
 
 def statement_dropped(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A statement is left out."""
+    """Leave out a statement."""
     if _does_something(node, program):
         yield program.instead(node, f"leaves out {_first_line(node, program)}")
 
 
 def statement_twice(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A call is made twice. Not so a node's own making: nobody writes that, and the second one takes its place."""
+    """Repeat a call, except the creation of a node: no student repeats that, and the second node replaces the first."""
     making = "super().__init__" in program.text(node)
     if _does_something(node, program) and isinstance(node, cst.SimpleStatementLine) and not making:
         inner = node.body[0]
@@ -26,7 +26,7 @@ def statement_twice(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Chang
 
 
 def statements_swapped(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A statement comes before the one above it."""
+    """Move a statement above the one before it."""
     block = program.parent(node)
     if not isinstance(node, cst.SimpleStatementLine) or not isinstance(block, cst.IndentedBlock):
         return
@@ -38,7 +38,7 @@ def statements_swapped(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Ch
 
 
 def guard_removed(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """What stands under an `if` is done in any case, or not at all; a `try` or `finally` loses its guard."""
+    """Do what is under an `if` in any case, or not at all; remove a `try` or `finally`."""
     block = program.parent(node)
     if not isinstance(block, (cst.IndentedBlock, cst.Module)):
         return
@@ -58,7 +58,7 @@ def _without_finally(node: cst.Try) -> cst.Try:
 
 
 def handler(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """An exception is not caught, or is raised again."""
+    """Do not catch an exception, or raise it again."""
     if isinstance(node, cst.ExceptHandler):
         if isinstance(node.type, cst.Tuple):
             for element in node.type.elements:
@@ -71,7 +71,7 @@ def handler(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def argument(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """Two arguments are swapped; one that has a name is left out."""
+    """Swap two arguments, or leave out a keyword argument."""
     if not isinstance(node, cst.Call):
         return
     plain = [arg for arg in node.args if arg.keyword is None and not arg.star]
@@ -85,7 +85,7 @@ def argument(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def result(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A function does nothing; what it returns is None."""
+    """Make a function do nothing, or return None."""
     if isinstance(node, cst.Return) and node.value is not None:
         yield Change(node, node.value, expression("None"), f"returns None for {program.text(node.value)}")
     if isinstance(node, cst.FunctionDef) and isinstance(node.body, cst.IndentedBlock):
@@ -94,7 +94,7 @@ def result(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def wrong_name(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """In a calculation or a condition, one name is taken for another of the same function, or of the same object."""
+    """In a calculation or a condition, use another name of the same function, or of the same object."""
     above = program.parent(node)
     if not isinstance(above, (cst.BinaryOperation, cst.Comparison, cst.ComparisonTarget, cst.Index)):
         return
@@ -110,7 +110,7 @@ def wrong_name(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def _names(program: ParsedProgram, function: cst.FunctionDef | None) -> list[str]:
-    """The function's arguments and what it assigns."""
+    """Return the function's arguments and what it assigns."""
     if function is None:
         return []
     names = {param.name.value for param in function.params.params if param.name.value != "self"}
@@ -122,12 +122,12 @@ def _names(program: ParsedProgram, function: cst.FunctionDef | None) -> list[str
 
 
 def _attributes(program: ParsedProgram) -> list[str]:
-    """What the object remembers: everything assigned to `self.…`, without what ROS made."""
-    found: set[str] = set()
+    """Return what the object remembers: everything assigned to `self.…`, without what ROS created."""
+    names: set[str] = set()
     for node in program.nodes():
         if isinstance(node, cst.Assign) and ".create_" not in program.text(node.value):
-            found |= {program.text(target.target) for target in node.targets}
-    return sorted(name for name in found if name.startswith("self."))
+            names |= {program.text(target.target) for target in node.targets}
+    return sorted(name for name in names if name.startswith("self."))
 
 
 def _does_something(node: cst.CSTNode, program: ParsedProgram) -> bool:
@@ -161,7 +161,7 @@ STATEMENTS = (
 )
 
 
-#: Comparison -> what it is taken for. A boundary missed first, then a direction.
+#: Comparison -> what replaces it: first the missed boundary, then the wrong direction.
 COMPARISONS = {
     "<": ("<=", ">", "!="),
     ">": (">=", "<", "!="),
@@ -177,7 +177,7 @@ COMPARISONS = {
 
 
 def comparison(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """`a < b` becomes `a <= b`, `a > b`, `a != b`."""
+    """Replace `a < b` with `a <= b`, `a > b`, `a != b`."""
     if isinstance(node, cst.Comparison) and len(node.comparisons) == 1 and "__name__" not in program.text(node):
         target = node.comparisons[0]
         sign = program.text(target.operator).strip()
@@ -189,7 +189,7 @@ def comparison(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def part_of_condition(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """`a and b` becomes `a or b`, `a` alone, `b` alone."""
+    """Replace `a and b` with `a or b`, `a` alone, `b` alone."""
     if isinstance(node, cst.BooleanOperation):
         is_and = isinstance(node.operator, cst.And)
         other = node.with_changes(operator=cst.Or() if is_and else cst.And())
@@ -199,7 +199,7 @@ def part_of_condition(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Cha
 
 
 def condition(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A condition is turned round, always holds, never holds."""
+    """Reverse a condition, make it always true, or make it always false."""
     if isinstance(node, (cst.If, cst.While, cst.IfExp, cst.CompIf)):
         text = program.text(node.test)
         if not (isinstance(node, cst.While) and text == "True"):
@@ -209,7 +209,7 @@ def condition(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def without_not(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """`not a` becomes `a`."""
+    """Replace `not a` with `a`."""
     if isinstance(node, cst.UnaryOperation) and isinstance(node.operator, cst.Not):
         yield Change(node, node, node.expression, "leaves out not")
 
@@ -226,7 +226,7 @@ TAKEN = (
 
 
 def loop(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A loop or a comprehension leaves out the first or the last, goes backwards, or sorts."""
+    """In a loop or a comprehension, leave out the first or the last element, go backwards, or sort."""
     if isinstance(node, (cst.For, cst.CompFor)):
         text = program.text(node.iter)
         for template, what in TAKEN:
@@ -234,7 +234,7 @@ def loop(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 
 def end_of_loop(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
-    """A loop ends after its first turn."""
+    """End a loop after its first turn."""
     if isinstance(node, (cst.For, cst.While)) and isinstance(node.body, cst.IndentedBlock):
         body = [*node.body.body, cst.parse_statement("break")]
         yield Change(node, node.body, with_body(node.body, body), "ends the loop after its first turn")

@@ -30,7 +30,7 @@ Write the class `Doubler`. It hears `/numbers` and publishes twice each number o
 - Publish nothing on `/numbers` or `/clock`.
 - Your node is called `doubler`, and ends on Ctrl-C.
 """,
-    "exercises/doubler/scenarios.py": '''"""What it is spun against."""
+    "exercises/doubler/scenarios.py": '''"""What it is run against."""
 
 import random
 

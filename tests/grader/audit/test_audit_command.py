@@ -38,7 +38,7 @@ def test_nothing_to_fix_ends_with_0_and_is_written_as_json_and_as_a_page(small: 
     assert entries["score"] == 1
     assert entries["caught"] + entries["equivalent"] == len(entries["mutants"])
     assert {check["name"] for check in entries["checks"]} >= {"test_publishes", "test_nothing_below_zero"}
-    assert all(scenario["spinning_s"] > 0 for scenario in entries["scenarios"])
+    assert all(scenario["running_s"] > 0 for scenario in entries["scenarios"])
 
 
 def test_a_change_that_lets_a_mistake_through_ends_with_1_and_says_which(

@@ -222,7 +222,7 @@ def trial(failed: bool = False, different: bool = False) -> Trial:
         message="",
         statuses={"test_a": "failed" if failed else "passed"},
         findings={"test_a": Finding("1 was expected")} if failed else {},
-        spun=("positive", "any"),
+        run_in=("positive", "any"),
         messages=7,
         differences=(RecordingDifference("any", "3 of 3 messages differ in data"),) if different else (),
     )

@@ -133,6 +133,6 @@ def test_what_is_known_is_not_tried_again(small: SmallExercise, audited: Auditin
     small.change(CHECKS, "Multiply.", "Multiply it.")
     changed = audited(small, most=4)
     assert changed.made == again.kept, "another check judges everything again"
-    assert [scenario.spinning_s for scenario in changed.scenarios] == [s.spinning_s for s in first.scenarios], (
-        "and nothing is spun again"
+    assert [scenario.running_s for scenario in changed.scenarios] == [s.running_s for s in first.scenarios], (
+        "and nothing is run again"
     )

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from grader.audit.check_list import AuditedCheck
 from grader.audit.result import Trial
-from grader.audit.worth import problems_of_checks, worth_spinning_on
+from grader.audit.worth import problems_of_checks, worth_running_on
 from grader.checking.verdict import Finding, Status
 
 
@@ -28,21 +28,21 @@ def test_two_checks_that_look_alike_are_told_apart_by_mutants_that_only_one_of_t
     mistake = {"both.py": trial(a="failed", b="failed")}
     mutants = {"1": trial(a="passed", b="passed"), "2": trial(a="failed"), "3": trial(b="failed")}
     assert [one.about for one in problems_of_checks((A, B), {**mistake, **mutants})] == ["b"]
-    assert worth_spinning_on((A, B), {**mistake, **mutants}, mutants) == ["2", "3"]
+    assert worth_running_on((A, B), {**mistake, **mutants}, mutants) == ["2", "3"]
     settled = {**mistake, **mutants, "2": trial(a="failed", b="passed")}
     assert problems_of_checks((A, B), settled) == []
-    assert worth_spinning_on((A, B), settled, mutants) == []
+    assert worth_running_on((A, B), settled, mutants) == []
 
 
 def test_a_check_that_has_not_failed_yet_gets_mutants_that_did_not_come_as_far_as_to_it() -> None:
     mutants = {"1": trial(a="passed", b="passed"), "2": trial(a="failed"), "3": trial(a="passed", b="failed")}
     some = {id_: mutants[id_] for id_ in ("1", "2")}
-    assert worth_spinning_on((A, B), some, some) == ["2"]
-    assert worth_spinning_on((A, B), mutants, mutants) == [], "it fails for the third"
+    assert worth_running_on((A, B), some, some) == ["2"]
+    assert worth_running_on((A, B), mutants, mutants) == [], "it fails for the third"
     depending = check("b", depends=("a",))
-    assert worth_spinning_on((A, depending), some, some) == [], "the second one never comes as far as to it"
+    assert worth_running_on((A, depending), some, some) == [], "the second one never comes as far as to it"
 
 
 def test_for_each_doubt_a_few_mutants_are_enough() -> None:
     mutants = {str(number): trial(a="failed") for number in range(100)}
-    assert len(worth_spinning_on((A, B), mutants, mutants)) == 4
+    assert len(worth_running_on((A, B), mutants, mutants)) == 4

@@ -20,7 +20,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from grader.audit.candidates import mistakes, right_ones
+from grader.audit.candidates import mistakes, right_solutions
 from grader.exercise import Exercise, load
 from grader.grading.grade import Options
 from grader.grading.grading import Grading, grading_of
@@ -125,7 +125,7 @@ def main(name: str, only: list[str]) -> int:
     """Compare the programs of an exercise, and print what was found."""
     compile_course(find_course(ROOT))
     author = load(ROOT / "exercises" / name)
-    programs = {Path(one.name).stem: one.submission for one in [*right_ones(author), *mistakes(author)]}
+    programs = {Path(one.name).stem: one.submission for one in [*right_solutions(author), *mistakes(author)]}
     programs = {program: submission for program, submission in programs.items() if not only or program in only}
     programs |= {Path(file).stem: read(file, author) for file in only if file.endswith(".py")}
     with tempfile.TemporaryDirectory() as place:
