@@ -1,7 +1,7 @@
 """The archives that a page loads: rclpy and the message classes with rcl_python, the checks, the interface files.
 
-rclpy's files and the message classes are those of the installed wheels, unchanged. Archives have the same bytes
-whenever they are made from the same files.
+rclpy's files and the message classes are those of the installed wheels, unchanged. The same files
+always give the same bytes.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from interface_compiler import prefixes
 #: Modules of the environment that rclpy and `ros2` need, besides the interface packages.
 _ROS = ("rclpy", "rpyutils", "rosidl_parser", "rosidl_generator_py", "ament_index_python", "yaml", "click")
 _CHECKS = ("pytest", "_pytest", "py", "pluggy", "iniconfig", "packaging", "pygments")
-#: Of its hundreds of lexers, pytest needs those for Python.
+#: The lexers of Pygments that pytest needs, out of hundreds.
 _LEXERS = ("__init__.py", "_mapping.py", "python.py", "diff.py")
 _SPINBOOK = (
     "__init__.py",
@@ -42,7 +42,7 @@ _SPINBOOK = (
     "chapter/__init__.py",
     "chapter/terminal.py",
 )
-#: The parts of the grader that run scenarios and judge recordings; the rest starts and confines programs.
+#: The parts of the grader that run scenarios and judge recordings. The rest starts programs and sandboxes them.
 _GRADER = ("__init__.py", "checking", "exercise", "recording", "runner", "scenario", "submission", "report")
 _INDEXED = ("rosidl_interfaces", "packages")
 _TEXTS = (".msg", ".srv", ".action")
@@ -52,7 +52,7 @@ def ros_archive() -> bytes:
     """Return rclpy, every interface package, `ros2` with its nodes, and the parts of Spinbook that run in the page."""
     packages = [*_ROS, *interface_packages()]
     files = {name: data for package in packages for name, data in _module(package)}
-    # The original imports code that finds compiled libraries.
+    # The original module also imports code that looks for compiled libraries, which a page does not have.
     files["rosidl_generator_py/__init__.py"] = b"from .import_type_support_impl import import_type_support\n"
     files |= dict(_python_files(Path(rcl_python.__file__).parent, "rcl_python"))
     files |= dict(_python_files(Path(ros_in_python.__file__).parent, "ros_in_python"))
@@ -75,20 +75,20 @@ def ros_archive() -> bytes:
 
 def interface_packages() -> list[str]:
     """Return the packages of messages, services and actions that are installed, or compiled for the course."""
-    return sorted(name for name in _places() if importlib.util.find_spec(name))
+    return sorted(name for name in _share_folders() if importlib.util.find_spec(name))
 
 
-def _places() -> dict[str, Path]:
-    """Return package of interfaces -> the folder `share` in which it is."""
+def _share_folders() -> dict[str, Path]:
+    """Return the `share` folder of each package of interfaces, by the package's name."""
     markers = prefixes.resources("rosidl_interfaces", prefixes.installed())
     return {name: marker.parents[3] for name, marker in markers.items()}
 
 
 def share_archive() -> bytes:
     """Return the ament index and the interface files that `ros2 interface show` prints."""
-    files, places = {}, _places()
+    files, shares = {}, _share_folders()
     for package in interface_packages():
-        share = places[package]
+        share = shares[package]
         for kind in _INDEXED:
             entry = share / "ament_index" / "resource_index" / kind / package
             if entry.is_file():
@@ -101,12 +101,12 @@ def share_archive() -> bytes:
 
 def check_archive(exercises: Mapping[str, bytes]) -> bytes:
     """Return pytest, the part of the grader that judges, and the exercises' public parts: path -> content."""
-    found = {name: data for package in _CHECKS for name, data in _module(package)}
-    files = {name: data for name, data in found.items() if _needed(name)}
+    modules = {name: data for package in _CHECKS for name, data in _module(package)}
+    files = {name: data for name, data in modules.items() if _needed(name)}
     root = Path(spinbook.__file__).parent.parent / "grader"
     for part in _GRADER:
         files |= _part(root / part, f"grader/{part}")
-    # What reads a file knows no sandbox; the package itself does.
+    # A page has no sandbox: leave out reading.py, which needs one, and the imports of the package itself.
     del files["grader/submission/reading.py"]
     files["grader/submission/__init__.py"] = b""
     return zipped({**_used_outside_checks(root), **files, **exercises})
@@ -150,13 +150,13 @@ def _python_files(folder: Path, name: str) -> Iterator[tuple[str, bytes]]:
 
 
 def _type_hashes() -> dict[str, str]:
-    found: dict[str, str] = {}
-    places = _places()
+    hashes: dict[str, str] = {}
+    shares = _share_folders()
     for package in interface_packages():
-        for file in sorted((places[package] / package).rglob("*.json")):
+        for file in sorted((shares[package] / package).rglob("*.json")):
             for item in json.loads(file.read_text(encoding="utf-8")).get("type_hashes", ()):
-                found[item["type_name"]] = item["hash_string"]
-    return found
+                hashes[item["type_name"]] = item["hash_string"]
+    return hashes
 
 
 def zipped(files: Mapping[str, bytes]) -> bytes:
@@ -164,16 +164,16 @@ def zipped(files: Mapping[str, bytes]) -> bytes:
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w") as archive:
         for name in sorted(files):
-            # Level 9 takes three times as long, and saves less than a hundredth.
+            # Level 9 takes three times as long and saves less than 1 %.
             archive.writestr(zipfile.ZipInfo(name), files[name], zipfile.ZIP_DEFLATED, 6)
     return out.getvalue()
 
 
 def sizes(archive: bytes) -> Iterable[tuple[str, int]]:
-    """Return how much of an archive each top-level package takes, compressed."""
-    found: dict[str, int] = {}
+    """Return the compressed size of each top-level package of an archive, in bytes, the largest first."""
+    totals: dict[str, int] = {}
     with zipfile.ZipFile(io.BytesIO(archive)) as opened:
         for item in opened.infolist():
             package = item.filename.partition("/")[0]
-            found[package] = found.get(package, 0) + item.compress_size
-    return sorted(found.items(), key=lambda item: -item[1])
+            totals[package] = totals.get(package, 0) + item.compress_size
+    return sorted(totals.items(), key=lambda item: -item[1])

@@ -15,30 +15,30 @@ from spinbook.browser.archives import check_archive, ros_archive, share_archive
 from spinbook.build.digest import digest
 from spinbook.handout.student_copy import exercise_files
 
-# https://pyodide.org, Mozilla Public License 2.0; from its npm package, whose digest is pinned in fetch-pyodide.sh.
+# Pyodide (https://pyodide.org, Mozilla Public License 2.0) comes from npm; fetch-pyodide.sh pins the digest.
 
 
-#: The files of it that a page loads. Its own list of packages is left out: no package is ever fetched.
+#: The files of Pyodide that a page loads. Its list of packages is replaced by an empty one: none is ever fetched.
 FILES = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
 _LOCK = "pyodide-lock.json"
 _FOLDER = Path("share", "spinbook", "pyodide")
 
 
 def pyodide_folder() -> Path | None:
-    """Return the package's folder, or None if set-up could not fetch it. SPINBOOK_PYODIDE names another folder."""
+    """Return Pyodide's folder, or None if set-up could not fetch it. SPINBOOK_PYODIDE names another folder."""
     folder = Path(os.environ.get("SPINBOOK_PYODIDE") or Path(sys.prefix) / _FOLDER)
     return folder if all((folder / name).is_file() for name in (*FILES, _LOCK)) else None
 
 
 def pyodide_files(folder: Path) -> dict[str, bytes]:
-    """Return the files of the package as a page gets them: name -> content."""
-    found = {name: (folder / name).read_bytes() for name in FILES}
+    """Return Pyodide's files as a page gets them: name -> content."""
+    files = {name: (folder / name).read_bytes() for name in FILES}
     lock = json.loads((folder / _LOCK).read_text(encoding="utf-8"))
-    found[_LOCK] = json.dumps({"info": lock["info"], "packages": {}}).encode()
-    return found
+    files[_LOCK] = json.dumps({"info": lock["info"], "packages": {}}).encode()
+    return files
 
 
-#: Their folder in the site.
+#: The folder of these files in the site.
 FOLDER = "run"
 _OFFLINE, _LIST = "offline.js", "files.json"
 _STATIC = Path(__file__).with_name("static")
@@ -87,11 +87,11 @@ def public_parts(exercises: Iterable[Exercise]) -> dict[str, bytes]:
             copy = exercise_files(exercise, workers)
             needed = [name for name in copy if name in _NEEDED or _is_code(name, exercise)]
             files |= {f"exercises/{exercise.name}/{name}": copy[name] for name in needed}
-            # A copy of it does not count beside a student's work.
+            # The grader ignores code that equals the starter, so it has to know the starter.
             files[f"exercises/{exercise.name}/{STARTER}"] = copy[exercise.file_name]
     return files
 
 
 def _is_code(name: str, exercise: Exercise) -> bool:
-    """Return whether it is, for example, one of the author's worlds, and not the starter."""
+    """Return whether it is code of the author's, such as a world, and not the starter."""
     return name.endswith(".py") and name != exercise.file_name

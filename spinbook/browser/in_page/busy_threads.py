@@ -1,5 +1,7 @@
-"""Finds threads that would never get past one moment, because they look for something again and again, or always have
-something to do. They are taken to wait, as the grader takes them to. The figures are those of its rmw_wait.cpp.
+"""Detects busy threads: those that poll without waiting, or that always have something to do.
+
+Simulated time advances only when all threads wait, so a busy thread would stop it. Such a thread is treated as
+sleeping, as in the grader; the limits are those of rmw_wait.cpp in rmw_lockstep.
 """
 
 from __future__ import annotations
@@ -7,41 +9,45 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass
 
-#: A thread that looks again and again without waiting is taken to wait so long (ns) from its third look on.
-_LOOKS, _REST = 2, 10_000_000
-#: One that always has something to do, from this turn on at one moment. What is sent or received earns it more.
+#: From its third poll on, a polling thread is treated as sleeping this long (ns).
+_POLLS, _SLEEP = 2, 10_000_000
+#: A thread that takes more turns than this at one moment is treated as sleeping. Each message that is sent or received
+#: allows it some turns more.
 _TURNS, _TURNS_PER_ACTIVITY = 1_000, 10
 
 
 @dataclass
 class Thread:
-    """What one thread has done so far. `activity` counts what was sent or received, `waits` how often it waited."""
+    """What one thread has done so far.
 
-    looks: int = 0
-    """In a row, without anything happening in between."""
-    last_look: tuple[int, int] = (0, 0)
-    """`activity` and `waits` then."""
+    `activity` counts the messages that the program has sent or received, `waits` how often the thread has waited.
+    """
+
+    polls: int = 0
+    """Polls in a row with no activity and no wait in between."""
+    last_poll: tuple[int, int] = (0, 0)
+    """`activity` and `waits` at the last poll."""
     turns: int = 0
-    """At the moment `at` (ns), up to this `activity`."""
+    """Turns taken at the moment `at` (ns), up to this `activity`."""
     at: int = 0
     activity: int = 0
-    rests: bool = False
-    """Whether it waits because of its many turns."""
+    sleeps: bool = False
+    """Whether it is treated as sleeping because of its many turns."""
 
     def take_turn(self, activity: int, now: int) -> None:
-        """Count a turn in which nothing was there to take."""
+        """Count a turn in which there was nothing to take."""
         if now != self.at:
             self.at, self.turns = now, 0
         self.turns = max(self.turns - (activity - self.activity) * _TURNS_PER_ACTIVITY, 0) + 1
         self.activity = activity
-        self.rests = self.turns > _TURNS
+        self.sleeps = self.turns > _TURNS
 
-    def look(self, activity: int, waits: int) -> int:
-        """Count a look in vain. Return how long the thread is to rest (ns)."""
-        self.looks = self.looks + 1 if (activity, waits) == self.last_look else 0
-        rests = self.looks >= _LOOKS
-        self.last_look = activity, waits + rests  # this wait is not the program's own
-        return _REST if rests else 0
+    def poll(self, activity: int, waits: int) -> int:
+        """Count a fruitless poll. Return how long the thread is to sleep (ns)."""
+        self.polls = self.polls + 1 if (activity, waits) == self.last_poll else 0
+        sleeps = self.polls >= _POLLS
+        self.last_poll = activity, waits + sleeps  # this wait is not the program's own
+        return _SLEEP if sleeps else 0
 
 
 class BusyThreads:
@@ -50,20 +56,20 @@ class BusyThreads:
     def __init__(self) -> None:
         self._threads: defaultdict[int, Thread] = defaultdict(Thread)
 
-    def rest(self, number: int, looks: bool, activity: int, waits: int, now: int) -> int:
-        """Return how long a thread that finds nothing to take is to rest (ns); `looks` if it would not wait at all."""
+    def sleep_ns(self, number: int, polls: bool, activity: int, waits: int, now: int) -> int:
+        """Return how long a thread with nothing to take is to sleep (ns). `polls` says that it does not wait."""
         thread = self._threads[number]
         thread.take_turn(activity, now)
-        if thread.rests:
-            return _REST
-        return thread.look(activity, waits) if looks else 0
+        if thread.sleeps:
+            return _SLEEP
+        return thread.poll(activity, waits) if polls else 0
 
-    def found(self, number: int) -> None:
-        """The thread finds something to take."""
-        self._threads[number].rests = False
+    def note_news(self, number: int) -> None:
+        """Note that the thread has something to take."""
+        self._threads[number].sleeps = False
 
-    def waited(self, number: int, now: int) -> None:
-        """The thread has waited until `now` (ns). Only other waits than its rests get it past the moment."""
+    def note_wait(self, number: int, now: int) -> None:
+        """Note that the thread has waited until `now` (ns). A sleep imposed here does not begin a new moment."""
         thread = self._threads[number]
-        if thread.rests:
+        if thread.sleeps:
             thread.at = now

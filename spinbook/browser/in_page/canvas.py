@@ -1,4 +1,4 @@
-"""Turtlesim's canvas without numpy: does what ros_in_python/turtlesim/canvas.py does, pixel by pixel."""
+"""Turtlesim's canvas without numpy: draws the same pixels as ros_in_python/turtlesim/canvas.py, one by one."""
 
 from __future__ import annotations
 
@@ -53,5 +53,5 @@ def _pixels(low: float, high: float) -> range:
 
 
 def use() -> None:
-    """Let turtlesim draw on it. Call this before its other modules are imported."""
+    """Make turtlesim draw on this canvas. Call this before its other modules are imported."""
     canvas.Canvas = PlainCanvas  # type: ignore[misc, assignment]

@@ -19,7 +19,7 @@ _variables: dict[str, Any] = {"__name__": "__main__"}
 
 
 def run_python(source: str) -> int:
-    """Run a plain cell and show the value of its last expression, as a notebook does; return 0 if it succeeded."""
+    """Run a plain cell and print the value of its last expression, as a notebook does; return its exit status."""
     with program_imports.programs_turn():
         return status_of(lambda: _run(source))
 

@@ -1,5 +1,7 @@
-"""Check in the page: the public checks of an exercise on the code in the editor. It is a preview: the grade is the
-grader's."""
+"""Checks the code in the editor with the public checks of an exercise.
+
+This is a preview in the page; only the grader grades.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +34,7 @@ _SEVERAL = "This exercise has several programs, which a web page can't check tog
 
 
 def check(name: str, source: str) -> str:
-    """What the public checks say of the code, as JSON: `problem` alone, or `total`, `full`, `rows` and more."""
+    """Return the results of the public checks, as JSON: `problem` alone, or `total`, `full`, `rows` and more."""
     hindrance = hindrance_of(source)
     if hindrance:
         return json.dumps({"problem": hindrance})
@@ -63,7 +65,7 @@ def hindrance_of(source: str) -> str:
     try:
         tree = ast.parse(source)
     except (SyntaxError, ValueError):
-        return ""  # the run says where
+        return ""  # the run reports the error with its line
     for node in ast.walk(tree):
         for name in _imported(node):
             if name in _CANNOT:
@@ -93,7 +95,7 @@ def public_part(exercise: Exercise) -> tuple[list[Scenario], dict[str, Recording
 
 
 def _scenario(entries: dict[str, Any], folder: Path) -> Scenario:
-    """Return a scenario from public.json: one that only publishes has a form of its own."""
+    """Return a scenario from public.json. One that only publishes is stored in a shorter form."""
     if "is" in entries:
         found: Scenario = scenario_from_plain(entries, folder)
         return found
@@ -123,7 +125,7 @@ def verdicts(
 
 
 def _forget_modules_of(folder: Path) -> None:
-    """Let each judging import the checks again, as it does in a process of its own."""
+    """Forget these modules, so that the checks are imported again each time, as in a new process."""
     for name, module in list(sys.modules.items()):
         if (getattr(module, "__file__", None) or "").startswith(f"{folder}/"):
             del sys.modules[name]

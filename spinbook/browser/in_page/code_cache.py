@@ -1,6 +1,6 @@
-"""Hands the code that one process of a page has compiled to the next, which reads it in a tenth of that time.
+"""Passes the code that one process of a page has compiled to the next, which loads it ten times faster.
 
-The archives have sources: a page's Python is another version than the one that makes the site.
+The archives contain source code only: the page's Python has another version than the one that builds the site.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ def keep() -> None:
 
 
 def kept() -> bytes:
-    """Return what was kept, and keep no more."""
+    """Return the code that was kept, and stop keeping."""
     zipimport._compile_source = _compile  # type: ignore[attr-defined]
     return marshal.dumps(_kept)
 
 
-def use(given: bytes | memoryview) -> None:
-    """Compile nothing that another process has kept: `given` is what its `kept` has returned."""
-    known: dict[_Key, bytes] = marshal.loads(given)
+def use(cache: bytes | memoryview) -> None:
+    """Load what another process has compiled, and compile the rest. `cache` is what `kept` returned there."""
+    known: dict[_Key, bytes] = marshal.loads(cache)
 
     def read_or_compile(path: str, source: bytes) -> CodeType:
         code = known.get(_key(path, source))
@@ -46,5 +46,5 @@ def use(given: bytes | memoryview) -> None:
 
 
 def _key(path: str, source: bytes) -> _Key:
-    # A site may be made anew while its page is open: then the same file has another text.
+    # The site may be rebuilt while its page is open: then the same path has another text.
     return path, zlib.crc32(source)

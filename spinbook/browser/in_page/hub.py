@@ -1,7 +1,7 @@
 """The grader's hub in a page: the program runs in the same interpreter, and turns replace the sockets.
 
-The grader's own code (grader/runner, rmw_lockstep/hub) decides what happens, and when. Here are only the two ends of
-its connection: `PageHub` and `PageConnection` on the hub's side, `Turns` between them and the program.
+The grader's own code (grader/runner, rmw_lockstep/hub) decides what happens, and when. This module only connects it to
+the program: `PageHub` and `PageConnection` are the hub's side, and `Turns` alternates between the hub and the program.
 """
 
 from __future__ import annotations
@@ -25,29 +25,29 @@ class RunFinished(BaseException):
 
 
 class Turns:
-    """Lets two sides take turns, which never run at the same time: the program's threads and the hub's."""
+    """Lets the program's threads and the hub's thread take turns: the two sides never run at the same time."""
 
     def __init__(self) -> None:
         self._program, self._hub = threads.raw_lock(), threads.raw_lock()
         self._program.acquire()
         self._hub.acquire()
         self.is_over = False
-        """Whether the program is to end now, as one that is killed."""
+        """Whether the program must end now, as if it were killed."""
         self.aborted = False
-        """Whether C code would have ended it, by SIGABRT."""
+        """Whether it ended as C code that calls abort() does, by SIGABRT."""
         self.has_ended = False
         self.fault: BaseException | None = None
         """The exception in the hub's code while it handled what the program sent."""
         self.signal = ""
-        """A signal that the program gets when it continues."""
+        """The name of a signal that the program gets when it continues; "" if there is none."""
 
     @property
     def is_done(self) -> bool:
-        """Whether the program goes no further."""
+        """Whether the program will not continue."""
         return self.is_over or self.has_ended
 
     def let_program_go_on(self) -> None:
-        """Wait, on the hub's side, until the program is idle or has ended. Raises the `fault` kept meanwhile."""
+        """Wait, on the hub's side, until the program is idle or has ended. Raises `fault` if there is one."""
         if not self.has_ended:
             program_imports.turn_to_program()
             self._program.release()
@@ -58,11 +58,11 @@ class Turns:
             raise fault
 
     def wait_for_first(self) -> None:
-        """Wait, on the program's side, until it may begin."""
+        """Wait, on the program's side, for its first turn."""
         self._program.acquire()
 
     def let_hub_go_on(self) -> None:
-        """The program waits until something happens, or its run is over."""
+        """Give the hub its turn, on the program's side, and wait for the next turn or the end of the run."""
         if not self.is_done:
             self._hub.release()
             self._program.acquire()
@@ -78,7 +78,7 @@ class PageConnection(ProcessLink):
 
     def __init__(self, use: HubUsage) -> None:
         self.queued: deque[bytes] = deque()
-        # There is no socket: the program's side takes out what is queued.
+        # There is no socket: the program's side takes the frames out of the queue.
         super().__init__(None, PROGRAM, use)  # type: ignore[arg-type]
         self.hello = HelloFrame(1, PROGRAM, 0, True)
 
@@ -130,7 +130,7 @@ class PageHub(Hub):
         self.on_tick()
 
     def drain(self, at_most_s: float = 1.0) -> None:
-        """Do nothing: everything the program has sent was taken at once."""
+        """Do nothing: frames are handled when the program sends them."""
 
     def _take(self) -> None:
         self._turns.let_program_go_on()

@@ -1,4 +1,4 @@
-"""`ros2 launch` in a page: the launch file is read here, and the page starts what it describes."""
+"""`ros2 launch` in a page: reads the launch file; the page starts what it describes."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _planned: list[dict[str, Any]] = []
 
 
 class _LaunchRecorder:
-    """Replaces `ProcessGroup`: notes what is to be started."""
+    """Replaces `ProcessGroup`: records the processes to start instead of starting them."""
 
     def run(self, steps: Sequence[ProcessToStart | str]) -> int:
-        """Note the steps, with their parameter files, which are removed afterwards."""
+        """Record the steps, with the texts of their parameter files, which are removed afterwards."""
         _planned[:] = map(_step, steps)
         return 0
 
@@ -31,18 +31,18 @@ def _step(step: ProcessToStart | str) -> dict[str, Any]:
     return {"package": package, "executable": executable, "args": args, "files": files}
 
 
-def _as_it_is(package: str, executable: str, cwd: Path) -> SimpleNamespace:
-    """Return the package and executable as they are: the page knows its nodes by these names."""
+def _unresolved(package: str, executable: str, cwd: Path) -> SimpleNamespace:
+    """Return the package and executable unresolved: the page knows its nodes by these names."""
     return SimpleNamespace(argv=(package, executable), env={})
 
 
 def plan(line: str) -> str:
-    """Return what `ros2 launch …` is to start, as JSON: its exit status and the steps. Errors are printed."""
+    """Return what `ros2 launch …` starts, as JSON: its exit status and the steps. Errors are printed."""
     from spinbook.browser.in_page.cells import run_command
 
     # Processes of the page replace those of the system.
     setattr(command, "ProcessGroup", _LaunchRecorder)  # noqa: B010 - for the type checker, it is another module's import
-    setattr(processes, "find", _as_it_is)  # noqa: B010
+    setattr(processes, "find", _unresolved)  # noqa: B010
     _planned.clear()
     status = run_command(line)
     return json.dumps({"status": status, "steps": _planned})

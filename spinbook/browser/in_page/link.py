@@ -1,6 +1,6 @@
-"""How a process in a web worker reaches the others: through the page, which is the hub.
+"""Connects a process in a web worker to the others, through the page, which is the hub.
 
-Waiting is a promise, awaited on the program's own stack (see threads.py), so that a program blocks in `rclpy.spin`
+Waiting is a promise that is awaited on the program's own stack (see threads.py): the program blocks in `rclpy.spin`
 while the worker's event loop continues.
 """
 
@@ -15,8 +15,8 @@ from typing import Any, SupportsFloat
 from rcl_python.link import Frame
 from spinbook.browser.in_page import threads
 
-#: A program that never waits lets others run after this time (s).
-_BREATH_S = 0.02
+#: A program that never waits lets the page run after this time (s).
+_YIELD_AFTER_S = 0.02
 
 
 class PageLink:
@@ -27,7 +27,7 @@ class PageLink:
 
         self.lock = threads.NotifyingCondition(threading.RLock())
         self._page, self._to_js = page, to_js
-        self._breathed = time.monotonic()
+        self._yielded = time.monotonic()
 
     def send(self, frame: Frame, data: bytes = b"") -> None:
         """Send a frame to the page."""
@@ -47,12 +47,12 @@ class PageLink:
             self.lock._acquire_restore(held)  # type: ignore[attr-defined]
 
     def _pause(self, nanoseconds: int | None) -> None:
-        self._breathed = time.monotonic()
+        self._yielded = time.monotonic()
         threads.pause(-1 if nanoseconds is None else nanoseconds / 1e6, True)
 
     def breathe(self, looks: bool, news: bool) -> int:
-        """Let frames in, if none could come for a while."""
-        if time.monotonic() - self._breathed > _BREATH_S:
+        """Let the page run, so that frames arrive, if the program has not waited for a while."""
+        if time.monotonic() - self._yielded > _YIELD_AFTER_S:
             self.wait(0)
         return 0
 
@@ -65,7 +65,7 @@ class PageLink:
         return time.time_ns()
 
     def sleep(self, seconds: SupportsFloat) -> None:
-        """Sleep as time.sleep does; signals end it."""
+        """Sleep as time.sleep does; a signal whose handler raises ends it."""
         from rcl_python import participant
 
         until = time.monotonic() + float(seconds)
@@ -73,7 +73,7 @@ class PageLink:
             self._pause(int(left * 1e9))
             participant.current().pump()
 
-    def heed(self) -> None:
+    def deliver_signals(self) -> None:
         """Handle the signals that have arrived."""
         from rcl_python import participant
 

@@ -1,6 +1,6 @@
-"""Counts the messages that stay within the program, of which its hub would not know.
+"""Counts the messages that stay inside the program, which its hub does not see.
 
-This is what messages.cpp of rmw_lockstep does for the grader.
+In the grader, messages.cpp of rmw_lockstep does this.
 """
 
 from __future__ import annotations
@@ -9,22 +9,22 @@ from collections import Counter
 
 from rcl_python.graph import EndpointInfo
 
-#: So many of one endpoint, at one moment, are reported to the hub.
+#: Report to the hub after this many messages from one endpoint at one moment.
 REPORTED = 100
 
-#: Whoever calls a logger in a loop sends many of these, and they lead to nothing.
+#: Log messages do not count: logging in a loop is harmless.
 LOG = "/rosout"
 
 
 class LocalMessages:
-    """Messages and requests of the current moment, by the endpoints that sent them."""
+    """Counts messages and requests of the current moment, by the endpoint that sent them."""
 
     def __init__(self) -> None:
         self._now = 0
         self._sent: Counter[str] = Counter()
 
     def count(self, sender: EndpointInfo, now: int) -> bool:
-        """Count what was sent at the time `now` (ns). Return whether to report `REPORTED` of this sender."""
+        """Count a message sent at the time `now` (ns). Return whether to report `REPORTED` messages of its sender."""
         if sender.topic == LOG:
             return False
         if now != self._now:

@@ -1,4 +1,4 @@
-"""The node graph of the page: as this process knows it, at once, or with rates counted over some seconds."""
+"""The node graph of the page: at once, as this process knows it, or with rates measured over some seconds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from spinbook.graph.layout import drawings
 from spinbook.graph.model import GraphEndpoint, GraphNode, GraphTopic, NodeGraph
 from spinbook.graph.picture import in_words, node_graph_svgs
 
-#: Every node has these.
+#: Topics that every node has.
 _INTERNAL = ("/rosout", "/parameter_events")
 
 
@@ -24,7 +24,7 @@ def now() -> str:
 
 
 def counted(seconds: float) -> str:
-    """Return the same as `now`, with the rates counted over this many seconds."""
+    """Return the same as `now`, with message rates measured over this many seconds."""
     from spinbook.graph.watcher import graph_now
 
     return _shown(graph_now(seconds))
@@ -52,7 +52,7 @@ def _topic(name: str, ends: list[EndpointInfo], nodes: dict[str, str]) -> GraphT
 
 
 def _ends(ends: list[EndpointInfo], others: list[EndpointInfo], nodes: dict[str, str]) -> tuple[GraphEndpoint, ...]:
-    """Return one end for each node and type; connected if any of its ends is."""
+    """Return one endpoint for each node and type. It is connected if any endpoint of that node and type is."""
     connected: dict[tuple[str, str], bool] = {}
     for end in ends:
         key = nodes[end.node], end.type

@@ -1,4 +1,4 @@
-"""`%plot` in a page: the process of plain cells records, and draws as the notebook does."""
+"""`%plot` in a page: the process of plain cells records and draws, as the notebook does."""
 
 from __future__ import annotations
 

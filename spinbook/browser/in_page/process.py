@@ -1,4 +1,4 @@
-"""A process of the page: a program runs as `python3 FILE` would run it, and ends as a process ends."""
+"""A process of the page: runs a program as `python3 FILE` would, with an exit status at the end."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ _ABSENT = ("numpy", "matplotlib", "scipy", "cv2", "pandas")
 
 
 def open_process(page: Any, identity: str) -> None:
-    """Prepare the process: join the graph, and replace waiting by what a page can do."""
-    threads.use(page, lambda: link.heed())
+    """Prepare the process: join the graph, and replace everything that waits in a way a page can't."""
+    threads.use(page, lambda: link.deliver_signals())
     link = PageLink(page)
     participant.use(link, identity)
     time.sleep = link.sleep  # type: ignore[assignment]
     logs.write = lambda line: print(line, file=sys.stderr)
     abort.end = _abort
-    # A pool of one thread would be none; how many there are is not the page's to know.
+    # Browsers do not reveal the number reliably, and Pyodide's is 1: pools would have a single thread.
     os.cpu_count = lambda: _PROCESSORS
     rcl_python.install()
     program_imports.watch()
@@ -61,7 +61,7 @@ def import_rclpy() -> None:
 
 
 def find_grader_in(archive: str) -> None:
-    """Let Python find the grader in this archive, where it is complete, and no longer in that of every process."""
+    """Make Python find the grader in this archive, which has all of it; other archives have only a part."""
     grader.__path__[:] = [f"{archive}/grader"]
     rmw_lockstep.__path__.append(f"{archive}/rmw_lockstep")
 
@@ -80,7 +80,7 @@ def run_program(source: str, file: str, args: Sequence[str], environment: Mappin
 
 
 def _to_its_end(source: str, file: str, main: types.ModuleType) -> None:
-    """Run a program, and wait for the threads that it leaves behind."""
+    """Run a program, and wait for its threads, as Python does at exit."""
     try:
         exec(compile(source, file, "exec"), main.__dict__)
     finally:
@@ -122,7 +122,7 @@ def _show_traceback() -> None:
 
 
 def _explain(error: BaseException) -> None:
-    """Explain in one sentence what a page does not have, if that was the reason."""
+    """Print one sentence about what a page does not have, if that caused the error."""
     name = (getattr(error, "name", None) or "").partition(".")[0]
     if isinstance(error, ImportError) and name in _ABSENT:
         print(_NO_NUMPY.format(name=name), file=sys.stderr)

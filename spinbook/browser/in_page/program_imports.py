@@ -1,7 +1,7 @@
-"""Lets a program see only those modules of ROS that it has imported itself, as in a new Python.
+"""Shows a program only the ROS modules that it has imported itself, as in a new Python.
 
 A program of a page shares its interpreter with the page's own code, which has imported rclpy before the program begins,
-and messages for the grader's runner and for `ros2`. The two take turns, and never run at the same time. A program that
+and messages for the grader's runner and for `ros2`. The two take turns and never run at the same time. A program that
 forgets to import `rclpy.node` or `sensor_msgs.msg` fails here with the same AttributeError as on a robot.
 """
 
@@ -28,14 +28,14 @@ def watch() -> None:
 
 
 def begin_program() -> None:
-    """Hide all modules, because a new program begins, and it is its turn."""
+    """Hide all modules: a new program begins its turn."""
     preloaded.hide()
     preloaded.forget_type_support()
     turn_to_program()
 
 
 def turn_to_program() -> None:
-    """Hide what only the page's own code has imported: the program goes on."""
+    """Hide what only the page's own code has imported: the program continues."""
     global _is_programs_turn
     _is_programs_turn = True
     if _own:
@@ -44,20 +44,20 @@ def turn_to_program() -> None:
 
 
 def turn_to_page() -> None:
-    """Let the page's own code go on. What it imports from now on is hidden at the program's next turn."""
+    """Continue with the page's own code. What it imports from now on is hidden at the program's next turn."""
     global _is_programs_turn
     _is_programs_turn = False
 
 
 def show_all() -> None:
-    """Let the page's own code go on, which may use modules that it has imported long ago."""
+    """Continue with the page's own code, and show it all modules that it has imported before."""
     turn_to_page()
     _own.update(dict.fromkeys(preloaded.show_all()))
 
 
 @contextlib.contextmanager
 def programs_turn() -> Iterator[None]:
-    """Let it be the program's turn inside the `with` block: it goes on with what it has imported in earlier blocks."""
+    """Give the program its turn inside the `with` block. It still sees what it imported in earlier blocks."""
     preloaded.forget_type_support()
     turn_to_program()
     try:
@@ -72,7 +72,7 @@ def _imported(name: str) -> None:
 
 
 class _RememberingFinder(preloaded.Finder):
-    """Also finds modules that are imported for the first time, and remembers them."""
+    """Finds modules that are imported for the first time, too, and remembers them."""
 
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
@@ -102,7 +102,7 @@ class _RememberingLoader(Loader):
         return self._loader.create_module(spec)
 
     def exec_module(self, module: ModuleType) -> None:
-        """Run the module's code; it shall not know of this loader."""
+        """Run the module's code, with the other loader as its `__loader__`."""
         spec = module.__spec__
         assert spec
         spec.loader = module.__loader__ = self._loader

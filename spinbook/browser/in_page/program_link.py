@@ -1,7 +1,6 @@
-"""The program's end of the connection to a page's hub: what rcl_python sends and receives, as frames of PROTOCOL.md.
+"""The program's side of the connection to a page's hub: translates rcl_python's frames to those of PROTOCOL.md.
 
-Time is what the hub grants. The program waits in one place only, and when it waits there, it is idle: then it is the
-hub's turn.
+The hub grants the time. The program waits in one place only; when it waits there, it is idle, and it is the hub's turn.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ _BARRIER, _TIME_KIND = ord("|"), ord("T")
 
 
 class ProgramLink:
-    """The link of a program whose whole world is a page's hub."""
+    """The link of a program that communicates only with a page's hub."""
 
     def __init__(self, hub: PageHub, turns: Turns) -> None:
         self.lock = threads.NotifyingCondition(threading.RLock())
@@ -48,7 +47,7 @@ class ProgramLink:
     def send(self, frame: Frame, data: bytes = b"") -> None:
         """Hand a frame to the hub, which takes it at once."""
         if self._turns.is_done:
-            return  # such as an object of the program's that is collected later
+            return  # for example, garbage collection destroys a publisher after the end
         if not self._in_order(frame):
             return
         thread = self.scheduler.number()
@@ -57,13 +56,13 @@ class ProgramLink:
             try:
                 self._handle(kind, payload)
             except Exception as fault:
-                # The hub's thread raises it, and the program stops here.
+                # The hub's thread raises it; the program ends here.
                 self._turns.fault = fault
                 self._turns.let_hub_go_on()
-                self.heed()
+                self.deliver_signals()
 
     def keep(self, sender: EndpointInfo) -> None:
-        """Count what nobody else gets, and tell the hub when it is much at one moment."""
+        """Count a message that stays inside the program; report to the hub when there are too many."""
         self._activity += 1
         if self._kept.count(sender, self._now):
             self.send({"op": "kept", "from": sender.gid, "n": REPORTED})
@@ -77,7 +76,10 @@ class ProgramLink:
             program_imports.turn_to_program()
 
     def _in_order(self, frame: Frame) -> bool:
-        """Whether to tell the hub. Garbage has no order, but endpoints leave before their node, and only once."""
+        """Return whether to send a frame to the hub; send those first that must come before it.
+
+        Garbage collection has no order, but the hub expects endpoints to leave before their node, and only once.
+        """
         op = frame["op"]
         if op == "endpoint":
             self._ends[frame["gid"]] = frame["node"]
@@ -98,9 +100,9 @@ class ProgramLink:
             self._connection.handled += 1
             self._number += 1
             self._activity += 1
-            found = _decoded(frame[4], frame[_HEADER:], self._number)
-            if found:
-                yield found
+            decoded = _decoded(frame[4], frame[_HEADER:], self._number)
+            if decoded:
+                yield decoded
 
     # --- time
 
@@ -109,7 +111,7 @@ class ProgramLink:
         held = self.lock._release_save()  # type: ignore[attr-defined]
         try:
             self.scheduler.wait(nanoseconds, in_ros=True)
-            self._busy.waited(self.scheduler.number(), self._now)
+            self._busy.note_wait(self.scheduler.number(), self._now)
         finally:
             self.lock._acquire_restore(held)  # type: ignore[attr-defined]
 
@@ -121,15 +123,15 @@ class ProgramLink:
             participant.current().pump()
 
     def wait_for_hub(self, until: int | None, in_ros: int) -> None:
-        """All threads wait, `in_ros` of them in ROS: until a frame, the time or a signal arrives."""
+        """Wait until a frame or a signal arrives, or until the time `until` (ns); `in_ros` threads wait in ROS."""
         while not self._goes_on(until) and not self._turns.is_done and not self._turns.signal:
             self._connection.report_idle(self._now, until, in_ros)
             self._turns.let_hub_go_on()
 
-    def heed(self) -> None:
-        """Do, in the main thread, what the hub wants: end, or handle a signal. Raises `RunFinished`."""
+    def deliver_signals(self) -> None:
+        """End, or handle a signal, if the hub has requested it. Call this in the main thread. Raises `RunFinished`."""
         if self._turns.has_ended:
-            return  # what cleans up behind it may wait
+            return  # the clean-up after the program may still wait
         if self._turns.is_over:
             raise RunFinished
         if self._turns.signal:
@@ -137,24 +139,24 @@ class ProgramLink:
             interrupt(name)
 
     def abort(self, text: str) -> None:
-        """End the program as C code ends one, with these last words. Raises `RunFinished`."""
+        """End the program as C's abort() does, with this message. Raises `RunFinished`."""
         print(text, file=sys.stderr)
         self._turns.aborted = self._turns.is_over = True
         self.scheduler.leave_to_main()
         raise RunFinished
 
     @property
-    def is_wanted(self) -> bool:
+    def has_request(self) -> bool:
         """Whether the main thread has a request to handle."""
         return self._turns.is_over or bool(self._turns.signal)
 
     @property
     def has_frames(self) -> bool:
-        """Whether frames are waiting."""
+        """Whether frames have arrived that were not received yet."""
         return bool(self._connection.queued)
 
     def _goes_on(self, until: int | None) -> bool:
-        """Advance time as far as it was granted. Return whether a frame is waiting, or the time has come."""
+        """Advance time as far as it was granted. Return whether there is a frame to receive, or `until` is reached."""
         queued = self._connection.queued
         while queued:
             if queued[0][4] == _TIME_KIND:
@@ -170,12 +172,12 @@ class ProgramLink:
         return until is not None and until <= self._now
 
     def breathe(self, looks: bool, news: bool) -> int:
-        """How long a thread is to wait for news first (ns) that would never get past this moment."""
+        """Return how long a thread is to sleep before it continues (ns): 0, unless it is busy (see busy_threads.py)."""
         thread = self.scheduler.number()
         if news:
-            self._busy.found(thread)
+            self._busy.note_news(thread)
             return 0
-        return self._busy.rest(thread, looks, self._activity, self.scheduler.waits[thread], self._now)
+        return self._busy.sleep_ns(thread, looks, self._activity, self.scheduler.waits[thread], self._now)
 
     def steady(self) -> int:
         """Return the hub's time (ns)."""
@@ -234,16 +236,16 @@ def _key(number: int) -> str:
 
 
 def _endpoint(frame: Frame) -> frames.EndpointFrame:
-    given = frame["qos"]
+    declared = frame["qos"]
     qos = QosPolicies(
-        given["history"] or KEEP_LAST,
-        given["depth"],
-        given["reliability"],
-        given["durability"],
-        given["liveliness"] or AUTOMATIC,
-        given["deadline"] or INFINITE,
-        given["lifespan"] or INFINITE,
-        given["lease"] or INFINITE,
+        declared["history"] or KEEP_LAST,
+        declared["depth"],
+        declared["reliability"],
+        declared["durability"],
+        declared["liveliness"] or AUTOMATIC,
+        declared["deadline"] or INFINITE,
+        declared["lifespan"] or INFINITE,
+        declared["lease"] or INFINITE,
     )
     kind = _KINDS.index(frame["kind"])
     return frames.EndpointFrame(
@@ -252,7 +254,7 @@ def _endpoint(frame: Frame) -> frames.EndpointFrame:
 
 
 def _decoded(kind: int, payload: bytes, number: int) -> tuple[Frame, bytes] | None:
-    """Return what rcl_python receives, if anything."""
+    """Return the frame for rcl_python; None if it does not need this one."""
     decode = _DECODERS.get(chr(kind))
     return decode(payload, number) if decode else None
 

@@ -1,6 +1,6 @@
-"""Replaces spinbook/kernel/reply_reader.py in a page, for the timeline's recorder.
+"""Replaces spinbook/kernel/reply_reader.py in a page, for the recorder of timelines.
 
-The page sends every answer to the recorder as well, so nothing of the middleware is needed.
+The page sends every response to the recorder as well, so this reader needs nothing from the middleware.
 """
 
 from __future__ import annotations
@@ -14,23 +14,23 @@ from rcl_python.link import Frame
 
 
 class PageReplyReader:
-    """The answers of one service; `answer` is their class."""
+    """Reads the responses of one service; `response` is their class."""
 
-    def __init__(self, node: Any, service: str, answer: Any) -> None:
-        self._service, self._answer = service, answer
-        self._heard: deque[tuple[float, bytes]] = deque()
-        participant.current().overhearing.append(self._hear)
+    def __init__(self, node: Any, service: str, response: Any) -> None:
+        self._service, self._response = service, response
+        self._received: deque[tuple[float, bytes]] = deque()
+        participant.current().overhearing.append(self._receive)
 
-    def _hear(self, frame: Frame, data: bytes) -> None:
+    def _receive(self, frame: Frame, data: bytes) -> None:
         server = participant.current().graph.endpoints.get(frame["from"])
         if server is not None and server.topic == self._service:
-            self._heard.append((frame["sent"] / 1e9, data))
+            self._received.append((frame["sent"] / 1e9, data))
 
     def take(self) -> Iterator[tuple[float, Any]]:
-        """Yield what has arrived since the last call: (when it was sent in s since the epoch, the answer)."""
-        while self._heard:
-            sent, data = self._heard.popleft()
-            yield sent, cdr.deserialize(data, self._answer)
+        """Yield the responses since the last call, each with the time when it was sent (s since the epoch)."""
+        while self._received:
+            sent, data = self._received.popleft()
+            yield sent, cdr.deserialize(data, self._response)
 
 
 #: The name by which the recorder imports it.

@@ -1,8 +1,7 @@
 """Runs a student's program through a scenario, in simulated time and in one interpreter with the grader's own runner.
 
-The program's threads take turns, and when all of them wait it is the turn of the thread in which grader/runner does
-what the scenario says. So nothing depends on timing, and every run is the same; the recording is the grader's own.
-
+The program's threads take turns. When all of them wait, it is the turn of the thread in which grader/runner follows
+the scenario. So nothing depends on timing, and every run gives the same recording, in the grader's own form.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ from spinbook.browser.in_page.program_link import ProgramLink, join
 
 @dataclass(frozen=True)
 class ProgramText:
-    """What a student wrote: the file's name and its text."""
+    """A student's program: the file's name and its text."""
 
     file: str
     source: str
@@ -43,7 +42,7 @@ class ProgramText:
 
 @dataclass(frozen=True)
 class ProgramEnd:
-    """How a program ended."""
+    """How a program ended: its exit code, or the signal that killed it. No limits apply in a page."""
 
     code: int | None
     signal: int | None = None
@@ -52,7 +51,7 @@ class ProgramEnd:
 
 @dataclass(frozen=True)
 class ProgramOutput:
-    """What a program wrote."""
+    """What a program has printed. Nothing is dropped in a page."""
 
     text: str
     dropped: int = 0
@@ -68,7 +67,7 @@ class PageProgram:
         self.code = 0
 
     def pids(self) -> Collection[int]:
-        """Its process ids: none, as it runs in this process."""
+        """Return its process ids: none, because it runs in this process."""
         return ()
 
     def output(self) -> ProgramOutput:
@@ -76,18 +75,18 @@ class PageProgram:
         return ProgramOutput(self._log.getvalue())
 
     def poll(self) -> ProgramEnd | None:
-        """How it ended, if it has."""
+        """Return how it ended; None if it still runs."""
         return self._end() if self._turns.has_ended else None
 
     def _end(self) -> ProgramEnd:
         return ProgramEnd(None, signal.SIGABRT) if self._turns.aborted else ProgramEnd(self.code)
 
     def wait(self, timeout_s: float) -> ProgramEnd | None:
-        """Return the same as `poll`: nothing happens meanwhile."""
+        """Return the same as `poll`: the program does not run while the grader's thread does."""
         return self.poll()
 
     def interrupt(self) -> None:
-        """Let it receive SIGINT when it continues."""
+        """Make it receive SIGINT when it continues."""
         self._turns.signal = "SIGINT"
 
     def cpu_seconds(self) -> float:
@@ -99,7 +98,7 @@ class PageProgram:
         return False
 
     def kill(self) -> ProgramEnd:
-        """Stop it."""
+        """End the program, and return how it ended."""
         if not self._turns.has_ended:
             self._turns.is_over = True
             self._turns.let_program_go_on()
@@ -107,22 +106,22 @@ class PageProgram:
 
 
 def run(exercise: Exercise, scenario: Scenario, program: ProgramText) -> Recording:
-    """Run the program. Every fault of it is in the recording. Raises for faults of ours."""
-    gc.collect()  # what the program before has left behind must not leave this one's graph
+    """Run the program. The recording shows every fault of the program; faults of the grader are raised."""
+    gc.collect()  # otherwise, nodes of the previous program might be collected during this run, and leave its graph
     turns, log = Turns(), io.StringIO()
     hub, running = PageHub(turns), PageProgram(turns, log)
     link = join(hub, turns)
     task = Task(exercise, scenario, program.file, program.source)
-    found: list[Recording | BaseException] = []
+    outcome: list[Recording | BaseException] = []
 
     over = threads.raw_lock()
     over.acquire()
 
     def grade() -> None:
         try:
-            found.append(ScenarioRun(task, running, hub).run(time.monotonic()))
+            outcome.append(ScenarioRun(task, running, hub).run(time.monotonic()))
         except BaseException as fault:
-            found.append(fault)
+            outcome.append(fault)
             running.kill()
         over.release()
 
@@ -131,9 +130,9 @@ def run(exercise: Exercise, scenario: Scenario, program: ProgramText) -> Recordi
         link.run(lambda: _main(program, running, log))
     over.acquire()
     program_imports.show_all()
-    if isinstance(found[0], BaseException):
-        raise found[0]
-    return found[0]
+    if isinstance(outcome[0], BaseException):
+        raise outcome[0]
+    return outcome[0]
 
 
 def _main(program: ProgramText, running: PageProgram, log: io.StringIO) -> None:
@@ -152,7 +151,7 @@ def _main(program: ProgramText, running: PageProgram, log: io.StringIO) -> None:
         traceback.print_exception(type(error), error, _without_runner(error.__traceback__), file=log)
         running.code = 130 if isinstance(error, KeyboardInterrupt) else 1
     if running.code:
-        gc.collect()  # nodes that only the traceback held leave the graph before the end, as in a process that ends
+        gc.collect()  # only the traceback held its nodes: they leave the graph now, as when a process ends
 
 
 def _status(code: object, log: io.StringIO) -> int:
@@ -168,8 +167,8 @@ def _without_runner(trace: types.TracebackType | None) -> types.TracebackType | 
     return trace
 
 
-def _forget_rclpy_s() -> None:
-    """Let the next program see rclpy as it is after its import: a signal ends contexts without rclpy noticing."""
+def _reset_rclpy() -> None:
+    """Reset rclpy's globals to their state after import: a signal ends contexts without rclpy noticing."""
     import rclpy
     import rclpy.utilities
 
@@ -180,7 +179,7 @@ def _forget_rclpy_s() -> None:
 
 @contextmanager
 def _as_main(program: ProgramText, scenario: Scenario, log: io.StringIO, link: ProgramLink) -> Iterator[None]:
-    """Let the program be `__main__`, started as the grader starts it; keep what it prints; clean up behind it."""
+    """Make the program `__main__`, with the grader's arguments, and keep what it prints; clean up afterwards."""
     before = sys.modules["__main__"], sys.argv, logs.write, abort.end, dict(os.environ)
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     main = types.ModuleType("__main__")
@@ -204,12 +203,12 @@ def _as_main(program: ProgramText, scenario: Scenario, log: io.StringIO, link: P
         os.environ.update(environment)
         for number, handler in handlers.items():
             signal.signal(number, handler)
-        _forget_rclpy_s()
+        _reset_rclpy()
 
 
 @contextmanager
 def _time_of(link: ProgramLink) -> Iterator[None]:
-    """Let the clocks of the program's threads show what the hub grants; those of the grader's stay as they are."""
+    """Make the program's threads see the hub's time in Python's clocks; the grader's threads see the real time."""
     ours = {name: getattr(time, name) for name in ("sleep", "time", "time_ns", "monotonic", "monotonic_ns")}
     theirs: dict[str, Callable[..., float | None]] = {
         "sleep": link.sleep,
@@ -220,8 +219,8 @@ def _time_of(link: ProgramLink) -> Iterator[None]:
     }
 
     def choose(name: str) -> Callable[..., float | None]:
-        def clock(*given: float) -> float | None:
-            return (theirs if link.scheduler.schedules(threads.get_ident()) else ours)[name](*given)
+        def clock(*args: float) -> float | None:
+            return (theirs if link.scheduler.schedules(threads.get_ident()) else ours)[name](*args)
 
         return clock
 

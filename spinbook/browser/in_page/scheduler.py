@@ -1,7 +1,7 @@
-"""Decides whose turn it is among the threads of a program that is being checked: one at a time, in a fixed order.
+"""Schedules the threads of a program that is being checked: one runs at a time, in a fixed order.
 
-A thread runs until it waits; then it is the turn of the next one that has anything new to look at. When all of them
-wait, the program is idle, and the hub is notified.
+A thread runs until it waits; then it is the turn of the next one that has something new to check. When all of them
+wait, the program is idle, and the hub gets its turn.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any, Protocol
 from rcl_python import participant
 from spinbook.browser.in_page import threads
 
-#: How many more times a thread that has to end may wait, such as in a `finally`.
+#: A thread that has to end may wait this many times more, for example in a `finally`.
 _WAITS_AFTER_END = 100
 
 
@@ -21,25 +21,25 @@ class HubTime(Protocol):
     """What the scheduler needs of the program's connection to the hub."""
 
     @property
-    def is_wanted(self) -> bool:
+    def has_request(self) -> bool:
         """Whether the main thread has a request to handle."""
 
     @property
     def has_frames(self) -> bool:
-        """Whether frames are waiting."""
+        """Whether frames have arrived that were not received yet."""
 
     def steady(self) -> int:
         """Return the hub's time (ns)."""
 
-    def heed(self) -> None:
-        """Do, in the main thread, what the hub wants."""
+    def deliver_signals(self) -> None:
+        """End, or handle a signal, if the hub has requested it. Call this in the main thread."""
 
     def wait_for_hub(self, until: int | None, in_ros: int) -> None:
-        """Wait, with `in_ros` threads in ROS, until a frame, the time (ns) or a signal arrives."""
+        """Wait until a frame or a signal arrives, or until the time `until` (ns); `in_ros` threads wait in ROS."""
 
 
 class Scheduler:
-    """The threads of one program; the one that makes it is the main thread."""
+    """Schedules the threads of one program. The thread that creates it is the main thread."""
 
     def __init__(self, link: HubTime) -> None:
         self._link = link
@@ -55,7 +55,7 @@ class Scheduler:
         """How often each thread wanted to wait after the program's end; None before that."""
 
     def close(self) -> None:
-        """The program has ended. Its other threads end where they wait, so that no stack of theirs is left behind."""
+        """End the other threads where they wait, after the program's end, so that none of their stacks is left."""
         self._waits_after_end = Counter()
         for thread in [thread for thread in self._gates if thread != self._main]:
             self._gates[thread].release()
@@ -68,7 +68,7 @@ class Scheduler:
         return thread in self._gates
 
     def number(self) -> int:
-        """Return the thread whose turn it is, counted from 1."""
+        """Return the number of the thread whose turn it is, counted from 1."""
         return self._numbers.get(threads.get_ident(), 1)
 
     def start(self, run: Callable[[], None]) -> int:
@@ -95,16 +95,16 @@ class Scheduler:
         self._to_check.update(self._due)
 
     def pause(self, milliseconds: float) -> None:
-        """Wait for another thread, for so long at most (-1: without a limit)."""
+        """Wait for another thread, at most this long (-1: without a limit)."""
         self.wait(None if milliseconds < 0 else round(milliseconds * 1e6), in_ros=False)
 
     def leave_to_main(self) -> None:
-        """Wait without end, unless this is the main thread."""
+        """Wait forever, unless this is the main thread."""
         if threads.get_ident() != self._main:
             self.wait(None, in_ros=False)
 
     def wait(self, nanoseconds: int | None, in_ros: bool) -> None:
-        """Let others have their turns: for so long, or until there is anything new to look at."""
+        """Let other threads run, for this long (None: no limit) or until there is something new to check."""
         mine = threads.get_ident()
         self._end_after_program(mine)
         self.waits[self.number()] += 1
@@ -119,11 +119,11 @@ class Scheduler:
         self._in_ros.discard(mine)
         self._to_check.discard(mine)
         if mine == self._main:
-            self._link.heed()
+            self._link.deliver_signals()
         self._end_after_program(mine)
 
     def _end_after_program(self, mine: int) -> None:
-        """After the program's end, end as `sys.exit` does; a thread that continues waits forever."""
+        """End this thread as `sys.exit` does, if the program has ended. One that continues waits forever."""
         if self._waits_after_end is None or mine == self._main:
             return
         self._waits_after_end[mine] += 1
@@ -142,7 +142,7 @@ class Scheduler:
     def _next(self, mine: int) -> int:
         """Return whose turn it is after this one; wait for the hub if all wait."""
         while True:
-            if self._link.is_wanted and self._main in self._due:
+            if self._link.has_request and self._main in self._due:
                 return self._main
             known = list(self._gates)
             at = known.index(mine) + 1
@@ -159,7 +159,7 @@ class Scheduler:
         dues = [due for due in self._due.values() if due is not None]
         self._link.wait_for_hub(min(dues, default=None), len(self._in_ros))
         if not self._in_ros and self._link.has_frames:
-            # No other thread takes them in.
+            # No thread waits in ROS, so none would receive them.
             participant.current().pump()
         self.changed()
 

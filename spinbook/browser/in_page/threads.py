@@ -1,9 +1,9 @@
-"""Threads in a page: each runs on a stack of its own in the one thread that a web worker has, and they take turns.
+"""Threads in a page: they take turns in the one thread of a web worker, each on a stack of its own.
 
 A thread that waits, for a lock, a message or the time, lets the others run: it awaits a promise on its own stack
 (JavaScript Promise Integration, JSPI). Nothing else interrupts it, so a thread that computes without a pause keeps the
-others waiting. The primitives of `threading` are replaced: locks, and the start and the identity of threads; all that
-is built on these (Condition, Event, Semaphore, queues, ThreadPoolExecutor) is Python's own.
+others waiting. This module replaces the primitives of `threading`: locks, and the start and the identity of threads.
+Everything built on these (Condition, Event, Semaphore, queues, ThreadPoolExecutor) is Python's own.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ _main = threading.get_ident()
 _current = _main
 _page: Any = None
 _await: Callable[[Any], None]
-_heed: Callable[[], None]
+_deliver_signals: Callable[[], None]
 _waiting = 0
 
 
 class ThreadScheduler(Protocol):
-    """Decides whose turn it is among the threads of a program that is being checked (scheduler.py)."""
+    """Schedules the threads of a program that is being checked (scheduler.py)."""
 
     def schedules(self, thread: int) -> bool: ...
     def pause(self, milliseconds: float) -> None: ...
@@ -43,7 +43,7 @@ _scheduler: ThreadScheduler | None = None
 
 
 def use_scheduler(scheduler: ThreadScheduler | None) -> None:
-    """Let this scheduler decide from now on; None for no scheduler."""
+    """Use this scheduler from now on; None for no scheduler."""
     global _scheduler
     _scheduler = scheduler
 
@@ -54,7 +54,7 @@ def get_ident() -> int:
 
 
 def pause(milliseconds: float, for_frames: bool) -> None:
-    """Let others run for so long (-1: without a limit), or until something has changed, or a frame has arrived."""
+    """Let other threads run for this long (-1: no limit), or until something changes or a frame arrives."""
     if _scheduler and _scheduler.schedules(get_ident()):
         _scheduler.pause(milliseconds)
     elif _page:
@@ -75,7 +75,7 @@ def _pause_in_page(milliseconds: float, for_frames: bool) -> None:
         _current = mine
         garbage.after_resuming(_waiting)
     if mine == _main:
-        _heed()
+        _deliver_signals()
 
 
 def changed() -> None:
@@ -94,7 +94,7 @@ class Lock:
         self._wanted = 0
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Take it, waiting for at most `timeout` seconds; return whether it was taken."""
+        """Acquire the lock, waiting for at most `timeout` seconds; return whether it was acquired."""
         until = None if timeout < 0 else time.monotonic() + timeout
         while self._held:
             left = -1.0 if until is None else 1000 * (until - time.monotonic())
@@ -112,7 +112,7 @@ class Lock:
             self._wanted -= 1
 
     def release(self) -> None:
-        """Release it. Raises RuntimeError if it is not held."""
+        """Release the lock. Raises RuntimeError if it is not held."""
         if not self._held:
             raise RuntimeError("release unlocked lock")
         self._held = False
@@ -134,10 +134,10 @@ class Lock:
 
 
 class _RawLock(Lock):
-    """A lock without a scheduler."""
+    """A lock that waits without the scheduler."""
 
     def release(self) -> None:
-        """Release it."""
+        """Release the lock."""
         self._held = False
         if self._wanted:
             _page.wake()
@@ -151,7 +151,7 @@ class _RawLock(Lock):
 
 
 class NotifyingCondition(threading.Condition):
-    """A condition that also notifies those who wait for messages."""
+    """A condition that also wakes threads that wait for messages."""
 
     def notify_all(self) -> None:
         """Let all waiting threads check again."""
@@ -182,7 +182,7 @@ class Handle:
 
 
 def raw_lock() -> Any:
-    """Return a lock for schedulers: it waits without one."""
+    """Return a lock for the scheduler itself: it waits without one."""
     return _RawLock() if _page else _thread.allocate_lock()
 
 
@@ -194,12 +194,12 @@ def raw_start(run: Callable[[], None]) -> int:
 
     number = next(_numbers)
 
-    def as_it() -> None:
+    def run_as_thread() -> None:
         global _current
         _current = number
         run()
 
-    _page.spawn(create_proxy(as_it))
+    _page.spawn(create_proxy(run_as_thread))
     return number
 
 
@@ -231,12 +231,12 @@ def _set_sentinel() -> Lock:
     return _sentinels.setdefault(get_ident(), Lock())
 
 
-def _start_new(function: Callable[..., None], given: tuple[Any, ...]) -> int:
+def _start_new(function: Callable[..., None], args: tuple[Any, ...]) -> int:
     """Start a thread: called by `threading` (Python 3.12 and older)."""
 
     def run() -> None:
         try:
-            function(*given)
+            function(*args)
         finally:
             sentinel = _sentinels.pop(get_ident(), None)
             if sentinel and sentinel.locked():
@@ -245,20 +245,20 @@ def _start_new(function: Callable[..., None], given: tuple[Any, ...]) -> int:
     return _begin(run)
 
 
-def use(page: Any, heed: Callable[[], None]) -> None:
-    """Replace Python's threads. `heed` is called in the main thread after each wait: it handles signals.
+def use(page: Any, deliver_signals: Callable[[], None]) -> None:
+    """Replace Python's threads. After each wait, `deliver_signals` is called in the main thread.
 
     Call this before anything is imported that keeps a lock.
     """
-    global _page, _await, _heed
+    global _page, _await, _deliver_signals
     from pyodide.ffi import run_sync
 
-    _page, _await, _heed = page, run_sync, heed
+    _page, _await, _deliver_signals = page, run_sync, deliver_signals
     replace_threading()
 
 
 def replace_threading() -> None:
-    """Let `threading` and what is built on it use these threads. Without a page, threads must have a scheduler."""
+    """Make `threading` and everything built on it use these threads. Without a page, they need a scheduler."""
     patched: dict[str, Any] = {
         "Lock": Lock,
         "_allocate_lock": Lock,
@@ -274,7 +274,7 @@ def replace_threading() -> None:
     for name, value in patched.items():
         if hasattr(threading, name):
             setattr(threading, name, value)
-    # The one in C has its own way of waiting.
+    # The version in C has its own way of waiting.
     queue.SimpleQueue = queue._PySimpleQueue  # type: ignore[misc, attr-defined]
 
 

@@ -1,4 +1,4 @@
-"""`%timeline` in a page: one process records, and the page's other one draws."""
+"""`%timeline` in a page: one process records, and the process of plain cells draws."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 
 
 def record(names: Sequence[str]) -> None:
-    """Print every event of these services, actions and topics, until asked to end."""
+    """Print every event of these services, actions and topics, until interrupted."""
     from spinbook.kernel import timeline_recorder
 
     sys.argv = ["timeline", *names]
@@ -24,9 +24,9 @@ def drawn(names: Sequence[str], lines: Iterable[str], title: str) -> str:
     recorded.take(lines)
     kinds = recorded.kinds
     recorded.kinds = {name: kinds[name] for name in names if name in kinds}
-    found = lanes(recorded)
-    if recorded.error or not any(lane.marks for lane in found):
+    drawn_lanes = lanes(recorded)
+    if recorded.error or not any(lane.marks for lane in drawn_lanes):
         nothing = f"Nothing has happened on {', '.join(names)} since `%timeline --record`."
         return json.dumps({"picture": "", "words": "", "problem": recorded.error or nothing})
-    words = in_words(found, span_of(found)[0])
-    return json.dumps({"picture": moving_timeline(found, title), "words": words, "problem": ""})
+    words = in_words(drawn_lanes, span_of(drawn_lanes)[0])
+    return json.dumps({"picture": moving_timeline(drawn_lanes, title), "words": words, "problem": ""})

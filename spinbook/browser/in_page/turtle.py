@@ -1,4 +1,4 @@
-"""Turtlesim's window: a program that requests the running turtlesim's picture, and drives the turtle by keys."""
+"""Turtlesim's window: requests the picture from the running turtlesim, and drives the turtle with keys."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ _SPEED = 2.0
 
 
 class Window(Node):
-    """Sends pictures to `page`, and takes keys from it: pairs of how far ahead and how far to the left, -1 to 1."""
+    """Sends pictures to `page` and takes keys from it. A key has `ahead` and `left`, each -1, 0 or 1."""
 
     def __init__(self, page: Any) -> None:
         super().__init__("turtle_window", start_parameter_services=False, enable_rosout=False)
         self._page = page
         self._pictures = self.create_client(Trigger, "/turtlesim/picture")
         self._commands = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
-        self._asked: Any = None
-        self.create_timer(_PERIOD_S, self._look)
+        self._requested: Any = None
+        self.create_timer(_PERIOD_S, self._update)
 
-    def _look(self) -> None:
+    def _update(self) -> None:
         while (key := self._page.key()) is not None:
             command = Twist()
             command.linear.x, command.angular.z = _SPEED * key.ahead, _SPEED * key.left
             self._commands.publish(command)
-        if (self._asked is None or self._asked.done()) and self._pictures.service_is_ready():
-            self._asked = self._pictures.call_async(Trigger.Request())
-            self._asked.add_done_callback(lambda answer: self._page.picture(answer.result().message))
+        if (self._requested is None or self._requested.done()) and self._pictures.service_is_ready():
+            self._requested = self._pictures.call_async(Trigger.Request())
+            self._requested.add_done_callback(lambda reply: self._page.picture(reply.result().message))
 
 
 def show(page: Any) -> None:
-    """Show the window until the program is asked to end."""
+    """Show the window until the program is interrupted."""
     rclpy.init(args=[])
     rclpy.spin(Window(page))

@@ -1,4 +1,4 @@
-"""The chapter's package as files: what its cells have written, for programs and commands that read it."""
+"""The chapter's package as files: what its cells have written, for programs and commands to read."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ class ndarray:  # noqa: N801
 
     @property
     def size(self) -> int:
-        """How many there are."""
+        """The number of elements."""
         return len(self._values)
 
     @property

@@ -1,4 +1,4 @@
-// A cell of the page: its code, its output, and what it is.
+// A cell of the page: its code, its output, and its kind.
 import { createEditor } from "./editor.js";
 import { button, element } from "./elements.js";
 
@@ -17,7 +17,7 @@ class Cell {
     this.file = node.querySelector(".cell-file")?.textContent ?? "";
     this.kind = KINDS.find((kind) => node.classList.contains(`cell-${kind}`));
     this.name = this.file.replace(/\.py$/, "") || `cell ${cells.size + 1}`;
-    // What completes a program that the chapter shows in pieces; how long to wait for its output.
+    // The code that completes a program shown in pieces, how to start it, and how long to wait for its output.
     this.about = JSON.parse(node.querySelector(".cell-head").dataset.run ?? "{}");
     this.code = node.querySelector(".cell_input pre, .highlight pre");
     this.recorded = node.querySelector(".cell_output");
@@ -94,11 +94,12 @@ class Cell {
     if (text) this.print(text, "stderr");
   }
 
-  // Wait until its output contains what the chapter waits for, or for as long as the chapter shows it (s).
+  // Wait until the output contains the text that the chapter names, or for as long as the chapter shows output (s).
   shows(seconds) {
     return Promise.race([this.seen, new Promise((resolve) => setTimeout(resolve, 1000 * (this.about.seconds ?? seconds)))]);
   }
 
+  // What to do with the messages of a process.
   hears(name) {
     return {
       progress: (part) => this.say(`Loading ${part} …`),

@@ -7,7 +7,7 @@ function stored(key) {
   try {
     return localStorage.getItem(`code:${key}`);
   } catch {
-    return null; // It then holds for this page only.
+    return null; // Without storage, edits are lost when the page is closed.
   }
 }
 
@@ -16,11 +16,11 @@ function store(key, text) {
     if (text === null) localStorage.removeItem(`code:${key}`);
     else localStorage.setItem(`code:${key}`, text);
   } catch {
-    // As above.
+    // See `stored`.
   }
 }
 
-// Turns the code in `place`, a <pre>, into a field. Tab indents; Escape, then Tab, leaves it. Python keeps its colours.
+// Make the code in `place`, a <pre>, editable. Tab indents; Escape, then Tab, leaves it. Python code is highlighted.
 export function createEditor(place, key, name, language = "") {
   // A field of its own: the page gives the <pre> another role if it scrolls.
   const code = document.createElement("span");
@@ -56,7 +56,7 @@ export function createEditor(place, key, name, language = "") {
   };
   fill(stored(key) ?? written);
   code.contentEditable = "plaintext-only";
-  code.tabIndex = 0; // Editable elements can always be focused, but not every tool knows that.
+  code.tabIndex = 0; // Editable elements can always be focused, but accessibility checkers look for a tabindex.
   code.spellcheck = false;
   code.setAttribute("role", "textbox");
   code.setAttribute("aria-multiline", "true");

@@ -1,4 +1,4 @@
-// What every part of a running page is made of: elements, buttons, the style sheet, and why a page can't run.
+// Building blocks of a running page: elements, buttons, the style sheet, and messages about why something can't run.
 
 const TOO_OLD =
   "This browser can't run nodes: it lacks JavaScript Promise Integration. Chrome and Edge 137 or newer and " +
@@ -7,13 +7,13 @@ const FROM_FILE =
   "Nodes can't run in a page that is opened from a file. Open this course on its website, or put it on any web server.";
 const NO_MEMORY = "There is not enough memory for this. Stop a node, close other tabs, or reload the page.";
 
-// What this page can't do, in one sentence, or "".
+// Return why this page can't run nodes, in one sentence; "" if it can.
 export function hindrance() {
   if (location.protocol === "file:") return FROM_FILE;
   return typeof WebAssembly === "object" && "Suspending" in WebAssembly ? "" : TOO_OLD;
 }
 
-// What went wrong when something could not start, in one sentence.
+// Return what went wrong when something could not start, in one sentence.
 export function failure(error) {
   const text = String(error?.message ?? error);
   if (/memory|RangeError|Maximum call stack/i.test(text)) return NO_MEMORY;
@@ -40,7 +40,7 @@ export function announce(text) {
   document.getElementById("said").textContent = text;
 }
 
-// The page's style sheet for all this, added once.
+// Add the style sheet of a running page, once.
 export function style() {
   if (document.querySelector("link[data-run]")) return;
   const sheet = element("link", { rel: "stylesheet", href: new URL("run.css", import.meta.url).href });

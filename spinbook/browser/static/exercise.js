@@ -1,4 +1,4 @@
-// The editor of an exercise's page, and Check: the public checks, in this page.
+// The editor of an exercise's page, and its Check button, which runs the public checks in this page.
 import { download as load } from "./download.js";
 import { createEditor } from "./editor.js";
 import { announce, button, element, failure, hindrance, style } from "./elements.js";
@@ -9,14 +9,14 @@ const SIGNS = { passed: "✓", failed: "✗", blocked: "–", error: "!" };
 
 let process = null;
 
-// The process that checks: one per page, until it has to be ended.
+// Return the process that checks. There is one per page, until it has to be ended.
 function checker(hears) {
   process ??= new Process("check", {});
   Object.assign(process.hears, hears, { end: () => (process = null) });
   return process;
 }
 
-// The program in a file: read by the grader's own reader, so that notebooks and archives give what they give there.
+// Return the program in a file. The grader's own code reads it, so notebooks and archives give the same as in the grader.
 async function read(exercise, file, say) {
   const worker = checker({ progress: (part) => say(`Loading ${part} …`) });
   await worker.ready;
@@ -34,8 +34,8 @@ async function check(exercise, source, say) {
   return { problem: `The check did not finish within ${LIMIT_S} s. Is there a loop in your program that never ends?` };
 }
 
-function row(found) {
-  const { status, title, earned, points, text, hint, needs } = found;
+function row(check) {
+  const { status, title, earned, points, text, hint, needs } = check;
   const notes = [text, needs.length ? `Can't be judged until this is right: ${needs.join(" ")}` : "", hint && `Hint: ${hint}`];
   return element(
     "li",
@@ -66,7 +66,7 @@ function download(name, text) {
   setTimeout(() => URL.revokeObjectURL(url), 1000);
 }
 
-// Turns the starter of an exercise's page into an editor with Check. Returns its field.
+// Turn the starter of an exercise's page into an editor with Check; return the editor.
 export function open(section) {
   style();
   const name = location.pathname.split("/").pop().replace(/\.html$/, "");
@@ -76,7 +76,7 @@ export function open(section) {
   state.setAttribute("role", "status");
   const result = element("div", { className: "check-result" });
   const say = (text) => (state.textContent = text);
-  // On a phone, what follows the buttons is below the window.
+  // On a phone, the results are below the visible part of the page.
   const show = (part) => part.scrollIntoView({ block: "nearest" });
 
   const act = async () => {
@@ -88,11 +88,11 @@ export function open(section) {
     checking.disabled = true;
     try {
       await load(say);
-      const found = await check(name, editor.text, say);
+      const checked = await check(name, editor.text, say);
       say("");
-      result.replaceChildren(...panel(found));
+      result.replaceChildren(...panel(checked));
       show(result);
-      announce(found.problem ?? found.total);
+      announce(checked.problem ?? checked.total);
     } catch (error) {
       say(failure(error));
     } finally {
@@ -113,9 +113,9 @@ export function open(section) {
     if (hindered) return say(hindered);
     try {
       await load(say);
-      const found = await read(name, file, say);
-      if (!found.problem) editor.replace(found.source);
-      say(found.problem ?? [`Your program is from ${file.name}.`, ...found.notes].join(" "));
+      const program = await read(name, file, say);
+      if (!program.problem) editor.replace(program.source);
+      say(program.problem ?? [`Your program is from ${file.name}.`, ...program.notes].join(" "));
     } catch (error) {
       say(failure(error));
     }

@@ -1,11 +1,11 @@
-// The graph of the running nodes, drawn as the notebook's %graph; the bar's panel follows it.
+// The graph of the running nodes, drawn as by the notebook's %graph, in a panel of the bar that is kept up to date.
 import { button, element } from "./elements.js";
 import { observer } from "./notebook.js";
 import { graph } from "./picture.js";
 
-const LOOK_MS = 1000;
+const REFRESH_MS = 1000;
 
-// A button, and a panel that follows the graph while it is open.
+// Return a button, and a panel that shows the current graph while it is open.
 export function follow() {
   const panel = element("div", { className: "graph-panel", hidden: true, tabIndex: 0 });
   panel.setAttribute("role", "region");
@@ -13,24 +13,24 @@ export function follow() {
   const toggle = button("Graph", "Node graph", () => {
     panel.hidden = !panel.hidden;
     toggle.setAttribute("aria-expanded", String(!panel.hidden));
-    look();
+    refresh();
   });
   toggle.setAttribute("aria-expanded", "false");
   let shown = "";
   let timer = 0;
 
-  async function look() {
+  async function refresh() {
     clearTimeout(timer);
     if (panel.hidden) return;
-    if (!shown) panel.textContent = "Looking …";
-    const found = await (await observer()).call("graph");
-    if (!found || panel.hidden) return;
-    if (JSON.stringify(found) !== shown) {
-      shown = JSON.stringify(found);
-      panel.replaceChildren(found.pictures.length ? graph(found) : "No nodes.");
+    if (!shown) panel.textContent = "Loading the graph …";
+    const current = await (await observer()).call("graph");
+    if (!current || panel.hidden) return;
+    if (JSON.stringify(current) !== shown) {
+      shown = JSON.stringify(current);
+      panel.replaceChildren(current.pictures.length ? graph(current) : "No nodes.");
     }
     clearTimeout(timer);
-    timer = setTimeout(look, LOOK_MS);
+    timer = setTimeout(refresh, REFRESH_MS);
   }
 
   const changed = (count) => {

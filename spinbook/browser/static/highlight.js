@@ -1,4 +1,4 @@
-// Colours for Python that is being edited, by the CSS Custom Highlight API: the text itself stays as it is typed.
+// Highlights Python while it is edited, with the CSS Custom Highlight API: the text itself stays as it is typed.
 // The classes are those of the site's own highlighting: word, text, number, note, name.
 
 const WORDS = new Set(
@@ -24,7 +24,7 @@ function registered(kind) {
   return registry.get(kind);
 }
 
-// The start, the end and the kind of each coloured piece.
+// Return the kind, the start and the end of each coloured piece.
 export function tokens(source) {
   const found = [];
   let before = "";
@@ -54,7 +54,7 @@ export function tokens(source) {
 const newLine = (source, at) => at === 0 || source[at - 1] === "\n";
 const line = (source, at) => source.slice(at, (source.indexOf("\n", at) + 1 || source.length + 1) - 1);
 
-// The expressions in an f-string are not text.
+// Return the pieces of a string. The expressions in an f-string are not coloured.
 function pieces(text, at) {
   if (!/^[rb]?f/i.test(text)) return [["text", at, at + text.length]];
   const found = [];
@@ -66,7 +66,7 @@ function pieces(text, at) {
   return [...found, ["text", at + from, at + text.length]];
 }
 
-// Returns a function that colours the text in `place`: to be called after each change.
+// Return a function that colours the text in `place`; call it after each change.
 export function colours(place) {
   if (!can) return () => {};
   let mine = [];

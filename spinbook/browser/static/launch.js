@@ -1,4 +1,4 @@
-// `ros2 launch`: several nodes under one name, which begins each of their lines; one Stop ends them all.
+// `ros2 launch`: several nodes under one name. Each line of output begins with its node; one Stop ends them all.
 import { logs } from "./cell.js";
 import { programOf, started } from "./nodes.js";
 import { Process } from "./processes.js";
@@ -15,7 +15,7 @@ class Launch {
     this.over = new Promise((resolve) => (this.finish = resolve));
   }
 
-  // As in a terminal: what died doesn't count once the launch was interrupted.
+  // As in a terminal: processes that died don't count once the launch was interrupted.
   get status() {
     return this.died && !this.interrupted ? 1 : 0;
   }
@@ -58,7 +58,7 @@ class Launch {
     if (!this.running) this.finish();
   }
 
-  // As Ctrl-C does, for all of them.
+  // Interrupt all of them, as Ctrl-C does.
   async stop() {
     if (!this.running) return;
     this.interrupted = true;

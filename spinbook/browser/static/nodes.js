@@ -1,4 +1,4 @@
-// The nodes of a page: started by their cells or by `ros2 run`, listed and stopped as a notebook does it.
+// The nodes of a page: started by their cells or by `ros2 run`, listed and stopped as in a notebook.
 import { cellOf, logs } from "./cell.js";
 import { failure } from "./elements.js";
 import { files } from "./workspace.js";
@@ -14,10 +14,10 @@ const SHOWN_S = 3;
 // The longest that `%log --until` waits (s).
 const LOG_S = 30;
 
-// Every node that was started and not stopped since, by name, in order.
+// Every node that was started and has not been stopped since, by name, in order.
 export const started = new Map();
 
-// Start a program as a node; returns its process, once it runs.
+// Start a program as a node, and wait until it runs. `into` is the cell that shows its output.
 async function start(name, into, program, file, args) {
   await (started.get(name)?.running ? started.get(name) : named(name))?.stop();
   logs.delete(name);
@@ -79,7 +79,7 @@ export function showNodes(cell) {
   }
 }
 
-// The program that a launch file names: its text and its file.
+// Return the program that a launch file names: its text and its file.
 export function programOf(pack, executable) {
   if (executable === "turtlesim_node") return { source: TURTLESIM, file: "turtlesim_node.py" };
   const demo = demoNode(pack, executable);
@@ -88,10 +88,10 @@ export function programOf(pack, executable) {
   return cell && { source: cell.program, file: cell.file };
 }
 
-// The program of a node of demo_nodes_cpp or demo_nodes_py, which Spinbook brings.
+// Return the program of a node of demo_nodes_cpp or demo_nodes_py, which are part of Spinbook.
 function demoNode(pack, executable) {
   const [, language, name] = DEMOS.exec(`${pack}/${executable}`) ?? [];
-  // A chapter may show the package's own program.
+  // A chapter may have a program of its own with that name.
   if (!name || cellOf("", `${pack}/${executable}`)) return undefined;
   const source = `import sys\nfrom ros_in_python.demo_nodes import main\nsys.exit(main(["${language}", "${name}"]))\n`;
   return { source, file: `${name}.py` };

@@ -1,4 +1,4 @@
-// Plain cells, terminals and interfaces. They share one process, which starts with the first of them.
+// Plain cells, terminals and interfaces. They share one process, which starts with the first of these cells.
 import { runExecutable, showLog, showNodes, showTurtle, stop } from "./nodes.js";
 import { launch } from "./launch.js";
 import { graph, show } from "./picture.js";
@@ -6,7 +6,7 @@ import { Process, environment } from "./processes.js";
 import { timeline } from "./timeline.js";
 import { files, keep } from "./workspace.js";
 
-const LOOK_S = 6;
+const SHOWN_S = 6;
 const GRAPH_S = 2.5;
 const LONGEST_S = 60;
 // How long a command may take to begin.
@@ -17,7 +17,7 @@ const BOUNDED = / (--once|-1|--times|-t) /;
 
 let shared = null;
 
-// The shared process, with its output in this cell.
+// Return the shared process; its output goes to this cell.
 async function sharedProcess(cell) {
   if (!shared || shared.gone) shared = new Process("notebook", { end: () => (shared.gone = true) });
   const { progress } = cell.hears("");
@@ -28,19 +28,19 @@ async function sharedProcess(cell) {
   return shared;
 }
 
-// The shared process, for reading only; it also draws the graph while a cell runs.
+// Return the shared process, for drawing the graph. This works while a cell runs, too.
 export async function observer() {
   if (!shared || shared.gone) shared = new Process("notebook", { end: () => (shared.gone = true) });
   await shared.ready;
   return shared;
 }
 
-// Let the shared process do something on behalf of a cell; the bar can stop it.
+// Let the shared process do something for a cell; the bar can stop it.
 async function busy(cell, process, op, given) {
   process.work(cell.name);
   try {
     const status = await process.call(op, given);
-    if (status === null) cell.fail(cell.say("It was ended, and the variables of the cells above are gone. Run those cells again."));
+    if (status === null) cell.fail(cell.say("It was ended, so the variables of the cells above are lost. Run those cells again."));
     else if (status) cell.failed = true;
     return status;
   } finally {
@@ -57,12 +57,12 @@ export async function runPlain(cell) {
   }
 }
 
-// A plain cell's lines: `%stop left_toe` is for the page, the rest is Python.
+// Split a plain cell: lines such as `%stop left_toe` are for the page, the rest is Python.
 function parts(source) {
-  const found = [];
+  const pieces = [];
   let python = [];
   const finish = () => {
-    if (python.join("").trim()) found.push({ python: python.join("\n") });
+    if (python.join("").trim()) pieces.push({ python: python.join("\n") });
     python = [];
   };
   for (const line of source.split("\n")) {
@@ -71,10 +71,10 @@ function parts(source) {
       continue;
     }
     finish();
-    found.push({ magic: wordsOf(line.slice(1)) });
+    pieces.push({ magic: wordsOf(line.slice(1)) });
   }
   finish();
-  return found;
+  return pieces;
 }
 
 // The words of a line, quoted as in a shell.
@@ -100,14 +100,14 @@ function setVariable(cell, args) {
 }
 
 async function drawPlot(cell, process, args) {
-  const { words: paths, seconds = cell.about.seconds ?? LOOK_S, title = "" } = optionsOf(args);
+  const { words: paths, seconds = cell.about.seconds ?? SHOWN_S, title = "" } = optionsOf(args);
   cell.say(`Recording for ${seconds} s …`);
   const drawn = await process.call("plot", { paths, seconds: Number(seconds), title });
   cell.say("");
   if (drawn) show(cell, drawn, "live-plot");
 }
 
-// `/a/x --seconds 3` as the words and, by name, the options.
+// Split `/a/x --seconds 3` into words and options by name.
 function optionsOf(args) {
   const options = { words: [] };
   for (let at = 0; at < args.length; at += 1) {
@@ -120,9 +120,9 @@ function optionsOf(args) {
 async function drawGraph(cell, process, args) {
   const seconds = Number(optionsOf(args).seconds ?? GRAPH_S);
   cell.say(`Counting messages for ${seconds} s …`);
-  const found = await process.call("count", { seconds });
+  const counted = await process.call("count", { seconds });
   cell.say("");
-  if (found?.pictures.length) cell.shown?.append(graph(found));
+  if (counted?.pictures.length) cell.shown?.append(graph(counted));
   else cell.print("No node runs. Run one.");
 }
 
@@ -140,17 +140,17 @@ async function runCommand(cell, process, command) {
   if (why) cell.print(`${text}\n    does not run in a page: ${why}.`, "stderr");
   else if (exported) setVariable(cell, [exported[1]]);
   else if (kind === "rqt_plot") await drawPlot(cell, process, words.slice(1));
-  else if (kind === "colcon") cell.print("colcon is not needed in a page: `ros2 run` finds the page's nodes as they are.");
+  else if (kind === "colcon") cell.print("colcon is not needed in a page: `ros2 run` finds the page's nodes without it.");
   else if (kind === "ros2" && words[1] === "run") await runExecutable(cell, words);
   else if (kind === "ros2" && words[1] === "launch" && !SHOWS_ONLY.test(text)) await launch(cell, process, text);
   else if (kind === "ros2") await bounded(cell, process, text);
 }
 
-// Endless output is ended after a while, as in the notebook, or once it shows what the chapter waits for.
+// Run a command. Endless output ends after a while, as in the notebook, or once it contains the text that the chapter names.
 // The seconds count from the first line, so that a slow computer shows as much as a fast one.
 async function bounded(cell, process, line) {
   const endless = ENDLESS.test(line) && !BOUNDED.test(`${line} `);
-  const seconds = cell.about.seconds ?? (endless ? LOOK_S : LONGEST_S);
+  const seconds = cell.about.seconds ?? (endless ? SHOWN_S : LONGEST_S);
   let interrupted = false;
   let over = false;
   const interrupt = () => {

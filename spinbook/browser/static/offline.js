@@ -1,4 +1,4 @@
-// The service worker of a course that has been run once: its pages and its nodes work without a network.
+// The service worker of a course: once it has run a node, its pages and nodes work without a network.
 
 const PAGES = "pages";
 // Files that change only with their version are taken from the cache first; see download.js.
@@ -10,8 +10,8 @@ self.addEventListener("fetch", (event) => {
   const { request } = event;
   const { origin, pathname } = new URL(request.url);
   if (request.method !== "GET" || origin !== self.location.origin) return;
-  const kept = LARGE.test(pathname) && request.cache !== "reload";
-  event.respondWith(kept ? cacheFirst(request) : networkFirst(request));
+  const large = LARGE.test(pathname) && request.cache !== "reload";
+  event.respondWith(large ? cacheFirst(request) : networkFirst(request));
 });
 
 async function cacheFirst(request) {

@@ -1,4 +1,4 @@
-// Runs the cells of a page, one by one or all those above one.
+// Runs the cells of a page: one, or all those above one.
 import { bar } from "./bar.js";
 import { cellAt } from "./cell.js";
 import { download } from "./download.js";

@@ -1,4 +1,4 @@
-// Pictures that Spinbook's own code draws as SVG, and elements of SVG.
+// Shows the SVG pictures that Spinbook draws, and makes SVG elements.
 import { element } from "./elements.js";
 
 export function draw(tag, attributes) {
@@ -18,13 +18,13 @@ export function show(cell, { picture, words, problem }, className) {
   if (problem) return cell.fail(problem);
   if (!picture) return cell.print(words);
   const figure = element("figure", { className: `live-picture ${className}` });
-  // Names in it are escaped. Its style is added where the page's policy allows it.
+  // Names in it are escaped. The page's policy forbids <style>, so its rules go into a constructed style sheet.
   figure.innerHTML = picture.replace(/<style>(.*?)<\/style>/gs, (_, rules) => (dress(rules), ""));
   figure.dataset.words = words;
   cell.shown?.append(figure);
 }
 
-// A figure with a picture for each part of the graph.
+// Return a figure with a picture for each part of the graph.
 export function graph({ pictures, words }) {
   const figure = element("figure", { className: "node-graph live-graph" });
   // Drawn by Spinbook's own code, which escapes names.

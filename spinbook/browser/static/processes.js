@@ -1,17 +1,17 @@
-// The processes of a page and the hub between them: each is a web worker, and its frames are sent to the others.
+// The processes of a page, each a web worker, and the hub between them, which forwards each one's frames to the others.
 
 const STOP_MS = 2000;
-// How often to check that a program still responds, and after how long without an answer it counts as blocked.
+// How often to check that a program still responds, and how long it may take before it counts as blocked.
 const ASK_MS = 2000;
 const SILENT_MS = 10_000;
-// The os.environ of programs; log lines look as in the notebook.
+// The os.environ of programs. Log lines have the same form as in the notebook.
 export const environment = { RCUTILS_CONSOLE_OUTPUT_FORMAT: "[{severity}] [{name}]: {message}" };
 // Announces that a process has started or ended.
 export const changes = new EventTarget();
 const base = new URL("./", import.meta.url);
 const all = new Map();
 let count = 0;
-// What the first process has compiled, so that the others start sooner.
+// The code that the first process has compiled: the others load it and start sooner.
 let compiled = null;
 
 export const running = () => [...all.values()].filter((process) => process.running);
@@ -25,11 +25,11 @@ const after = (ms) => new Promise((resolve) => setTimeout(resolve, ms, "late"));
 // Frames to named endpoints go to the processes that have them; all others go to all processes.
 function route(from, head, data) {
   const frame = JSON.parse(head);
-  const wanted = frame.to ? new Set(frame.to.map(processOf)) : null;
+  const receivers = frame.to ? new Set(frame.to.map(processOf)) : null;
   for (const process of all.values()) {
-    // A process that overhears gets all answers.
+    // A process that overhears gets all responses.
     const overhears = process.overhears && frame.op === "response";
-    if (process !== from && (!wanted || wanted.has(process.identity) || overhears)) {
+    if (process !== from && (!receivers || receivers.has(process.identity) || overhears)) {
       process.worker.postMessage({ op: "frame", head, data });
     }
   }
@@ -50,7 +50,7 @@ export class Process {
     this.ready.catch(() => this.end());
   }
 
-  // Let the worker do something; a promise of the result, null if it is ended before.
+  // Let the worker do something. Resolves with the result, or with null if the process ends first.
   call(op, given = {}) {
     if (!all.has(this.identity)) return Promise.resolve(null);
     const id = ++count;
@@ -83,7 +83,7 @@ export class Process {
     this.worker.postMessage({ op: "signal", name });
   }
 
-  // Interrupt it as Ctrl-C does; if it does not end then, it is killed.
+  // Interrupt it as Ctrl-C does, and kill it if it does not end.
   async stop() {
     if (!all.has(this.identity)) return;
     this.signal("SIGINT");
@@ -94,7 +94,7 @@ export class Process {
     await ended;
   }
 
-  // Run a program to its end; returns its exit status, or null if it had to be ended.
+  // Run a program to its end. Resolves with its exit status, or with null if it was killed.
   async program(source, file, args = [], files = undefined) {
     this.running = true;
     changed();
@@ -105,7 +105,7 @@ export class Process {
     return this.ended;
   }
 
-  // Work on this cell from now on, or on none.
+  // Note which cell it works for from now on; "" for none.
   work(task) {
     this.task = task;
     if (task) this.idle = new Promise((resolve) => (this.rest = resolve));

@@ -2,7 +2,7 @@
 import { show } from "./picture.js";
 import { Process } from "./processes.js";
 
-// How long to wait for names, and for what may still be in transit at the end (ms).
+// How long to wait for names to appear, and for messages that are still in transit at the end (ms).
 const APPEAR_MS = 20_000;
 const LATE_MS = 300;
 

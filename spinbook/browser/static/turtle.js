@@ -31,7 +31,7 @@ function paint(svg, { size, background, turtles, trails }) {
   svg.setAttribute("aria-label", `Turtlesim: ${where || "no turtle"}`);
 }
 
-// A figure that shows the running turtlesim until `until` resolves.
+// Return a figure that shows the running turtlesim until `until` resolves.
 export function turtle(until) {
   const figure = document.createElement("figure");
   figure.className = "turtle";

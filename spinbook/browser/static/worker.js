@@ -6,7 +6,7 @@ const keys = [];
 const signals = [];
 const waiting = new Set();
 
-// Called by in_page/link.py: frames out, frames in, and waiting, which is a promise.
+// The functions that in_page/link.py calls: to send and receive frames, and to wait, which is a promise.
 const page = {
   send: (head, data) => self.postMessage({ op: "frame", head, data }),
   receive: () => inbox.shift(),
@@ -21,7 +21,7 @@ const page = {
       if (ms > 0) setTimeout(() => waiting.delete(resolve) && resolve(), ms);
     }),
   wake: arrived,
-  // A thread: a function that runs on a stack of its own.
+  // Start a thread: the function runs on a stack of its own.
   spawn: (run) => void setTimeout(() => run.callPromising().finally(() => run.destroy())),
 };
 
@@ -42,13 +42,13 @@ async function archive(py, name, part) {
   self.postMessage({ op: "progress", part });
 }
 
-// Without memory for another program, Pyodide only warns and never returns: a promise that fails in that case.
+// If there is no memory for another program, Pyodide only warns and never returns; this promise rejects then.
 const lacking = new Promise((resolve, reject) => {
   for (const name of ["instantiate", "instantiateStreaming"]) {
     const original = WebAssembly[name];
-    WebAssembly[name] = async (...given) => {
+    WebAssembly[name] = async (...args) => {
       try {
-        return await original.apply(WebAssembly, given);
+        return await original.apply(WebAssembly, args);
       } catch (error) {
         if (error instanceof RangeError) reject(error);
         throw error;
@@ -57,7 +57,7 @@ const lacking = new Promise((resolve, reject) => {
   }
 });
 
-// `known` is what an earlier process of the page has compiled.
+// Start Python. `known` is the code that an earlier process of the page has compiled.
 async function start(identity, known) {
   self.postMessage({ op: "progress", part: "Python" });
   const loading = loadPyodide({
@@ -161,7 +161,7 @@ async function pictures() {
   return py.pyimport("spinbook.browser.in_page.node_graph");
 }
 
-// The files of the chapter's package, where programs look for them; and those of a launch.
+// Write the files of the chapter's package where programs look for them, and those of a launch.
 async function put(py, { pack, texts, more } = { texts: {} }) {
   if (Object.keys(texts).length) py.pyimport("spinbook.browser.in_page.workspace").put(py.toPy(texts), pack);
   for (const [path, text] of Object.entries(more ?? {})) {
@@ -170,7 +170,7 @@ async function put(py, { pack, texts, more } = { texts: {} }) {
   }
 }
 
-// The available interfaces and their files: unpacked when the first command or check runs.
+// Unpack the available interfaces and their files, when the first command or check runs.
 function shares(py) {
   py.shared ??= unpackShares(py);
   return py.shared;

@@ -1,11 +1,11 @@
-// Runs before anything is painted, so that no page flashes in the wrong colours.
+// Runs before the first paint, so that no page flashes in the wrong colours.
 "use strict";
 (() => {
   let chosen = null;
   try {
     chosen = localStorage.getItem("colours");
   } catch {
-    // A browser that keeps nothing follows the system's setting.
+    // Without storage, the page follows the system's setting.
   }
   const system = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
   document.documentElement.dataset.colours = chosen === "dark" || chosen === "light" ? chosen : system;

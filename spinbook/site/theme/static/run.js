@@ -1,4 +1,4 @@
-// Gives each cell that can run a Run button. All else is loaded when the first one is pressed.
+// Adds a Run button to each cell that can run. Everything else is loaded when the first one is pressed.
 "use strict";
 
 (() => {

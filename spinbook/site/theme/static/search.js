@@ -1,15 +1,15 @@
-// Searches the sections of the course for words, without a server: on the search page, and below the field while one types.
+// Searches the sections of the course without a server: on the search page, and below the field while you type.
 "use strict";
 
 const MOST = 50;
 const MOST_NOW = 8;
 
-// Plurals and their singular are one word.
+// Treat a plural and its singular as one word.
 const singular = (word) => (word.length > 3 ? word.replace(/(?<=[sxz]|[cs]h)es$|ies$|(?<![su])s$/, (end) => (end === "ies" ? "y" : "")) : word);
 const wordsOf = (text) => text.toLowerCase().match(/[\p{L}\p{N}_]+/gu) ?? [];
 const vocabulary = new Set(courseSections.flatMap(([, page, heading, text]) => wordsOf(`${page} ${heading} ${text}`)));
 
-// How many letters have to be changed, added, left out or swapped with their neighbour (optimal string alignment).
+// Return how many letters have to be changed, added, removed or swapped with their neighbour (optimal string alignment).
 function distance(a, b) {
   let [former, row] = [[], Array.from({ length: b.length + 1 }, (_, at) => at)];
   for (let i = 1; i <= a.length; i += 1) {
@@ -23,7 +23,7 @@ function distance(a, b) {
   return row[b.length];
 }
 
-// The words of the course that a typed word may stand for: itself, or else the nearest, one letter in four being wrong.
+// Return the words of the course that a typed word may mean: itself, or else the nearest with at most one wrong letter in four.
 function meant(word) {
   const plain = singular(word);
   for (const known of vocabulary) if (known.includes(plain)) return [plain];
@@ -36,7 +36,7 @@ function meant(word) {
   return near.length ? [...new Set(near.filter(([changes]) => changes === near[0][0]).map(([, known]) => known))] : [plain];
 }
 
-// How well a section fits: every word must be in it; a heading weighs more than the text.
+// Return how well a section fits; 0 if a word is missing. A heading weighs more than the text.
 function weight([, page, heading, text], wanted) {
   const [inPage, inHeading, inText] = [page, heading, text].map((part) => part.toLowerCase());
   let total = 0;
@@ -52,7 +52,7 @@ function weight([, page, heading, text], wanted) {
   return total;
 }
 
-// A piece of the text around the first word that was found, with every found word marked.
+// Return a piece of the text around the first match, with every match marked.
 function excerpt(text, words) {
   const lower = text.toLowerCase();
   const first = Math.min(...words.map((word) => lower.indexOf(word)).filter((at) => at >= 0));
@@ -92,7 +92,7 @@ function items({ words, sections }, most, withText) {
   });
 }
 
-// What was found, in words; a word that was taken for another one is named.
+// Return a sentence about the results. It names the words that were searched for instead of a misspelled one.
 function inWords(asked, { words, sections }) {
   const typed = asked.toLowerCase().split(/\s+/).filter(Boolean).map(singular);
   const others = words.filter((word) => !typed.includes(word));

@@ -1,4 +1,4 @@
-// What pages do: colours, the menu on phones, copying, and places that scroll. All of it is extra: pages read well without.
+// The behaviour of pages: colours, the menu on phones, copying, scrolling and more. Pages are readable without it.
 "use strict";
 
 const root = document.documentElement;
@@ -13,7 +13,7 @@ function colours() {
     try {
       localStorage.setItem("colours", root.dataset.colours);
     } catch {
-      // It then holds for this page only.
+      // Without storage, the choice holds for this page only.
     }
     show();
   });
@@ -49,7 +49,7 @@ async function toClipboard(text) {
     await navigator.clipboard.writeText(text);
     return true;
   } catch {
-    // Without a secure connection there is only the old way.
+    // Without a secure connection, only the deprecated way of copying works.
     const field = document.createElement("textarea");
     field.value = text;
     field.className = "hidden-text";
@@ -83,9 +83,9 @@ function copying() {
   }
 }
 
-// What scrolls sideways must be within reach of the keyboard, and what does not must not stand in its way.
+// Elements that scroll sideways must be reachable with the keyboard; those that don't must not take the focus.
 function scrolling() {
-  const look = (entries) => {
+  const update = (entries) => {
     for (const { target } of entries) {
       if (target.scrollWidth > target.clientWidth + 1) {
         target.tabIndex = 0;
@@ -98,11 +98,11 @@ function scrolling() {
       }
     }
   };
-  const observer = new ResizeObserver(look);
+  const observer = new ResizeObserver(update);
   for (const place of document.querySelectorAll("main pre, .table, figure.drawing, .math")) observer.observe(place);
 }
 
-// Marks the section at hand in the list beside the text.
+// Mark the current section in the list next to the text.
 function whereabouts() {
   const links = new Map();
   for (const link of document.querySelectorAll(".page-toc a[href^='#']")) links.set(link.hash.slice(1), link);
@@ -137,7 +137,7 @@ function printing() {
   });
 }
 
-// The search: its data come when somebody begins to search. "/" goes there from anywhere but a place to write in.
+// Load the search data when the reader begins to search. "/" focuses the search field, except while typing.
 function searching() {
   const field = document.getElementById("search-field");
   const now = document.getElementById("search-now");
@@ -153,8 +153,8 @@ function searching() {
     field.addEventListener("focus", () => load("search-data.js").then(() => load("search.js")), { once: true });
   }
   document.addEventListener("keydown", (event) => {
-    const writes = event.target.closest("input, textarea, select, [contenteditable]");
-    if (event.key === "/" && !writes && !event.ctrlKey && !event.metaKey && !event.altKey) {
+    const isTyping = event.target.closest("input, textarea, select, [contenteditable]");
+    if (event.key === "/" && !isTyping && !event.ctrlKey && !event.metaKey && !event.altKey) {
       event.preventDefault();
       field.focus();
     } else if (event.key === "Escape" && !now.hidden) {
@@ -170,7 +170,7 @@ function searching() {
   });
 }
 
-// What moves can be stopped (WCAG 2.2.2): its still takes its place.
+// Let readers pause moving pictures (WCAG 2.2.2): a still picture takes their place.
 function pausing() {
   for (const picture of document.querySelectorAll("main img.moving")) {
     const still = picture.parentElement.querySelector("img.still");
@@ -189,7 +189,7 @@ function pausing() {
   }
 }
 
-// How far one has read, and the way back.
+// Show how far the reader has scrolled, and a link back to the top.
 function progress() {
   const bar = document.querySelector("progress.reading");
   const back = document.querySelector(".to-top");
