@@ -6,7 +6,7 @@ from groundwork.problem import Problem
 
 
 class SpinbookError(Exception):
-    """Raised where the work can't go on, with every problem that stopped it."""
+    """Raised if the work can't continue, with every problem that stopped it."""
 
     def __init__(self, *problems: Problem) -> None:
         super().__init__("\n".join(str(problem) for problem in problems))

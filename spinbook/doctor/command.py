@@ -20,8 +20,8 @@ from spinbook.doctor.diagnosis import CHECKS, MachineCheck, MachineFinding, Stat
 def doctor(checks: tuple[str, ...], as_json: bool) -> None:
     """Say what works on this machine, and how to fix what does not.
 
-    Each CHECK really tries the thing: a message goes from one process to another, a kernel starts, colcon builds a
-    package, a program runs in each sandbox. Nothing is changed. Without CHECK all are made, in a few seconds:
+    Each CHECK really tries it: a message goes from one process to another, a kernel starts, colcon builds a package, a
+    program runs in each sandbox. Nothing is changed. Without CHECK, all checks run, in a few seconds:
 
     \b
       python       folder       libraries    ros
@@ -35,7 +35,7 @@ def doctor(checks: tuple[str, ...], as_json: bool) -> None:
       !  courses are built and graded, but something is weaker or surprising
       ✗  courses can't be built or graded until this is fixed
 
-    Exit code: 0 everything that is needed works (there may be warnings), 1 something needed does not.
+    Exit code: 0 everything needed works (there may be warnings), 1 something needed does not work.
     """
     chosen = [check for check in CHECKS if not checks or check.word in checks]
     findings = _with_progress(chosen)
@@ -48,8 +48,8 @@ def doctor(checks: tuple[str, ...], as_json: bool) -> None:
 
 
 def _with_progress(chosen: list[MachineCheck]) -> list[MachineFinding]:
-    """Make the checks under a bar on stderr, which goes away at the end."""
-    columns = (TextColumn("Examining"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"))
+    """Run the checks, with a progress bar on stderr that disappears at the end."""
+    columns = (TextColumn("Checking"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"))
     console = Console(stderr=True)
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("", total=len(chosen))

@@ -1,4 +1,4 @@
-"""Each check of this machine in a process of its own, what it found, and how a table shows it."""
+"""The checks of this machine: runs each in its own process, and shows the findings as a table."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from groundwork.child_process import run_program
 
 
 class State(str, Enum):
-    """How grave a finding is."""
+    """How serious a finding is."""
 
     OK = "ok"
     """It works."""
     WARNING = "warning"
-    """Something is weaker, or surprising; courses are built and graded all the same."""
+    """Something is weaker or surprising, but courses can be built and graded."""
     MISSING = "missing"
-    """Without it courses are not built or not graded."""
+    """Without it, courses can't be built or graded."""
 
 
 @dataclass(frozen=True)
 class MachineFinding:
-    """One thing that was looked at.
+    """The result of one check.
 
     `found` says what is there, with versions and paths. `fix` says what to do if something is wrong.
     """
@@ -46,17 +46,17 @@ class MachineFinding:
 
 
 def ok(name: str, found: str) -> MachineFinding:
-    """It works."""
+    """Return the finding that it works."""
     return MachineFinding(name, State.OK, found)
 
 
 def warning(name: str, found: str, fix: str) -> MachineFinding:
-    """It works, but not as well as it could."""
+    """Return the finding that it works, but not as well as it could."""
     return MachineFinding(name, State.WARNING, found, fix)
 
 
 def missing(name: str, found: str, fix: str) -> MachineFinding:
-    """Something that is needed does not work."""
+    """Return the finding that something needed does not work."""
     return MachineFinding(name, State.MISSING, found, fix)
 
 
@@ -64,7 +64,7 @@ SIGNS = {State.OK: ("✓", "green"), State.WARNING: ("!", "yellow"), State.MISSI
 
 
 def show(console: Console, findings: Sequence[MachineFinding]) -> None:
-    """Print every finding, then what to do about those that are not well, then a line that sums up."""
+    """Print every finding, then how to fix problems, then a summary."""
     table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 1))
     table.add_column(width=1)
     table.add_column(no_wrap=True)
@@ -84,16 +84,16 @@ def show(console: Console, findings: Sequence[MachineFinding]) -> None:
 
 
 def is_able(findings: Sequence[MachineFinding]) -> bool:
-    """Whether everything that is needed to build and grade works."""
+    """Return whether everything works that is needed to build and grade."""
     return all(finding.state is not State.MISSING for finding in findings)
 
 
 def _summary(findings: Sequence[MachineFinding]) -> str:
-    amiss = sum(finding.state is State.MISSING for finding in findings)
+    missing_count = sum(finding.state is State.MISSING for finding in findings)
     warnings = sum(finding.state is State.WARNING for finding in findings)
     also = f" ({warnings} {'warning' if warnings == 1 else 'warnings'})" if warnings else ""
-    if amiss:
-        return f"Fix every ✗ before you build or grade a course here. Failed: {amiss} of {len(findings)}{also}."
+    if missing_count:
+        return f"Fix every ✗ before you build or grade a course here. Failed: {missing_count} of {len(findings)}{also}."
     return f"Courses can be built and graded here{also}."
 
 
@@ -104,10 +104,10 @@ def _with_tilde(text: str) -> str:
 
 @dataclass(frozen=True)
 class MachineCheck:
-    """One thing to look at.
+    """A check of this machine.
 
-    `function` is what does it, as `module:name`; it is called with `name`. `seconds` is how long it may take.
-    `needs` are the words of earlier checks without which this one can only fail, so that each cause is reported once.
+    `function` runs it, as `module:name`; it is called with `name`. `seconds` is the time limit. `needs` are the words
+    of earlier checks: if one of them fails, this one is not run, so that each cause is reported once.
     """
 
     word: str
@@ -117,7 +117,7 @@ class MachineCheck:
     needs: tuple[str, ...] = ()
 
 
-#: What every node needs.
+#: The checks that every node depends on.
 _NODE = ("ros", "libraries", "middleware", "logs")
 
 
@@ -143,45 +143,48 @@ CHECKS = (
 )
 
 
-#: They mostly wait for processes to start.
+#: Checks that run at once: they mostly wait for processes to start.
 _AT_ONCE = 4
 
 
 def diagnose(checks: Sequence[MachineCheck], done: Callable[[MachineFinding], None]) -> list[MachineFinding]:
-    """The findings in the order of `checks`; `done` is called with each as it comes."""
-
+    """Run the checks; return the findings in the order of `checks`. Call `done` with each as soon as it is known."""
     started: dict[str, Future[MachineFinding]] = {}
 
-    def one(check: MachineCheck, needed: list[Future[MachineFinding]]) -> MachineFinding:
-        amiss = [need.result().name for need in needed if need.result().state is State.MISSING]
-        finding = missing(check.name, f"not tried, because of: {', '.join(amiss)}", "") if amiss else examine(check)
+    def run(check: MachineCheck, needed: list[Future[MachineFinding]]) -> MachineFinding:
+        failed = [need.result().name for need in needed if need.result().state is State.MISSING]
+        finding = (
+            missing(check.name, f"not checked, because this failed: {', '.join(failed)}", "")
+            if failed
+            else examine(check)
+        )
         done(finding)
         return finding
 
     with ThreadPoolExecutor(_AT_ONCE) as pool:
-        # What is needed stands earlier in the list, so it never queues behind what waits for it.
+        # The checks that one needs are earlier in the list, so they never queue behind it.
         for check in checks:
-            started[check.word] = pool.submit(one, check, [started[word] for word in check.needs if word in started])
+            started[check.word] = pool.submit(run, check, [started[word] for word in check.needs if word in started])
         return [future.result() for future in started.values()]
 
 
 def examine(check: MachineCheck) -> MachineFinding:
-    """Run one check, whatever happens to it."""
+    """Run one check in a process of its own; a crash or a timeout is a finding, too."""
     argv = [sys.executable, "-m", "spinbook.doctor.diagnosis", check.function, check.name]
     try:
         done = run_program(argv, check.seconds)
     except subprocess.TimeoutExpired:
         return missing(
             check.name,
-            f"no answer within {check.seconds:g} s",
-            f"Try it alone, on a machine that is less busy: spinbook doctor {check.word}",
+            f"the check did not finish within {check.seconds:g} s",
+            f"Run it alone, when the machine is less busy: spinbook doctor {check.word}",
         )
     try:
         fields = json.loads(done.stdout)
         return MachineFinding(fields["name"], State(fields["state"]), fields["found"], fields["fix"])
     except (ValueError, KeyError, TypeError):
         return missing(
-            check.name, _how_it_ended(done.returncode, done.stderr), "See the message; docs/installing.md may help."
+            check.name, _how_it_ended(done.returncode, done.stderr), "See the message, and docs/installing.md."
         )
 
 
@@ -191,16 +194,16 @@ def _how_it_ended(code: int, err: str) -> str:
     return f"the check ended with {how}" + (f": {lines[-1]}" if lines else "")
 
 
-# A process of its own, because what is examined may end it: rclpy does so where its middleware is not installed.
+# Each check runs in its own process, because it may end that: rclpy does so if its middleware is not installed.
 
 
 def main(function: str, name: str) -> None:
-    """Run a check, given as `module:name`; its finding goes to stdout, what libraries print to stderr."""
-    answer = os.dup(1)
+    """Run a check, given as `module:name`. Its finding goes to stdout; what libraries print goes to stderr."""
+    original_stdout = os.dup(1)
     os.dup2(2, 1)
     module, _, attribute = function.partition(":")
     finding = getattr(importlib.import_module(module), attribute)(name)
-    with os.fdopen(answer, "w") as out:
+    with os.fdopen(original_stdout, "w") as out:
         json.dump(dataclasses.asdict(finding), out)
 
 

@@ -23,10 +23,10 @@ OLDEST, NEWEST = (3, 10), (3, 14)
 
 
 def examine_python(name: str) -> MachineFinding:
-    """Look at the Python that runs this: its version, and how it was compiled."""
+    """Check the version of this Python, and how it was compiled."""
     found = f"{platform.python_implementation()} {platform.python_version()}, {sys.executable}"
     if not (OLDEST <= sys.version_info[:2] <= NEWEST and platform.python_implementation() == "CPython"):
-        return missing(name, found, "Spinbook needs CPython 3.10 to 3.14. Name one: make PYTHON=python3.12 setup")
+        return missing(name, found, "Spinbook needs CPython 3.10 to 3.14. Choose one: make PYTHON=python3.12 setup")
     if python_build.is_optimized():
         return ok(name, found)
     return warning(name, f"{found}, compiled without optimizations", _faster_build())
@@ -35,33 +35,32 @@ def examine_python(name: str) -> MachineFinding:
 def _faster_build() -> str:
     this = python_build.this_build()
     if build := python_build.faster_build(this, os.environ.get("PATH", "")):
-        advice = f"There is a faster build of it here: make PYTHON={build} setup"
+        advice = f"This machine has a faster build: make PYTHON={build} setup"
     else:
-        advice = f'pyenv can: PYTHON_CONFIGURE_OPTS="--enable-optimizations --with-lto" pyenv install {this.version}'
-    return (
-        f"All works, but a class takes a tenth to a fifth longer to grade than with a Python that has them.\n{advice}"
-    )
+        options = 'PYTHON_CONFIGURE_OPTS="--enable-optimizations --with-lto"'
+        advice = f"pyenv can build a faster one: {options} pyenv install {this.version}"
+    return f"Everything works, but grading takes 10 to 20 % longer than with an optimized Python.\n{advice}"
 
 
 def examine_folder(name: str) -> MachineFinding:
-    """Look for characters that break colcon's shell scripts or the search paths."""
-    places = (Path.cwd(), Path(sys.prefix))
-    for place in places:
-        if any(character.isspace() or character == ":" for character in str(place)):
+    """Check the paths for characters that break colcon's shell scripts or the search paths."""
+    folders = (Path.cwd(), Path(sys.prefix))
+    for folder in folders:
+        if any(character.isspace() or character == ":" for character in str(folder)):
             return missing(
                 name,
-                f"'{place}' has a space or a colon in it",
-                "colcon's scripts and ROS's search paths break there. "
+                f"'{folder}' has a space or a colon in it",
+                "colcon's scripts and ROS's search paths fail there. "
                 "Move it to a path without one, and run make again.",
             )
-    return ok(name, f"{places[0]} (environment: {places[1]})")
+    return ok(name, f"{folders[0]} (environment: {folders[1]})")
 
 
-_WITHOUT = "Only courses that define interfaces of their own need them; a handout's wheels need no compiler."
+_WITHOUT = "Only courses that define their own interfaces need them; a handout's wheels need no compiler."
 
 
 def examine_compiler(name: str) -> MachineFinding:
-    """Look for both, and for the packages that set-up compiles with them."""
+    """Look for a C compiler and Python's headers, and for the packages that `make setup` compiles with them."""
     if ros := toolchain.sourced_ros():
         return ok(name, f"colcon compiles interfaces, with the ROS 2 in {ros}")
     lacking = list(filter(None, (toolchain.missing_compiler(), toolchain.missing_headers())))
@@ -124,7 +123,7 @@ def examine_colcon(name: str) -> MachineFinding:
         return warning(
             name,
             f"{found}; `--symlink-install` copies, silently",
-            "With setuptools 80 and newer an edited node is not the one that runs. pip install 'setuptools<80'",
+            "With setuptools 80 or newer, an edit of a node has no effect. Fix: pip install 'setuptools<80'",
         )
     return ok(name, f"{found}; built a package with --symlink-install")
 
@@ -156,15 +155,13 @@ def _build(workspace: Path) -> subprocess.CompletedProcess[str]:
 
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
-_ONLY_TESTS = (
-    "Only the tests need one; those of pages fail without. `make test` installs it: sudo apt-get install chromium"
-)
+_ONLY_TESTS = "Only the tests of pages need one. Install it: sudo apt-get install chromium"
 _PAGE = "data:text/html,<title>spinbook</title>"
 _DEADLINE_S = 30.0
 
 
 def examine_browser(name: str) -> MachineFinding:
-    """Open a page in it, without a window."""
+    """Open a page in a headless Chromium."""
     path = next(filter(None, map(shutil.which, _NAMES)), None)
     if path is None:
         return warning(name, "no Chromium found", _ONLY_TESTS)
@@ -175,7 +172,7 @@ def examine_browser(name: str) -> MachineFinding:
         try:
             trial = run_program(argv, _DEADLINE_S)
         except subprocess.TimeoutExpired:
-            return warning(name, f"{path} does not answer within {_DEADLINE_S:g} s", _ONLY_TESTS)
+            return warning(name, f"{path} does not respond within {_DEADLINE_S:g} s", _ONLY_TESTS)
     if "spinbook" not in trial.stdout:
         lines = trial.stderr.strip().splitlines() or [f"exit code {trial.returncode}"]
         return warning(name, f"{path} does not show a page: {lines[-1]}", _ONLY_TESTS)
@@ -183,12 +180,12 @@ def examine_browser(name: str) -> MachineFinding:
 
 
 def examine_ros2_command(name: str) -> MachineFinding:
-    """Look for them. The chapters run without them too, so their absence is never a fault."""
+    """Look for the ros2 command and turtlesim. Chapters run without them, so their absence is no problem."""
     ros2 = real_ros2([], os.environ)
     prefix = prefixes.prefix_of("turtlesim", prefixes.installed())
     turtlesim = None if is_built_in("turtlesim", prefix) else prefix
     parts = [
-        f"ros2 at {ros2[0]}" if ros2 else "no ros2: Spinbook's own answers (ros2, spinbook ros2)",
+        f"ros2 at {ros2[0]}" if ros2 else "no ros2 of ROS: Spinbook's own runs (ros2, spinbook ros2)",
         f"turtlesim in {turtlesim}" if turtlesim else "turtlesim's nodes: Spinbook's own",
     ]
     return ok(name, "; ".join(parts))
@@ -199,7 +196,7 @@ _CELL = "%load_ext spinbook\nimport sys; print(sys.prefix)"
 
 
 def examine_kernel(name: str) -> MachineFinding:
-    """Start the kernel that the notebooks name, and run a cell in it."""
+    """Start the kernel that the notebooks use, and run a cell in it."""
     try:
         from jupyter_client.manager import start_new_kernel
     except ImportError as error:
@@ -211,7 +208,7 @@ def examine_kernel(name: str) -> MachineFinding:
         return missing(
             name,
             f"does not start: {error}",
-            "Run it by hand to see why: python -m ipykernel\nJupyter keeps files below HOME: can you write there?",
+            "To see why, run: python -m ipykernel\nJupyter stores files below HOME: can you write there?",
         )
     try:
         printed, fault = _run(client)
@@ -222,12 +219,12 @@ def examine_kernel(name: str) -> MachineFinding:
     if fault:
         return missing(name, f"a cell fails: {fault}", "Set the environment up again: make setup")
     if printed.strip().splitlines()[-1:] != [sys.prefix]:
-        return missing(name, f"another Python answers: {printed.strip()}", "jupyter kernelspec remove python3")
+        return missing(name, f"the kernel runs another Python: {printed.strip()}", "jupyter kernelspec remove python3")
     return ok(name, f"started and ran a cell in {took:.1f} s")
 
 
 def _run(client: Any) -> tuple[str, str]:
-    """What the cell printed, and what went wrong."""
+    """Run the cell; return what it printed, and what went wrong."""
     printed: list[str] = []
 
     def keep(message: dict[str, Any]) -> None:

@@ -1,4 +1,4 @@
-"""What lies between nodes: the middleware, the grader's own one, memory, logs; and a message that is really sent."""
+"""Checks of communication: the middlewares, shared memory, logs, and a message between two processes."""
 
 from __future__ import annotations
 
@@ -17,45 +17,45 @@ from rmw_lockstep.library import Library, library
 from spinbook.doctor.diagnosis import MachineFinding, missing, ok, warning
 from spinbook.kernel.environment import claim_domain, for_domain, missing_middleware
 
-#: What rclpy exits with where RMW_IMPLEMENTATION can't be loaded.
+#: rclpy's exit code if RMW_IMPLEMENTATION can't be loaded.
 NOT_LOADED = 102
-_NAME_IT = "from rclpy.utilities import get_rmw_implementation_identifier as name; print(name())"
+_PRINT_MIDDLEWARE = "from rclpy.utilities import get_rmw_implementation_identifier as name; print(name())"
 
 
 def examine_middleware(name: str) -> MachineFinding:
-    """Load the middleware in a process of its own: it ends the process where it is absent."""
-    wanted = os.environ.get("RMW_IMPLEMENTATION", "")
+    """Load the middleware in a process of its own, which rclpy ends if the middleware is missing."""
+    chosen = os.environ.get("RMW_IMPLEMENTATION", "")
     absent = missing_middleware(os.environ)
-    trial = subprocess.run([sys.executable, "-c", _NAME_IT], capture_output=True, text=True, check=False)
+    trial = subprocess.run([sys.executable, "-c", _PRINT_MIDDLEWARE], capture_output=True, text=True, check=False)
     if trial.returncode == 0:
         loaded = trial.stdout.strip()
         if loaded.startswith("rmw_fastrtps"):
-            return ok(name, f"{loaded}{' (RMW_IMPLEMENTATION)' if wanted else ''}")
+            return ok(name, f"{loaded}{' (RMW_IMPLEMENTATION)' if chosen else ''}")
         return warning(
             name,
             f"{loaded} (RMW_IMPLEMENTATION)",
-            "Spinbook's loopback profile is for Fast DDS; other middlewares are only told LOCALHOST. "
+            "Spinbook's loopback profile is for Fast DDS; for other middlewares it only sets LOCALHOST. "
             "For the default: unset RMW_IMPLEMENTATION",
         )
     if absent or trial.returncode == NOT_LOADED:
         return missing(
             name,
-            f"RMW_IMPLEMENTATION is '{wanted}', which is not installed here",
-            "Nodes would end without a word (exit code 102). unset RMW_IMPLEMENTATION",
+            f"RMW_IMPLEMENTATION is '{chosen}', which is not installed here",
+            "Nodes would exit with code 102 and no message. Fix: unset RMW_IMPLEMENTATION",
         )
     lines = trial.stderr.strip().splitlines() or [f"exit code {trial.returncode}"]
     return missing(name, f"does not load: {lines[-1]}", "Set the environment up again: make setup")
 
 
 _NEEDED = "Without it nothing can be graded or checked."
-_NAME_LOCKSTEP = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
+_PRINT_LOCKSTEP = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
 
 
 def examine_lockstep(name: str) -> MachineFinding:
-    """Let rclpy load it in a process of its own, and name it."""
+    """Let rclpy load the grader's middleware in a process of its own."""
     found = library()
     if not isinstance(found, Library):
-        return warning(name, f"not there: {found.reason}", f"{_NEEDED} {found.remedy}")
+        return warning(name, f"not available: {found.reason}", f"{_NEEDED} {found.remedy}")
     trial = _trial(found)
     loaded = trial.stdout.strip()
     if loaded == IDENTIFIER:
@@ -63,7 +63,7 @@ def examine_lockstep(name: str) -> MachineFinding:
     lines = trial.stderr.strip().splitlines() or [f"rclpy has loaded {loaded or 'nothing'}"]
     return warning(
         name,
-        f"compiled, but it does not load: {lines[-1]}",
+        f"it is compiled, but does not load: {lines[-1]}",
         f"{_NEEDED} Compile it again: rm -r {found.folder}; python -m rmw_lockstep.build",
     )
 
@@ -71,41 +71,41 @@ def examine_lockstep(name: str) -> MachineFinding:
 def _trial(found: Library) -> subprocess.CompletedProcess[str]:
     environment = {**os.environ, **found.environment(os.environ)}
     return subprocess.run(
-        [sys.executable, "-c", _NAME_LOCKSTEP], env=environment, capture_output=True, text=True, check=False
+        [sys.executable, "-c", _PRINT_LOCKSTEP], env=environment, capture_output=True, text=True, check=False
     )
 
 
-#: Each participant of Fast DDS takes about half a MB.
+#: Bytes that should be free: each participant of Fast DDS takes about half a MB.
 _ENOUGH = 32 * 2**20
 _NOT_NEEDED = "Notebooks and the grader don't need it; nodes in your terminals print warnings without it."
 
 
 def examine_shared_memory(name: str) -> MachineFinding:
-    """Write there, and look at how much is free."""
-    place = Path("/dev/shm")
+    """Write to shared memory, and check how much is free."""
+    folder = Path("/dev/shm")
     try:
-        with tempfile.TemporaryFile(dir=place) as file:
+        with tempfile.TemporaryFile(dir=folder) as file:
             file.write(b"spinbook")
     except OSError as error:
-        return warning(name, f"{place} can't be written: {error.strerror}", _NOT_NEEDED)
-    free = shutil.disk_usage(place).free
-    left = sum(1 for _ in place.glob("fastrtps_*"))
-    found = f"{place}, {free // 2**20} MB free" + (f", {left} files of Fast DDS" if left else "")
+        return warning(name, f"{folder} can't be written: {error.strerror}", _NOT_NEEDED)
+    free = shutil.disk_usage(folder).free
+    left = sum(1 for _ in folder.glob("fastrtps_*"))
+    found = f"{folder}, {free // 2**20} MB free" + (f", {left} files of Fast DDS" if left else "")
     if free < _ENOUGH:
         return warning(
             name,
             found,
-            f"{_NOT_NEEDED}\nRemove what killed nodes have left (fastdds shm clean); in a container: --shm-size 256m",
+            f"{_NOT_NEEDED}\nRemove the files of killed nodes: fastdds shm clean. In a container, use --shm-size 256m.",
         )
     return ok(name, found)
 
 
 def examine_log_folder(name: str) -> MachineFinding:
-    """Write a file where ROS 2 would: ROS_LOG_DIR, else ROS_HOME/log, else ~/.ros/log."""
-    chosen, variable = _place()
+    """Write a file where ROS 2 would: to ROS_LOG_DIR, otherwise ROS_HOME/log, otherwise ~/.ros/log."""
+    chosen, variable = _log_folder()
     if chosen is None:
         return _fallback(name, "HOME is not set")
-    existing = next(place for place in (chosen, *chosen.parents) if place.exists())
+    existing = next(folder for folder in (chosen, *chosen.parents) if folder.exists())
     try:
         with tempfile.TemporaryFile(dir=existing):
             return ok(name, f"{chosen} ({variable})")
@@ -118,7 +118,7 @@ def examine_log_folder(name: str) -> MachineFinding:
     return _fallback(name, reason)
 
 
-def _place() -> tuple[Path | None, str]:
+def _log_folder() -> tuple[Path | None, str]:
     if folder := os.environ.get("ROS_LOG_DIR"):
         return Path(folder).expanduser().absolute(), "ROS_LOG_DIR"
     if folder := os.environ.get("ROS_HOME"):
@@ -129,18 +129,18 @@ def _place() -> tuple[Path | None, str]:
 
 
 def _fallback(name: str, reason: str) -> MachineFinding:
-    """Notebooks and `spinbook ros2` then write below the folder for temporary files, if that can be written."""
+    """Check the temporary folder, where notebooks and `spinbook ros2` then write their logs."""
     try:
         with tempfile.TemporaryFile():
             pass
     except OSError as error:
         return missing(
-            name, f"{reason}; nor can {tempfile.gettempdir()}: {error.strerror}", "Make one of them writable."
+            name, f"{reason}; neither can {tempfile.gettempdir()}: {error.strerror}", "Make one of them writable."
         )
     return warning(
         name,
         f"{reason}; Spinbook uses {tempfile.gettempdir()} instead",
-        "Your own nodes in a terminal fail at rclpy.init: export ROS_LOG_DIR=/tmp/ros-log",
+        "Your own nodes in a terminal fail at rclpy.init. Fix: export ROS_LOG_DIR=/tmp/ros-log",
     )
 
 
@@ -165,14 +165,16 @@ def examine_message(name: str) -> MachineFinding:
     except subprocess.CalledProcessError as error:
         lines = (error.stderr or "").strip().splitlines() or [f"exit code {error.returncode}"]
         return missing(
-            name, f"the listener failed: {lines[-1]}", "Its whole output: python -m spinbook.doctor.middleware listen"
+            name,
+            f"the listener failed: {lines[-1]}",
+            "To see its output: python -m spinbook.doctor.middleware listen",
         )
     finally:
         claimed.release()
     return ok(
         name,
-        f"arrived from another process in {took['travel_s'] * 1e3:.1f} ms; they had found each other "
-        f"after {took['discovery_s'] * 1e3:.0f} ms",
+        f"arrived from another process in {took['travel_s'] * 1e3:.1f} ms; discovery took "
+        f" {took['discovery_s'] * 1e3:.0f} ms",
     )
 
 
@@ -205,7 +207,7 @@ TOPIC = "/spinbook_doctor"
 _PERIOD_S = 0.02
 
 
-# What loads rclpy is imported by the two programs alone: where it is missing, the other checks say so.
+# Only the two programs import rclpy: if it is missing, other checks say so.
 
 
 def talk() -> None:

@@ -1,10 +1,10 @@
-"""Whether this Python was compiled with optimizations, and where a faster build of its version is.
+"""Detects whether this Python was compiled with optimizations, and looks for a faster build of its version.
 
-A Python that was compiled with profile-guided optimization runs programs a quarter faster. Those of Linux
-distributions, python.org's container images, conda and uv are; pyenv leaves it out unless it is asked for it.
+A Python with profile-guided optimization runs programs about 25 % faster. Linux distributions, python.org's container
+images, conda and uv use it; pyenv does only on request.
 
-Also a program, which set-up runs with the bare Python before anything is installed (standard library only):
-it prints the path of a faster build, if there is one. With `--describe` it prints what this Python is, as JSON.
+This is also a program, with only the standard library, that `make setup` runs before anything is installed: it prints
+the path of a faster build, if there is one. With `--describe`, it prints a description of this Python as JSON.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from dataclasses import asdict, dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-#: A Python that takes longer to start is not asked further (s).
-_PATIENCE_S = 20.0
+#: A Python that takes longer than this to describe itself is skipped (s).
+_TIME_LIMIT_S = 20.0
 
 
 @dataclass(frozen=True)
 class PythonBuild:
-    """A Python. An environment can be made from it if it is `complete`: with venv, ensurepip and Python.h."""
+    """A Python installation. It is `complete` if it has what an environment needs: venv, ensurepip and Python.h."""
 
     executable: str
     version: str
@@ -33,19 +33,19 @@ class PythonBuild:
 
 
 def this_build() -> PythonBuild:
-    """The Python that runs this."""
+    """Return a description of the running Python."""
     modules = all(find_spec(module) for module in ("venv", "ensurepip"))
     headers = Path(sysconfig.get_path("include"), "Python.h").is_file()
-    # In an active environment, the Python that it was made from.
+    # In an active environment, describe the Python from which it was made.
     executable = getattr(sys, "_base_executable", sys.executable)
     version = "{}.{}".format(*sys.version_info[:2])
     return PythonBuild(executable, version, is_optimized(), modules and headers)
 
 
 def is_optimized() -> bool:
-    """Whether this Python was compiled with profile-guided optimization.
+    """Return whether this Python was compiled with profile-guided optimization.
 
-    Distributions have rules of their own for theirs, in /usr; all others name it in configure's arguments.
+    Distributions always use it for the Python in /usr; for all others, configure's arguments say so.
     """
     return sys.base_prefix == "/usr" or "--enable-optimizations" in str(sysconfig.get_config_var("CONFIG_ARGS"))
 
@@ -59,15 +59,15 @@ def faster_build(this: PythonBuild, path: str) -> str | None:
 
 
 def _described(folder: str, version: str) -> PythonBuild | None:
-    """The Python of this version in a folder; None if it has none that answers."""
+    """Return the Python of this version in a folder; None if there is none, or if it does not run."""
     program = Path(folder, f"python{version}")
     if not program.is_file():
         return None
     try:
-        answer = subprocess.run(
-            [program, "-I", __file__, "--describe"], capture_output=True, timeout=_PATIENCE_S, check=True
+        done = subprocess.run(
+            [program, "-I", __file__, "--describe"], capture_output=True, timeout=_TIME_LIMIT_S, check=True
         )
-        return PythonBuild(**json.loads(answer.stdout))
+        return PythonBuild(**json.loads(done.stdout))
     except (OSError, subprocess.SubprocessError, ValueError, TypeError):
         return None
 

@@ -14,14 +14,14 @@ from spinbook.doctor.diagnosis import MachineFinding, missing, ok, warning
 from spinbook.doctor.ros_origin import NoRos, ros_origin, this_machine
 from spinbook.kernel.environment import HIGHEST, LOOPBACK_PROFILE
 
-#: Packages that the chapters and the grader use.
+#: Packages of messages that the chapters and the grader use.
 MESSAGES = ("builtin_interfaces", "geometry_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs")
 _SET_UP_AGAIN = "Set the environment up again, in the terminal that you want to use: make setup"
 
 
 def examine_ros_library(name: str) -> MachineFinding:
     """Import rclpy with its compiled part and a type support, and compare with what else is installed."""
-    # A middleware that is not installed would end this process. It is a matter of its own: see middleware.py.
+    # A missing middleware would end this process. middleware.py checks that.
     os.environ.pop("RMW_IMPLEMENTATION", None)
     try:
         sourced = ros_origin(os.environ, this_machine()).sourced
@@ -36,14 +36,14 @@ def examine_ros_library(name: str) -> MachineFinding:
     if sourced and wheels:
         return missing(
             name,
-            f"two of them: rclpy {version} from {package.parent}, and PyPI's wheels in {sys.prefix}",
-            f"Which libraries are loaded would be chance. {_SET_UP_AGAIN}",
+            f"two installations: rclpy {version} from {package.parent}, and PyPI's wheels in {sys.prefix}",
+            f"It would be random which libraries are loaded. {_SET_UP_AGAIN}",
         )
     return ok(name, f"rclpy {version}, {'PyPI wheels' if wheels else 'sourced'}, {package.parent}")
 
 
 def wheels_installed() -> bool:
-    """Whether this environment holds the wheels from PyPI."""
+    """Return whether the wheels from PyPI are installed in this environment."""
     return any(Path(sys.prefix).glob("lib/python3*/site-packages/ros_rclpy-*.dist-info"))
 
 
@@ -55,7 +55,7 @@ def _load_messages() -> None:
 
 
 def _version_of(package: Path) -> str:
-    """The version in the package.xml that every ROS installation has; the distribution's name where it is sourced."""
+    """Return the version in rclpy's package.xml, with the name of the ROS distribution if it is known."""
     distro = os.environ.get("ROS_DISTRO", "")
     for prefix in package.parents:
         manifest = prefix / "share" / "rclpy" / "package.xml"
@@ -68,7 +68,7 @@ def _version_of(package: Path) -> str:
 def _fix_of(error: ImportError) -> str:
     absent = (error.name or "").split(".")[0]
     if "cannot open shared object file" in str(error):
-        return "The library is not found: open a new terminal. Where ROS 2 is sourced, source its setup file again."
+        return "A library is missing. Open a new terminal; if you source ROS 2, source its setup file again."
     if absent in MESSAGES and os.environ.get("ROS_DISTRO"):
         return f"sudo apt-get install ros-{os.environ['ROS_DISTRO']}-common-interfaces"
     return _SET_UP_AGAIN
@@ -87,7 +87,7 @@ _WATCHED = (
 
 
 def examine_ros_settings(name: str) -> MachineFinding:
-    """Look at the variables that decide which nodes see one another."""
+    """Check the variables that decide which nodes discover each other."""
     surprises = [*_about_domain(), *_about_profiles(), *_about_discovery()]
     if surprises:
         return warning(name, "; ".join(found for found, _ in surprises), "\n".join(fix for _, fix in surprises))
@@ -102,7 +102,7 @@ def _about_domain() -> list[tuple[str, str]]:
     return [
         (
             f"ROS_DOMAIN_ID is '{text}'",
-            f"Take one from 0 to {HIGHEST} (others have no ports, or the system's own): export ROS_DOMAIN_ID=0",
+            f"Use a domain from 0 to {HIGHEST}, because others have no free ports: export ROS_DOMAIN_ID=0",
         )
     ]
 
@@ -117,7 +117,7 @@ def _about_profiles() -> list[tuple[str, str]]:
                 (
                     f"{variable}={file}",
                     "Notebooks and the grader use profiles of their own in its place; your terminals use this one. "
-                    f"If they do not hear one another: unset {variable}",
+                    f"If they do not receive each other's messages: unset {variable}",
                 )
             ]
     return []
@@ -129,25 +129,25 @@ def _about_discovery() -> list[tuple[str, str]]:
         surprises.append(
             (
                 "ROS_AUTOMATIC_DISCOVERY_RANGE is OFF",
-                "Terminals won't find any node: unset ROS_AUTOMATIC_DISCOVERY_RANGE",
+                "Nodes in terminals won't discover each other: unset ROS_AUTOMATIC_DISCOVERY_RANGE",
             )
         )
     if os.environ.get("ROS_DISCOVERY_SERVER"):
         surprises.append(
             (
                 "ROS_DISCOVERY_SERVER is set",
-                "Nodes of notebooks would ask that server for one another: unset ROS_DISCOVERY_SERVER",
+                "Nodes of notebooks would use that server for discovery: unset ROS_DISCOVERY_SERVER",
             )
         )
     return surprises
 
 
-# The wheels set it themselves: their .pth file starts Python a second time with it, and marks that with a guard
-# variable. Where the guard is inherited without the path, or from another environment, the second start is skipped.
+# The wheels set LD_LIBRARY_PATH themselves: their .pth file restarts Python with it, and sets a guard variable. If the
+# guard is inherited without the path, or from another environment, Python is not restarted.
 
 
 def examine_library_path(name: str) -> MachineFinding:
-    """Compare LD_LIBRARY_PATH with where this environment's libraries are."""
+    """Check that LD_LIBRARY_PATH leads to this environment's libraries and to no others."""
     entries = [Path(entry) for entry in os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep) if entry]
     with_ros = list(dict.fromkeys(entry for entry in entries if (entry / "librcl.so").exists()))
     own = Path(sys.prefix, "lib")
@@ -157,7 +157,7 @@ def examine_library_path(name: str) -> MachineFinding:
         return missing(
             name,
             f"{GUARD} is set, but LD_LIBRARY_PATH does not name {own}",
-            f"Something dropped LD_LIBRARY_PATH and kept the guard. Drop both: unset {GUARD} LD_LIBRARY_PATH",
+            f"LD_LIBRARY_PATH was lost, but the guard was not. Remove both: unset {GUARD} LD_LIBRARY_PATH",
         )
     others = [str(entry) for entry in with_ros if entry != own]
     if others:

@@ -1,7 +1,7 @@
-"""Where this machine's ROS 2 comes from: a sourced installation, or the wheels from PyPI. Never both.
+"""Decides where ROS 2 comes from: a sourced installation, or the wheels from PyPI, but never both.
 
-Also a program, which set-up runs with the bare Python before anything is installed (standard library only):
-it prints `wheels` or `sourced FOLDER`. If neither works, it says why on stderr and exits with 1.
+This is also a program, with only the standard library, that `make setup` runs before anything is installed: it prints
+`wheels` or `sourced FOLDER`. If neither works, it says why on stderr and exits with 1.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ WHEELS_GLIBC = (2, 28)
 
 @dataclass(frozen=True)
 class Machine:
-    """What decides whether a binary package fits: the system, the processor, the C library, the Python."""
+    """The properties that binary packages depend on: the system, the processor, the C library, the Python."""
 
     system: str
     processor: str
@@ -33,7 +33,7 @@ class Machine:
 
 @dataclass(frozen=True)
 class RosOrigin:
-    """`sourced` is the folder on PYTHONPATH that holds rclpy, or None where the wheels are to be used."""
+    """`sourced` is the folder on PYTHONPATH that holds rclpy, or None if the wheels are to be used."""
 
     sourced: Path | None
 
@@ -42,19 +42,19 @@ class RosOrigin:
 
 
 class NoRos(Exception):
-    """Neither a sourced ROS 2 nor the wheels can be used here."""
+    """Raised if neither a sourced ROS 2 nor the wheels can be used here."""
 
 
 def this_machine() -> Machine:
-    """The machine and the Python that run this."""
+    """Return the properties of this machine and this Python."""
     libc = " ".join(platform.libc_ver()) if sys.platform == "linux" else ""
     return Machine(platform.system(), platform.machine(), libc, sys.version_info[:2], EXTENSION_SUFFIXES)
 
 
 def ros_origin(environment: Mapping[str, str], machine: Machine) -> RosOrigin:
-    """Which ROS 2 to use. Only files are looked at; nothing is imported.
+    """Return which ROS 2 to use. Looks at files only; imports nothing.
 
-    Raises NoRos, with what to do, where a sourced ROS does not fit, or where there is none and the wheels don't fit.
+    Raises NoRos, with what to do, if a sourced ROS does not fit, or if there is none and the wheels don't fit.
     """
     entries = [Path(entry) for entry in environment.get("PYTHONPATH", "").split(os.pathsep) if entry]
     sourced = next((entry for entry in entries if (entry / "rclpy" / "__init__.py").is_file()), None)
@@ -64,7 +64,7 @@ def ros_origin(environment: Mapping[str, str], machine: Machine) -> RosOrigin:
     foreign = next((entry for entry in entries if (entry / "std_msgs" / "__init__.py").is_file()), None)
     if foreign:
         raise NoRos(
-            f"PYTHONPATH names {foreign}, which holds a ROS without rclpy (ROS 1?): its message packages would hide "
+            f"PYTHONPATH names {foreign}, which has a ROS without rclpy (ROS 1?). Its message packages would hide "
             f"those of ROS 2.\n{_IN_A_CLEAN_TERMINAL}"
         )
     _refuse_without_wheels(machine)
@@ -72,7 +72,7 @@ def ros_origin(environment: Mapping[str, str], machine: Machine) -> RosOrigin:
 
 
 _IN_A_CLEAN_TERMINAL = (
-    "Run it again in a terminal in which no ROS setup file is sourced (look for one in ~/.bashrc); ROS 2 Jazzy then "
+    "Run it again in a terminal in which no ROS setup file is sourced (look for one in ~/.bashrc). ROS 2 Jazzy then "
     "comes from PyPI."
 )
 
@@ -88,7 +88,7 @@ def _refuse_misfit(sourced: Path, distro: str, machine: Machine) -> None:
         here = "{}.{}".format(*machine.python)
         built = ", ".join(sorted(file.name for file in extensions)) or "no compiled module at all"
         raise NoRos(
-            f"The sourced ROS 2 ({sourced}) is for another Python than {here}: it has {built}.\n"
+            f"The sourced ROS 2 ({sourced}) is not for Python {here}: it has {built}.\n"
             "Use the Python that it was built for (for Jazzy on Ubuntu 24.04: make PYTHON=python3.12 ...), or a "
             "terminal in which no ROS setup file is sourced."
         )

@@ -16,7 +16,7 @@ _ALLOW = (
 
 
 def examine_sandbox(name: str) -> MachineFinding:
-    """Ask the grader, which runs a program in each of its sandboxes."""
+    """Let the grader run a program in each of its sandboxes."""
     try:
         from grader.sandbox.isolation import available
         from grader.sandbox.program import Isolation
@@ -34,14 +34,14 @@ def examine_sandbox(name: str) -> MachineFinding:
             f"landlock only ({reasons})",
             f"It denies students' code files, processes and the network, but not every user's Unix sockets. {_ALLOW}",
         )
-    return missing(name, f"none ({reasons})", f"Students' code is not run unprotected. {_ALLOW}")
+    return missing(name, f"none ({reasons})", f"Spinbook does not run students' code without a sandbox. {_ALLOW}")
 
 
 _ALSO_WITHOUT = "The grader makes the same namespaces without it, if this user may (see the sandbox finding)."
 
 
 def examine_bubblewrap(name: str) -> MachineFinding:
-    """Run `true` in it."""
+    """Run `true` in bubblewrap."""
     path = shutil.which("bwrap")
     if path is None:
         return warning(name, "not installed", f"{_ALSO_WITHOUT}\nsudo apt-get install bubblewrap")
@@ -71,7 +71,7 @@ def examine_namespaces(name: str) -> MachineFinding:
     """Make a user, a network, a mount, an IPC and a process namespace, with util-linux' `unshare`."""
     if shutil.which("unshare") is None:
         return warning(
-            name, "not tried: `unshare` is not installed", "See the sandbox finding, which tries them without it."
+            name, "not checked: `unshare` is not installed", "See the sandbox finding, which tries them without it."
         )
     kinds = {
         "user": "--user --map-root-user",
@@ -82,7 +82,7 @@ def examine_namespaces(name: str) -> MachineFinding:
     }
     failed: dict[str, str] = {}
     for kind, flags in kinds.items():
-        # Without root, the others are only to be had inside a user namespace.
+        # Without root, the others can only be made inside a user namespace.
         inside = [] if os.geteuid() == 0 or kind == "user" else kinds["user"].split()
         reason = _refusal(["unshare", *inside, *flags.split(), "true"])
         if reason:

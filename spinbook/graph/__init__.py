@@ -1,1 +1,1 @@
-"""The recorded node graph: who publishes and who subscribes, seen by a process that takes no part itself."""
+"""The node graph: which nodes publish and subscribe, recorded by a process that takes no part itself."""

@@ -1,4 +1,4 @@
-"""The boxes and arrows of a node graph, and where they stand: nodes on the left, topics on the right."""
+"""Lays out the boxes and arrows of a node graph: nodes on the left, topics on the right."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from typing import Literal
 
 from spinbook.graph.model import GraphTopic, NodeGraph
 
-#: More topics than this that one node has for itself alone are drawn as one box.
+#: More topics than this that only one node uses are drawn as one box.
 _ALONE = 2
 
 
 @dataclass(frozen=True)
 class Box:
-    """A node or a topic. `name` is unique among its kind; `small` are the lines below the name."""
+    """A node or a topic. `name` is unique among its kind; `small` is the small print, `about` the tooltip."""
 
     kind: Literal["node", "topic"]
     name: str
@@ -26,7 +26,7 @@ class Box:
 
 @dataclass(frozen=True)
 class Arrow:
-    """From the node to the topic it publishes on, or from the topic to the node that subscribes to it."""
+    """An arrow from a node to the topic on which it publishes, or from a topic to a node that subscribes to it."""
 
     node: str
     topic: str
@@ -36,7 +36,7 @@ class Arrow:
 
 @dataclass(frozen=True)
 class Drawing:
-    """Boxes and arrows of nodes and topics that belong together."""
+    """The boxes and arrows of nodes and topics that are connected."""
 
     nodes: tuple[Box, ...]
     topics: tuple[Box, ...]
@@ -44,9 +44,9 @@ class Drawing:
 
 
 def drawings(graph: NodeGraph) -> list[Drawing]:
-    """A drawing for each group of nodes that topics connect, in the order of the graph's nodes.
+    """Return one drawing per group of connected nodes, in the order of the graph's nodes; none for an empty graph.
 
-    A graph without a node has none. What a node publishes and nobody hears is drawn as one box where it is much.
+    If a node has many topics that no other node uses, one box stands for all of them.
     """
     topics = [*_folded(graph.topics)]
     whole = [_drawing(graph, topics, names) for names in _groups(graph, topics)]
@@ -60,7 +60,7 @@ class _TopicBox:
 
 
 def _folded(topics: Iterable[GraphTopic]) -> Iterator[_TopicBox]:
-    """The topics as boxes; those that a node has for itself alone as one, where they are many."""
+    """Yield the topics as boxes; many topics that only one node uses share one box."""
     alone: dict[tuple[str, bool], list[GraphTopic]] = {}
     for topic in topics:
         nodes = {end.node for end in (*topic.publishers, *topic.subscriptions)}
@@ -72,10 +72,10 @@ def _folded(topics: Iterable[GraphTopic]) -> Iterator[_TopicBox]:
         if len(own) <= _ALONE:
             yield from map(_drawn, own)
             continue
-        what = "to which nobody subscribes" if publishes else "that nobody publishes"
+        lonely = "to which no node subscribes" if publishes else "on which no node publishes"
         names = ", ".join(topic.name for topic in own)
         name = f"{node} {publishes}"
-        box = Box("topic", name, f"{len(own)} topics", (what,), f"{len(own)} topics {what}: {names}")
+        box = Box("topic", name, f"{len(own)} topics", (lonely,), f"{len(own)} topics {lonely}: {names}")
         yield _TopicBox(box, (Arrow(node, name, publishes, False),))
 
 
@@ -92,7 +92,7 @@ def _drawn(topic: GraphTopic) -> _TopicBox:
 
 
 def _groups(graph: NodeGraph, topics: list[_TopicBox]) -> list[set[str]]:
-    """The names of nodes that are connected by topics, directly or by way of others."""
+    """Return the names of nodes in groups that are connected by topics, directly or through other nodes."""
     group = {node.name: {node.name} for node in graph.nodes}
     for topic in topics:
         together: set[str] = set()
@@ -111,11 +111,11 @@ def _drawing(graph: NodeGraph, topics: list[_TopicBox], names: set[str]) -> Draw
 
 
 def _short(full_name: str) -> str:
-    """The name as people say it: without the root namespace."""
+    """Return the name without the root namespace, as people say it."""
     return full_name[1:] if full_name.count("/") == 1 else full_name
 
 
-# Two columns fit a phone whatever the graph, and a longer graph grows downwards, where a page has room.
+# Two columns fit on a phone. A larger graph grows downwards, where a page has room.
 
 
 #: Widths of one character of a name and of the small print (px): monospaced, 12 and 10.5 px high.
@@ -131,7 +131,7 @@ _Key = tuple[str, str]
 
 @dataclass(frozen=True)
 class PlacedBox:
-    """A box: its upper left corner and size (px), and its lines as they are broken."""
+    """A box with its upper left corner and size (px), and its text broken into lines."""
 
     box: Box
     x: float
@@ -143,7 +143,7 @@ class PlacedBox:
 
     @property
     def middle(self) -> float:
-        """The height of its middle."""
+        """The y coordinate of its middle (px)."""
         return self.y + self.height / 2
 
 
@@ -160,7 +160,7 @@ class PlacedArrow:
 
 @dataclass(frozen=True)
 class GraphLayout:
-    """A drawing with its places; all within `width` and `height` (px)."""
+    """A drawing with all coordinates, which are within `width` and `height` (px)."""
 
     boxes: tuple[PlacedBox, ...]
     lines: tuple[PlacedArrow, ...]
@@ -169,7 +169,7 @@ class GraphLayout:
 
 
 def layout(drawings: Sequence[Drawing]) -> list[GraphLayout]:
-    """Place the boxes of each drawing, in columns of the same width; the same for the same drawings."""
+    """Place the boxes of each drawing, in columns of the same width for all. The result is deterministic."""
     sizes = {box: _size(box) for drawing in drawings for box in (*drawing.nodes, *drawing.topics)}
     widths = {
         kind: max((size.width for box, size in sizes.items() if box.kind == kind), default=0.0)
@@ -185,10 +185,10 @@ def _place(drawing: Drawing, sizes: Mapping[Box, _Size], widths: Mapping[str, fl
     placed: dict[_Key, PlacedBox] = {}
     for number in range(max(layers.values()) + 1):
         here = [box for box in (*drawing.nodes, *drawing.topics) if layers[box.kind, box.name] == number]
-        wanted = {box: _wanted(box, drawing.arrows, placed) for box in here}
-        for box in sorted(here, key=lambda box: (wanted[box], here.index(box))):
+        best = {box: _best_y(box, drawing.arrows, placed) for box in here}
+        for box in sorted(here, key=lambda box: (best[box], here.index(box))):
             size = sizes[box]
-            y = max(bottom[box.kind], wanted[box] - size.height / 2)
+            y = max(bottom[box.kind], best[box] - size.height / 2)
             at = PlacedBox(box, left[box.kind], y, widths[box.kind], size.height, size.lines, size.small)
             placed[box.kind, box.name] = at
             bottom[box.kind] = y + size.height + _GAP_Y
@@ -198,9 +198,9 @@ def _place(drawing: Drawing, sizes: Mapping[Box, _Size], widths: Mapping[str, fl
 
 
 def _layers(drawing: Drawing) -> Mapping[_Key, int]:
-    """How many steps after the first each box comes, by the longest way; a way round in a circle counts once.
+    """Return the layer of each box: the length of the longest path to it, in which a cycle counts once.
 
-    A topic that nobody publishes comes after those who would hear it.
+    A topic without publishers comes after its subscribers.
     """
     published = {arrow.topic for arrow in drawing.arrows if arrow.publishes}
     after: dict[_Key, list[_Key]] = {(box.kind, box.name): [] for box in (*drawing.nodes, *drawing.topics)}
@@ -212,11 +212,11 @@ def _layers(drawing: Drawing) -> Mapping[_Key, int]:
             after[topic].append(node)
     layers = dict.fromkeys(after, 0)
 
-    def push(box: _Key, way: tuple[_Key, ...]) -> None:
+    def push(box: _Key, path: tuple[_Key, ...]) -> None:
         for following in after[box]:
-            if following not in way and layers[following] <= layers[box]:
+            if following not in path and layers[following] <= layers[box]:
                 layers[following] = layers[box] + 1
-                push(following, (*way, following))
+                push(following, (*path, following))
 
     reached = {end for ends in after.values() for end in ends}
     for box in [box for box in after if box not in reached] or list(after)[:1]:
@@ -224,8 +224,8 @@ def _layers(drawing: Drawing) -> Mapping[_Key, int]:
     return layers
 
 
-def _wanted(box: Box, arrows: tuple[Arrow, ...], placed: Mapping[_Key, PlacedBox]) -> float:
-    """The height at which a box's middle would best be: that of those it is connected with and that stand already."""
+def _best_y(box: Box, arrows: tuple[Arrow, ...], placed: Mapping[_Key, PlacedBox]) -> float:
+    """Return the best y for a box's middle: the mean of the connected boxes that are placed already."""
     heights = []
     for arrow in arrows:
         node, topic = ("node", arrow.node), ("topic", arrow.topic)
@@ -252,7 +252,7 @@ def _size(box: Box) -> _Size:
 
 
 def broken(text: str, length: int, *, evenly: bool = True) -> tuple[str, ...]:
-    """A name in lines of at most `length` characters, broken after / and _ and between words; `evenly` if it can be."""
+    """Break a name into lines of at most `length` characters, after / and _ and between words; `evenly` if possible."""
     parts = re.findall(r"[^/_ ]*[/_ ]|[^/_ ]+", text)
     count = -(-len(text) // length)
     for limit in range(-(-len(text) // count) if evenly else length, length + 1):
@@ -276,7 +276,7 @@ def _cut(line: str, length: int) -> list[str]:
 
 
 def _lines(arrows: tuple[Arrow, ...], placed: Mapping[_Key, PlacedBox]) -> list[PlacedArrow]:
-    """The arrows, each with a place of its own on the sides of its boxes, in the order that crosses least."""
+    """Place the arrows: each ends at a point of its own, ordered so that few arrows cross."""
 
     def height(kind: str, name: str, arrow: Arrow) -> float:
         box = placed[kind, name]

@@ -1,4 +1,4 @@
-"""A node graph, and the JSON in which it is kept: sorted, without times, the same for the same graph."""
+"""A node graph and its JSON form: sorted and without times, so that the same graph always gives the same JSON."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from typing import Any
 class GraphEndpoint:
     """A node's publisher or subscription on a topic.
 
-    `type` is "package/msg/Name". `connected` is False if there is no matching end: it has another type, its QoS does
-    not match, or there is none.
+    `type` is "package/msg/Name". `connected` is False if no endpoint on the other side has the same type and a
+    compatible QoS.
     """
 
     node: str
@@ -22,7 +22,7 @@ class GraphEndpoint:
 
 @dataclass(frozen=True, order=True)
 class GraphTopic:
-    """A topic with its ends, a node named once a side. `rate_hz` is rounded, None if it was not measured."""
+    """A topic with its endpoints, one per node and type on each side. `rate_hz` is rounded; None if not measured."""
 
     name: str
     publishers: tuple[GraphEndpoint, ...]
@@ -31,13 +31,13 @@ class GraphTopic:
 
     @property
     def types(self) -> list[str]:
-        """The types of its ends, the publishers' first."""
+        """The types of its endpoints, the publishers' first."""
         return list(dict.fromkeys(end.type for end in (*self.publishers, *self.subscriptions)))
 
 
 @dataclass(frozen=True, order=True)
 class GraphNode:
-    """A node by its full name, and the first and the last cell (their ids) at whose end it was there, if known."""
+    """A node by its full name, and the ids of the first and the last cell after which it was running, if known."""
 
     name: str
     first_cell: str = ""
@@ -55,7 +55,7 @@ class NodeGraph:
     topics: tuple[GraphTopic, ...] = ()
 
     def to_json(self) -> str:
-        """As JSON that people can read; the same for the same graph."""
+        """Return the graph as indented JSON; the same for the same graph."""
         return json.dumps(asdict(self), ensure_ascii=False, indent=1, sort_keys=True) + "\n"
 
     @classmethod

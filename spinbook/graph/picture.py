@@ -1,8 +1,8 @@
-"""Draws a node graph as SVG: nodes round, topics as boxes, an arrow the way the messages go; no script, no font.
+"""Draws a node graph as SVG: nodes are round, topics are boxes, and arrows point the way messages go.
 
-Colours come from where it is shown: text and arrows have the colour of the text around (`currentColor`), nodes and
-topics take `--node-graph-node` and `--node-graph-topic` where a page sets them. So it needs no style of its own, which
-a strict Content-Security-Policy would refuse, and fits light and dark.
+The page decides the colours: text and arrows have the colour of the surrounding text (`currentColor`); nodes and topics
+have `--node-graph-node` and `--node-graph-topic` if the page sets them. So the SVG fits light and dark pages and needs
+no style of its own, which a strict Content-Security-Policy would refuse; it has no script and no font either.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from html import escape
 from spinbook.graph.layout import NAME_LINE, SMALL_LINE, Drawing, GraphLayout, PlacedArrow, PlacedBox, drawings, layout
 from spinbook.graph.model import NodeGraph
 
-#: Room around a drawing, and between two (px).
+#: Space around a drawing, and between two drawings (px).
 _MARGIN, _BETWEEN = 10, 28
 _NODE, _TOPIC = "var(--node-graph-node,#2f81c9)", "var(--node-graph-topic,#b7791f)"
 _FONT = "ui-monospace,SFMono-Regular,Menlo,Consolas,'DejaVu Sans Mono',monospace"
@@ -25,7 +25,7 @@ _STANDALONE = (
 
 
 def node_graph_svg(graph: NodeGraph, *, standalone: bool = False) -> str:
-    """The whole graph as one SVG element, what is not connected below one another; at most some 340 px wide.
+    """Return the whole graph as one SVG element, about 340 px wide at most. Unconnected parts are below each other.
 
     `standalone` gives it a background and colours of its own, for a file or a notebook's output.
     """
@@ -41,7 +41,7 @@ def node_graph_svg(graph: NodeGraph, *, standalone: bool = False) -> str:
 
 
 def node_graph_svgs(graph: NodeGraph) -> list[str]:
-    """An SVG element for each part of the graph that is connected, to be placed side by side where there is room."""
+    """Return one SVG element per connected part of the graph. A page can place them side by side."""
     shown = drawings(graph)
     return [
         _element(
@@ -56,7 +56,7 @@ def node_graph_svgs(graph: NodeGraph) -> list[str]:
 
 
 def in_words(shown: Iterable[Drawing]) -> str:
-    """What the picture shows, a sentence an arrow, for those who can't see it."""
+    """Return what the picture shows, one sentence per arrow, for readers who can't see it."""
     sentences = []
     for drawing in shown:
         about = {box.name: box.about or _describe(box.label, box.small) for box in drawing.topics}

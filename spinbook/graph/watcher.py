@@ -1,14 +1,14 @@
-"""Watches the node graph of a ROS domain, and counts messages to know the rates.
+"""Watches the node graph of a ROS domain, and counts messages to measure rates.
 
-`python -m spinbook.graph.watcher now [SECONDS]` prints the graph of ROS_DOMAIN_ID as it is now, as JSON. For so many
-seconds it listens to every topic that is published, to know the rates.
+`python -m spinbook.graph.watcher now [SECONDS]` prints the current graph of ROS_DOMAIN_ID as JSON. For SECONDS, it
+subscribes to every published topic to measure its rate.
 
-`python -m spinbook.graph.watcher` watches on behalf of another process. It reads words from standard input, a line
-each, and ends with it:
+`python -m spinbook.graph.watcher` watches for another process. It reads commands from standard input, one per line,
+until the input ends:
 
-    domain N    look at this ROS domain from now on
-    count       listen to topics that have a listener anyway, to know their rates, until the next word
-    look        stop that, wait until the graph is known, and print it as one line of JSON
+    domain N    watch this ROS domain from now on
+    count       subscribe to topics that have a subscriber anyway, to measure their rates, until the next command
+    look        stop counting, wait until the graph is complete, and print it as one line of JSON
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from spinbook.graph.model import GraphEndpoint, GraphNode, GraphTopic, NodeGraph
 #: A rate is measured over at least this long (s).
 ENOUGH_S = 0.8
 _NS = 1e9
-#: First digits that rates of timers have. A rate within 4 % of one is that one: a measured 9.94 Hz is a 10 Hz timer.
+#: Usual rates of timers, as first digits. A rate within 4 % of one is shown as that: 9.94 Hz is a 10 Hz timer.
 _USUAL = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 3.3, 4.0, 5.0, 6.0, 6.25, 7.0, 7.5, 8.0, 9.0, 10.0)
 _NEAR = 0.04
 
@@ -54,29 +54,29 @@ class _Stream:
 
 @dataclass
 class MessageCounter:
-    """The messages received on a topic with this many publishers, kept apart by publisher.
+    """Counts the messages on a topic with this many publishers, separately for each publisher.
 
-    Each publisher numbers its messages, so that what was missed in between is counted too (RTPS 2.5, 8.3.5.4), and
-    stamps them when it sends them, so that the time that they took to come does not matter.
+    Each publisher numbers its messages, so lost messages count, too (RTPS 2.5, 8.3.5.4). It stamps them when it sends
+    them, so latency does not matter.
     """
 
     publishers: int = 1
     _streams: list[_Stream] = field(default_factory=list)
 
-    def heard(self, number: int, sent_ns: int) -> None:
-        """Take in a message by its sequence number and source time stamp."""
+    def count(self, number: int, sent_ns: int) -> None:
+        """Count a message with this sequence number and source time stamp."""
         following = [stream for stream in self._streams if stream.last[0] < number and stream.last[1] <= sent_ns]
-        # The next number goes on with a stream. A gap is another publisher while some have not been heard, then loss,
-        # in the stream out of which it leaves the fewest.
+        # The next number continues a stream. A gap means another publisher, as long as one of them is still missing;
+        # otherwise messages were lost, in the stream with the smallest gap.
         nearest = max(following, key=lambda stream: stream.last[0], default=None)
-        unheard = len(self._streams) < self.publishers
-        if nearest is None or (unheard and number - nearest.last[0] > 1):
+        is_one_missing = len(self._streams) < self.publishers
+        if nearest is None or (is_one_missing and number - nearest.last[0] > 1):
             self._streams.append(_Stream((number, sent_ns), (number, sent_ns)))
         else:
             nearest.last = (number, sent_ns)
 
     def rate_hz(self) -> float | None:
-        """Messages per second of all publishers together; None until enough has been received from each."""
+        """Return the messages per second of all publishers together; None until each has sent for long enough."""
         rates = []
         for stream in self._streams:
             seconds = (stream.last[1] - stream.first[1]) / _NS
@@ -87,7 +87,7 @@ class MessageCounter:
 
 
 def rounded(rate_hz: float) -> float:
-    """A rate as it is shown: two digits, or that of a usual timer if it is close to one (9.99 and 10.01 are 10)."""
+    """Return a rate as it is shown: two digits, or the rate of a usual timer nearby (9.99 and 10.01 are 10)."""
     if not rate_hz > 0 or not math.isfinite(rate_hz):
         return 0.0
     scale = 10.0 ** math.floor(math.log10(rate_hz))
@@ -97,27 +97,29 @@ def rounded(rate_hz: float) -> float:
     return float(f"{shown * scale:.6g}")
 
 
-#: Every node has these, and they tell nothing of what it is for.
+#: Topics that every node has, which say nothing about its purpose.
 INTERNAL = ("/rosout", "/parameter_events")
-#: Seconds without a change after which the graph is taken for known, and after which it is so in any case.
+#: Quiet time after which the graph counts as complete, and the deadline for that (s).
 _QUIET_S, _DEADLINE_S = 0.15, 8.0
-#: A topic is counted for so long at a time (s).
+#: The messages of a topic are counted for this long (s).
 _COUNTING_S = 2.5
-#: Hears publishers of every reliability and durability, and asks nothing of them.
-_HEARS_ALL = QoSProfile(depth=50, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
+#: Compatible with publishers of every reliability and durability.
+_COMPATIBLE_WITH_ALL = QoSProfile(
+    depth=50, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE
+)
 
 
 class GraphWatcher(GraphView):
-    """Sees nodes, topics and ends. Its name begins with an underscore, as ros2's own nodes' do, so it is not listed.
+    """Reads nodes, topics and endpoints. Its own node is hidden: the name begins with an underscore.
 
-    It subscribes only while `count` is called again and again, and only to what is not yet counted.
+    It subscribes to topics only between `count` and `stop_counting`, and only to those whose rate is unknown.
     """
 
     def __init__(self) -> None:
         prepare()
         super().__init__(node_name=f"_spinbook_graph_{os.getpid()}", spin_time=None, use_sim_time=False)
         self._known: tuple[Any, ...] = ()
-        self._silent = 0
+        self._gone_before = 0
         self._counting: dict[str, tuple[Subscription, MessageCounter, float]] = {}
         #: Topic -> how many publishers it had when it was counted, and its rate.
         self._rates: dict[str, tuple[int, float]] = {}
@@ -126,7 +128,7 @@ class GraphWatcher(GraphView):
         return self
 
     def wait_until_idle(self) -> None:
-        """Return when the participants are those of this host and nothing changes; at once if nothing has."""
+        """Wait until all participants of this host are known and nothing changes, or return at once if nothing has."""
         deadline = time.monotonic() + _DEADLINE_S
         seen, changed = self._look(), time.monotonic()
         while not (seen == self._known or time.monotonic() - changed >= _QUIET_S) or not self._complete():
@@ -136,23 +138,23 @@ class GraphWatcher(GraphView):
             look = self._look()
             if look != seen:
                 seen, changed = look, time.monotonic()
-        self._known, self._silent = seen, self._gone()
+        self._known, self._gone_before = seen, self._gone()
 
     def _complete(self) -> bool:
-        # What leaves says so, which may arrive late; what was killed does not, and is waited for only once.
-        return super()._complete() and self._gone() <= self._silent
+        # A participant announces that it leaves, maybe late. A killed one does not: wait for each of those only once.
+        return super()._complete() and self._gone() <= self._gone_before
 
     def _gone(self) -> int:
-        """How many participants have been heard of that are not on this host any more."""
+        """Return how many known participants are no longer on this host."""
         here = None if hears_other_hosts() else participants(domain_id())
         return 0 if here is None else max(0, len(self._heard()) - here)
 
     def _look(self) -> tuple[Any, ...]:
-        # A node that has started and has not been heard of yet is a change as well.
+        # A node that has started and is not discovered yet is a change, too.
         return (*super()._look(), participants(domain_id()))
 
     def graph(self) -> NodeGraph:
-        """What is there now, with the rates that have been counted so far."""
+        """Return the current graph, with the rates that have been measured so far."""
         nodes = {node.full_name for node in self.nodes() if not node.hidden}
         topics = (self._topic(name.name) for name in self.topics() if _is_shown(name.name))
         shown = sorted(topic for topic in topics if topic.publishers or topic.subscriptions)
@@ -163,13 +165,13 @@ class GraphWatcher(GraphView):
         _, rate = self._rates.get(name, (0, None))
         return GraphTopic(name, _ends(publishers, subscriptions), _ends(subscriptions, publishers), rate)
 
-    # Counting
+    # --- rates
 
-    def count(self, unheard: bool = False) -> bool:
-        """Listen a moment to the topics whose rate is not known, those to which nobody listens only if `unheard`.
+    def count(self, without_subscribers: bool = False) -> bool:
+        """Count messages for a moment on topics whose rate is unknown; return False if there is nothing left to count.
 
-        To be called again and again, and `stop_counting` at the end. While it counts, a publisher sees one
-        subscription more. False when there is nothing left to count.
+        Topics without subscribers are included only if `without_subscribers`. Call this repeatedly, and
+        `stop_counting` at the end. Meanwhile, publishers see one more subscription.
         """
         self.spin_once()
         for name, (_, counted, until) in list(self._counting.items()):
@@ -177,20 +179,20 @@ class GraphWatcher(GraphView):
                 self._conclude(name, counted)
         for topic in self.topics():
             if _is_shown(topic.name) and topic.name not in self._counting:
-                self._begin(topic.name, unheard)
+                self._begin(topic.name, without_subscribers)
         return bool(self._counting)
 
-    def _begin(self, name: str, unheard: bool) -> None:
+    def _begin(self, name: str, without_subscribers: bool) -> None:
         publishers = _shown(self.publishers(name))
-        heard = unheard or _shown(self.subscriptions(name))
-        if not publishers or not heard or self._rates.get(name, (0, 0))[0] >= len(publishers):
+        is_used = without_subscribers or _shown(self.subscriptions(name))
+        if not publishers or not is_used or self._rates.get(name, (0, 0))[0] >= len(publishers):
             return
         counted = MessageCounter(len(publishers))
         try:
             kind = message_class(publishers[0].topic_type)
         except CommandError:
             return  # a type that is not installed here
-        subscription = self.node.create_subscription(kind, name, _callback(counted), _HEARS_ALL, raw=True)
+        subscription = self.node.create_subscription(kind, name, _callback(counted), _COMPATIBLE_WITH_ALL, raw=True)
         self._counting[name] = (subscription, counted, time.monotonic() + _COUNTING_S)
 
     def _conclude(self, name: str, counted: MessageCounter) -> None:
@@ -201,16 +203,16 @@ class GraphWatcher(GraphView):
             self._rates[name] = (len(_shown(self.publishers(name))), rounded(rate))
 
     def stop_counting(self) -> None:
-        """Listen to nothing any more; what was heard for long enough counts."""
+        """Unsubscribe from all topics, and keep the rates that were measured for long enough."""
         for name, (_, counted, _) in list(self._counting.items()):
             self._conclude(name, counted)
 
 
 def _callback(counted: MessageCounter) -> Any:
-    """A callback of the form to which rclpy passes the message's information, too: rclpy looks at the parameters."""
+    """Return a callback with two parameters: rclpy then also passes the message's information."""
 
     def callback(data: bytes, information: dict[str, int]) -> None:
-        counted.heard(information["publication_sequence_number"], information["source_timestamp"])
+        counted.count(information["publication_sequence_number"], information["source_timestamp"])
 
     return callback
 
@@ -220,7 +222,7 @@ def _is_shown(topic: str) -> bool:
 
 
 def _shown(ends: Iterable[TopicEndpointInfo]) -> list[TopicEndpointInfo]:
-    """Those of nodes that are not hidden."""
+    """Return the endpoints of nodes that are not hidden."""
     return [end for end in ends if not topic_or_service_is_hidden(_node(end))]
 
 
@@ -229,7 +231,7 @@ def _node(end: TopicEndpointInfo) -> str:
 
 
 def _ends(ends: list[TopicEndpointInfo], others: list[TopicEndpointInfo]) -> tuple[GraphEndpoint, ...]:
-    """One end a node and type, by node; it is connected if any of its ends is to any of the others'."""
+    """Return one endpoint per node and type, sorted. It is connected if any of them matches any of `others`."""
     connected: dict[tuple[str, str], bool] = {}
     for end in ends:
         key = (_node(end), end.topic_type)
@@ -246,52 +248,52 @@ def _fit(one: TopicEndpointInfo, other: TopicEndpointInfo) -> bool:
 
 
 def graph_now(seconds: float) -> NodeGraph:
-    """The graph, with the rates of what could be counted within `seconds`."""
+    """Return the graph, with the rates that could be measured within `seconds`."""
     with GraphWatcher() as watcher:
         watcher.wait_until_idle()
         deadline = time.monotonic() + seconds
-        while time.monotonic() < deadline and watcher.count(unheard=True):
+        while time.monotonic() < deadline and watcher.count(without_subscribers=True):
             pass
         watcher.stop_counting()
         return watcher.graph()
 
 
-def _listen(words: queue.SimpleQueue[str]) -> None:
+def _listen(commands: queue.SimpleQueue[str]) -> None:
     for line in sys.stdin:
-        words.put(line.strip())
-    words.put("end")
+        commands.put(line.strip())
+    commands.put("end")
 
 
-def observe(words: queue.SimpleQueue[str]) -> None:
-    """Do what the words say, until "end"."""
-    word = words.get()
-    while word != "end":
-        os.environ["ROS_DOMAIN_ID"] = word.removeprefix("domain ")
+def observe(commands: queue.SimpleQueue[str]) -> None:
+    """Follow the commands, until "end"."""
+    command = commands.get()
+    while command != "end":
+        os.environ["ROS_DOMAIN_ID"] = command.removeprefix("domain ")
         with GraphWatcher() as watcher:
-            word = _look_at(watcher, words)
+            command = _watch_domain(watcher, commands)
 
 
-def _look_at(watcher: GraphWatcher, words: queue.SimpleQueue[str]) -> str:
-    """Do what is asked of one domain; the word that ends it."""
-    while (word := words.get()) != "end" and not word.startswith("domain "):
-        while word == "count" and words.empty():
+def _watch_domain(watcher: GraphWatcher, commands: queue.SimpleQueue[str]) -> str:
+    """Follow the commands for one domain; return the first one that is not for it."""
+    while (command := commands.get()) != "end" and not command.startswith("domain "):
+        while command == "count" and commands.empty():
             watcher.count()
         watcher.stop_counting()
-        if word == "look":
+        if command == "look":
             watcher.wait_until_idle()
             print(json.dumps(json.loads(watcher.graph().to_json())), flush=True)
-    return word
+    return command
 
 
 def observe_standard_input() -> None:
-    """Observe until standard input ends."""
-    words: queue.SimpleQueue[str] = queue.SimpleQueue()
-    threading.Thread(target=_listen, args=(words,), daemon=True).start()
-    observe(words)
+    """Follow the commands on standard input, until it ends."""
+    commands: queue.SimpleQueue[str] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(commands,), daemon=True).start()
+    observe(commands)
 
 
 def main(how: str = "", seconds: str = "0") -> None:
-    """Look once, or as often as standard input asks."""
+    """Print the graph once, or follow the commands on standard input."""
     try:
         if how == "now":
             print(graph_now(float(seconds)).to_json())

@@ -111,7 +111,7 @@ def test_a_sourced_ros_is_used_alone_and_an_environment_with_wheels_makes_way_fo
 
     ros = clean | sourced(tmp_path / "opt" / "ros" / "jazzy")
     found = findings(folder, ros)
-    assert found["ROS 2"]["found"].startswith("two of them")
+    assert found["ROS 2"]["found"].startswith("two installations")
 
     second = make(folder, ros, "setup")
     assert second.returncode == 0, second.stderr

@@ -49,7 +49,7 @@ def test_a_check_that_hangs_is_ended_with_all_that_it_started(folder: Path) -> N
     )
     finding = examine(check(folder, "hanging", does, seconds=3))
     assert finding.state is State.MISSING
-    assert finding.found == "no answer within 3 s"
+    assert finding.found == "the check did not finish within 3 s"
     assert not runs(int((folder / "pid").read_text()))
 
 
@@ -80,7 +80,7 @@ def test_what_can_only_fail_is_not_tried_so_a_cause_is_reported_once(folder: Pat
         check(folder, "effect", f"open({os.fspath(folder / 'tried')!r}, 'w')", needs=("cause",)),
     ]
     _, effect = diagnose(checks, lambda finding: None)
-    assert effect == MachineFinding("Effect", State.MISSING, "not tried, because of: Cause", "")
+    assert effect == MachineFinding("Effect", State.MISSING, "not checked, because this failed: Cause", "")
     assert not (folder / "tried").exists()
 
 

@@ -43,7 +43,7 @@ def test_a_middleware_that_is_not_installed_is_named_and_what_needs_it_is_not_tr
     assert middleware["state"] == "missing"
     assert "'rmw_nowhere_cpp', which is not installed" in middleware["found"]
     assert "unset RMW_IMPLEMENTATION" in middleware["fix"]
-    assert message["found"] == "not tried, because of: Middleware"
+    assert message["found"] == "not checked, because this failed: Middleware"
 
 
 @with_wheels
@@ -52,7 +52,7 @@ def test_a_guard_that_outlived_its_library_path_is_the_cause_that_is_reported() 
     libraries, ros = json.loads(run.stdout)["findings"]
     assert libraries["state"] == "missing"
     assert f"unset {GUARD} LD_LIBRARY_PATH" in libraries["fix"]
-    assert ros["found"] == "not tried, because of: Library path"
+    assert ros["found"] == "not checked, because this failed: Library path"
 
 
 @with_wheels
@@ -71,7 +71,7 @@ def test_a_sourced_ros_beside_the_wheels_is_a_fault(tmp_path: Path) -> None:
     (sourced / "rclpy").symlink_to(Path(importlib.import_module("rclpy").__path__[0]))
     finding = finding_of("ros", PYTHONPATH=os.fspath(sourced))
     assert finding["state"] == "missing"
-    assert finding["found"].startswith("two of them")
+    assert finding["found"].startswith("two installations")
     assert os.fspath(sourced) in finding["found"]
     assert "make setup" in finding["fix"]
 

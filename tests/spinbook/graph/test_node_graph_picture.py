@@ -66,7 +66,7 @@ def test_what_a_node_has_for_itself_alone_is_one_box_where_it_is_much() -> None:
     svg = node_graph_svg(TURTLE)
 
     assert ">3 topics<" in svg
-    assert "<title>3 topics to which nobody subscribes: /turtle1/a, /turtle1/b, /turtle1/c</title>" in svg
+    assert "<title>3 topics to which no node subscribes: /turtle1/a, /turtle1/b, /turtle1/c</title>" in svg
     assert ">/turtle1/a<" not in svg
 
 
