@@ -1,4 +1,4 @@
-"""Builds the site of a course: read, stage, let Sphinx make the pages, publish."""
+"""Builds the site of a course: reads it, stages the pages, runs Sphinx on them, and publishes the result."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from spinbook.site.page import repository_of
 
 @dataclass(frozen=True)
 class Site:
-    """What came of building a site. `folder` holds it; `pages` counts all, `made` names those made again."""
+    """The result of building a site. `pages` is the number of pages in `folder`; `made` names the rebuilt ones."""
 
     folder: Path
     pages: int
@@ -29,10 +29,10 @@ class Site:
     problems: tuple[Problem, ...]
     seconds: float
     fresh: bool
-    """False where nothing that the site depends on has changed since it was built."""
+    """False if nothing that the site depends on has changed since it was built."""
 
 
-#: What Spinbook's own code makes of a course, down to the outputs of its notebooks.
+#: The code of Spinbook that affects a site, including the outputs of its notebooks.
 _CODE = (
     "site",
     "browser",
@@ -51,7 +51,7 @@ _CODE = (
 
 
 def unchanged_site(course: Course, *, as_it_ran: bool) -> Site | None:
-    """The site as it was built before, if nothing that it depends on has changed since, else None."""
+    """Return the site as it was built before; None if something that it depends on has changed since."""
     before = _read(_record(course))
     folder = course.build_folder / "site"
     if before.get("key") != _key(course, as_it_ran=as_it_ran) or not (folder / f"{names.HOME}.html").exists():
@@ -60,15 +60,15 @@ def unchanged_site(course: Course, *, as_it_ran: bool) -> Site | None:
 
 
 def build_site(course: Course, on_page: Callable[[str], None], *, as_it_ran: bool) -> Site:
-    """Build `build/site` from the chapters, the executed notebooks and the exercises; `on_page` hears of each page.
+    """Build `build/site` from the chapters, the executed notebooks and the exercises; `on_page` gets each page's name.
 
     `as_it_ran` says that the outputs may be older than the chapters. Raises SpinbookError with what an author has to
-    fix; the site of the last good build then stays as it was.
+    fix; the site of the last successful build is then unchanged.
     """
     started = time.monotonic()
     record, folder = _record(course), course.build_folder / "site"
     before, key = _read(record), _key(course, as_it_ran=as_it_ran)
-    # Sphinx takes a second to import: only where it is needed.
+    # Sphinx takes a second to import, so an unchanged site does without it.
     from spinbook.site.contents import read_contents
     from spinbook.site.sphinx_build import prove_nothing_leaks, publish, run_sphinx, stage
 
@@ -82,11 +82,11 @@ def build_site(course: Course, on_page: Callable[[str], None], *, as_it_ran: boo
     stage(contents, source)
     made: list[str] = []
 
-    def heard(page: str) -> None:
+    def note_page(page: str) -> None:
         made.append(page)
         on_page(page)
 
-    html, problems = run_sphinx(contents, source, cache, course, heard)
+    html, problems = run_sphinx(contents, source, cache, course, note_page)
     pages = [*(page.name for page in contents.pages), names.SEARCH]
     publish(html, pages, contents.files, folder)
     _write_branch(contents.branch, course.build_folder / "launch")
@@ -100,7 +100,7 @@ def _record(course: Course) -> Path:
 
 
 def _key(course: Course, *, as_it_ran: bool) -> str:
-    """All that the site depends on."""
+    """Return a digest of everything that the site depends on."""
     inputs = [course.root / FILE, *(course.root / chapter for chapter in course.chapters)]
     inputs += [course.root / file for file in _shown(course)]
     inputs += [course.root / course.glossary] if course.glossary else []
@@ -114,17 +114,17 @@ def _key(course: Course, *, as_it_ran: bool) -> str:
 
 
 def _shown(course: Course) -> list[str]:
-    """The files that the chapters include or show, as they were when their notebooks were built."""
+    """Return the files that the chapters included or showed when their notebooks were built."""
     record = _read(course.build_folder / ".cache" / "notebooks.json")
     return sorted({file for entry in record.values() for file in entry.get("uses", [])})
 
 
 def _read(record: Path) -> dict[str, Any]:
     try:
-        found = json.loads(record.read_text(encoding="utf-8"))
+        data = json.loads(record.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    return found if isinstance(found, dict) else {}
+    return data if isinstance(data, dict) else {}
 
 
 def _write_branch(files: dict[str, str], folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""Makes the notebook from which Sphinx makes a chapter's page: the chapter's own prose, the outputs of its run."""
+"""Makes the notebook for a chapter's page: the chapter's prose and the outputs of its run. Sphinx renders it."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ class ExecutedNotebook:
 
     @staticmethod
     def read(file: Path) -> ExecutedNotebook:
-        """Read the notebook at `file`. Raises OSError or ValueError where it can't be read."""
+        """Read the notebook at `file`. Raises OSError or ValueError if it can't be read."""
         notebook = json.loads(file.read_text(encoding="utf-8"))
         return ExecutedNotebook({cell["id"]: cell for cell in notebook["cells"] if cell["cell_type"] == "code"})
 
     def outputs(self, cell_id: str) -> list[dict[str, Any]]:
-        """What a cell showed; nothing, where it has not run."""
+        """Return the outputs of a cell; none if it has not run."""
         return list(self.cells.get(cell_id, {}).get("outputs", []))
 
 
@@ -49,10 +49,10 @@ def chapter_notebook(
     downloads: Mapping[str, str],
     graph: str = "",
 ) -> dict[str, Any]:
-    """The page's notebook. `prose` holds the text of each prose cell by id, as `rich` made it.
+    """Return the page's notebook. `prose` is the text of each prose cell by id, as returned by `rich`.
 
-    `downloads` are the files of nodes' programs by cell. `graph` is the Markdown of the section that shows the nodes
-    that ran; it is the page's last.
+    `downloads` are the files of nodes' programs by cell. `graph` is the Markdown of the last section, which shows the
+    nodes that ran; "" for none.
     """
     cells: list[dict[str, Any]] = []
     for cell in chapter.cells:
@@ -84,7 +84,7 @@ def _card(exercise: ExerciseCard) -> str:
     return (
         f'<div class="exercise-card"><p class="exercise-card-kind">Exercise · {exercise.points:g} points</p>'
         f'<p><a href="{target}">{exercise.title}</a></p>'
-        "<p>The task, the interface, and a starter to download are on a page of their own.</p></div>"
+        "<p>The task, the interface and a starter to download are on the exercise's own page.</p></div>"
     )
 
 
@@ -120,13 +120,13 @@ def _code(cell: ChapterCell, ran: ExecutedNotebook, source_link: str, download: 
 
 
 def _after(cell: ChapterCell) -> str:
-    """What a node that is shown in pieces runs with, in words."""
+    """Return what a node that is shown in pieces runs with, in words."""
     with_what = [*cell.after] or (["the usual imports"] if cell.before else [])
     return f"runs with {', '.join(with_what)}" if with_what else ""
 
 
 def _run(cell: ChapterCell) -> dict[str, Any]:
-    """What a page adds to code that is not whole by itself, what `ros2 run` calls a node, how long output is shown."""
+    """Return what a page needs to run a cell: code that completes it, names for `ros2 run`, how long to show output."""
     how = ["--main"] if cell.runs_main else ["--class", *cell.spin_classes] if cell.spin_classes else []
     names = [f"{package}/{executable}" for package, executable in cell.executables]
     about: dict[str, Any] = {"before": cell.before, "start": how, "executables": names}
@@ -135,7 +135,7 @@ def _run(cell: ChapterCell) -> dict[str, Any]:
 
 
 def _published(output: dict[str, Any]) -> dict[str, Any]:
-    """An output as the page shows it: pictures as small as they can be, and only what a page can show."""
+    """Return an output for the page: with compressed pictures, and without formats that a page can't show."""
     if "data" not in output:
         return output
     data = dict(output["data"])
@@ -152,12 +152,12 @@ _SHOWN = ("image/svg+xml", "image/png", "text/plain")
 
 
 def is_picture(output: Mapping[str, Any]) -> bool:
-    """Whether an output has a picture in it."""
+    """Return whether an output has a picture."""
     return any(kind.startswith("image/") for kind in output.get("data", {}))
 
 
 def alternative(output: Mapping[str, Any], cell: ChapterCell) -> str:
-    """What a picture says in words: what its maker says, else what a terminal would show, else where it is from."""
+    """Return a picture's alternative text: its own, otherwise its plain text, otherwise the code that drew it."""
     for about in output.get("metadata", {}).values():
         if isinstance(about, dict) and about.get("alt"):
             return str(about["alt"])
@@ -169,11 +169,11 @@ def alternative(output: Mapping[str, Any], cell: ChapterCell) -> str:
 
 
 def stills(chapter: Chapter, ran: ExecutedNotebook) -> dict[str, bytes]:
-    """The files that stand for the chapter's moving pictures where nothing may move: path in the site -> PNG."""
-    found = [still_of(output) for cell in chapter.cells for output in ran.outputs(cell.id)]
-    return {still.path: still.data for still in found if still}
+    """Return still versions of the chapter's moving pictures: path in the site -> PNG."""
+    pictures = [still_of(output) for cell in chapter.cells for output in ran.outputs(cell.id)]
+    return {still.path: still.data for still in pictures if still}
 
 
 def as_text(notebook: Mapping[str, Any]) -> str:
-    """The notebook as a file holds it."""
+    """Return the notebook as the text of a file."""
     return json.dumps(notebook, ensure_ascii=False, indent=1, sort_keys=True) + "\n"

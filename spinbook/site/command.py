@@ -1,6 +1,6 @@
 """`spinbook site`: the course's website; `--serve` shows it while its author writes.
 
-With --serve each saved file builds it again, and the browser loads it again.
+With --serve, each save rebuilds the site and reloads the browser.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from spinbook.site.build import Site, build_site, unchanged_site
 @click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")
 @click.option("--no-run", is_flag=True, help="Run no notebook: show the existing outputs, even if they are old.")
 @click.option("--strict", is_flag=True, help="Stop if a cell fails, or if code is shown but not run.")
-@click.option("--serve", is_flag=True, help="Show the site in a browser, and build it again whenever a file is saved.")
+@click.option("--serve", is_flag=True, help="Serve the site, and rebuild it whenever a file is saved.")
 @click.option("--port", type=click.IntRange(1, 65535), default=8000, show_default=True, help="Where --serve listens.")
 def site(start: Path, no_run: bool, strict: bool, serve: bool, port: int) -> None:
     """Make the course's website in build/site/.
 
-    Every output on it was made by real nodes: if a chapter's code has changed since it ran, the chapter runs first, as
-    with `spinbook build --execute`. Unchanged pages are not made again.
+    Real nodes produce every output on it: a chapter whose code has changed since it ran is run first, as with
+    `spinbook build --execute`. Only changed pages are rebuilt.
 
     \b
       spinbook site                    build/site/index.html, to open in any browser
@@ -42,9 +42,9 @@ def site(start: Path, no_run: bool, strict: bool, serve: bool, port: int) -> Non
     You can copy the folder to any web server, or open it without one. Next to it, build/launch/ has the notebooks that
     Colab, Binder and Codespaces open: push it to the branch `notebooks` (docs/site.md).
 
-    The site shows how a cell failed. With --strict, for the CI of your own course, a failed cell stops the site.
+    The site shows how a cell failed. With --strict, for the CI of your own course, a failed cell stops the build.
 
-    Exit code: 0 the site is built, 1 something must be fixed first; the site of the last good build then stays.
+    Exit code: 0 the site is built, 1 something must be fixed first; the last successful site is then unchanged.
     """
     course = find_course(start)
     console = Console(soft_wrap=True, highlight=False)
@@ -85,36 +85,36 @@ def _report(console: Console, built: Site) -> None:
 
 
 _HOST = "127.0.0.1"
-#: What reloads the page is a script in the page itself, which the published site's policy forbids.
+#: The policy of the published site, which would forbid the script that reloads the page.
 _POLICY = re.compile(rb'<meta http-equiv="Content-Security-Policy"[^>]*>\n?')
 
-Start = Callable[[str, list[tuple[str, str]]], Any]
+StartResponse = Callable[[str, list[tuple[str, str]]], Any]
 
 
 def serve_site(course: Course, port: int, no_run: bool) -> None:
-    """Build the site, show it, and build it again on each save, until Ctrl-C."""
+    """Build the site, serve it, and rebuild it on each save, until Ctrl-C."""
     from livereload import Server
 
     argv = [sys.executable, "-m", "spinbook", "site", "--course", str(course.root), *(["--no-run"] if no_run else [])]
 
     def build() -> None:
-        # A process of its own each time: what an author has broken for one build is fixed for the next.
+        # A new process each time, so that each build starts from a clean state, whatever happened to the last one.
         subprocess.run(argv, check=False)
 
     build()
     server = Server(pages_of(course.build_folder / "site"))
-    for place in map(str, (FILE, "chapters", "exercises", "solutions", *course.chapters, course.glossary or FILE)):
-        server.watch(str(course.root / place), build)
-    click.echo(f"The site is at http://{_HOST}:{port} and is built again on each save. Ctrl-C ends it.")
+    for watched in map(str, (FILE, "chapters", "exercises", "solutions", *course.chapters, course.glossary or FILE)):
+        server.watch(str(course.root / watched), build)
+    click.echo(f"The site is at http://{_HOST}:{port} and is rebuilt on each save. Press Ctrl-C to stop.")
     server.serve(port=port, host=_HOST, debug=False)
 
 
-def pages_of(site: Path) -> Callable[[dict[str, Any], Start], Iterable[bytes]]:
-    """A WSGI application that shows the files of `site`: https://peps.python.org/pep-3333/."""
+def pages_of(site: Path) -> Callable[[dict[str, Any], StartResponse], Iterable[bytes]]:
+    """Return a WSGI application that serves the files of `site`: https://peps.python.org/pep-3333/."""
 
-    def answer(environ: dict[str, Any], start: Start) -> Iterable[bytes]:
-        asked = str(environ.get("PATH_INFO", "/")).lstrip("/") or "index.html"
-        file = (site / asked).resolve()
+    def answer(environ: dict[str, Any], start: StartResponse) -> Iterable[bytes]:
+        path = str(environ.get("PATH_INFO", "/")).lstrip("/") or "index.html"
+        file = (site / path).resolve()
         if not file.is_relative_to(site.resolve()) or not file.is_file():
             start("404 Not Found", [("Content-Type", "text/plain; charset=utf-8")])
             return [b"There is no such page."]

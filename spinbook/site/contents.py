@@ -1,4 +1,4 @@
-"""Collects everything to publish from the course and its executed notebooks, before any of it is written."""
+"""Collects everything to publish from the course and its executed notebooks, before anything is written."""
 
 from __future__ import annotations
 
@@ -43,10 +43,9 @@ class SiteContents:
     """The site before it is built.
 
     `pages` are in reading order, the home page first. `pictures` are those that the text shows: path in the site ->
-    content. `files` go into the site as they are, `branch` into the
-    branch of notebooks: path -> text. `origins` says for a staged page which file an author would fix, and `lines`
-    for a chapter's page the first line of each of its cells. `taught` is the code of the chapters' nodes, `copies` what
-    the notebooks bring of the exercises: path -> content.
+    content. `files` go into the site unchanged, `branch` into the branch of notebooks: path -> text. `origins` is the
+    author's file for each staged page, and `lines` the first line of each cell of a chapter's page. `taught` is the
+    code of the chapters' nodes; `copies` are the students' copies of exercises in the notebooks: path -> content.
     """
 
     pages: list[Page] = field(default_factory=list)
@@ -63,7 +62,7 @@ class SiteContents:
 
 
 class _Drawings:
-    """The drawings of a course: collected in a first pass over the text, and shown in the second."""
+    """The drawings of a course: collected in the first pass over the text, inserted in the second."""
 
     def __init__(self) -> None:
         self.codes: dict[str, None] = {}
@@ -110,7 +109,7 @@ def read_contents(course: Course) -> SiteContents:
 
 
 def _copies(exercises: Mapping[str, Exercise]) -> dict[str, dict[str, bytes]]:
-    """The files of each exercise that a check needs, by path."""
+    """Return the files that a check needs, by exercise and path."""
     try:
         return {name: public_parts([exercise]) for name, exercise in exercises.items()}
     except ExerciseError as error:
@@ -126,20 +125,20 @@ def _chapters(course: Course) -> list[Chapter]:
 
 
 def _exercises(course: Course, chapters: list[Chapter]) -> dict[str, Exercise]:
-    found: dict[str, Exercise] = {}
+    exercises: dict[str, Exercise] = {}
     for chapter in chapters:
         for cell in chapter.cells:
             if cell.kind is CellKind.EXERCISE and cell.name:
                 try:
-                    found[cell.name] = load(course.root / "exercises" / cell.name)
+                    exercises[cell.name] = load(course.root / "exercises" / cell.name)
                 except ExerciseError as error:
                     fix = "Fix the exercise, or remove it from the chapter."
                     raise SpinbookError(Problem(chapter.file, cell.line, str(error), fix)) from None
-    return found
+    return exercises
 
 
 def _pages_of_files(course: Course, exercises: Mapping[str, Exercise]) -> dict[str, str]:
-    """The course's files that have pages, and what is staged for them: Sphinx makes the address."""
+    """Return the staged file of each of the course's files that has a page. Sphinx turns it into an address."""
     pages = {file.as_posix(): f"{names.chapter_page(name)}.ipynb" for file, name in course.names.items()}
     pages |= {f"exercises/{name}/task.md": f"{names.exercise_page(name)}.md" for name in exercises}
     if course.glossary:
@@ -148,9 +147,9 @@ def _pages_of_files(course: Course, exercises: Mapping[str, Exercise]) -> dict[s
 
 
 def _anchors(course: Course) -> dict[tuple[str, str], str]:
-    """File and JupyterLab's id of a heading -> its id on the page."""
-    found = ((file, heading) for file in course.chapters for heading in headings_of(course.root, file))
-    return {(file.as_posix(), heading.anchor): heading.slug for file, heading in found}
+    """Return the id of each heading on its page, by file and JupyterLab's id."""
+    headings = ((file, heading) for file in course.chapters for heading in headings_of(course.root, file))
+    return {(file.as_posix(), heading.anchor): heading.slug for file, heading in headings}
 
 
 def _drawn(
@@ -166,8 +165,8 @@ def _drawn(
     try:
         drawings.pictures = draw(list(drawings.codes), course.build_folder / ".cache" / "drawings")
     except DrawingError as error:
-        found = f"mermaid drawings are shown in words, because {error}."
-        fix = "Everything else is fine. Fix this, then build the site again."
+        found = f"mermaid drawings are shown as text, because {error}."
+        fix = "Everything else is built. Fix this, then build the site again."
         contents.problems.append(Problem(course.chapters[0], None, found, fix, Severity.WARNING))
     return drawings
 
@@ -217,22 +216,22 @@ WORDS_PER_MINUTE = 200
 
 
 def _minutes(chapter: Chapter) -> int:
-    """How long the prose takes to read, in minutes; the code is for trying, at a pace of one's own."""
+    """Return the reading time of the prose in minutes. Code does not count: readers try it at their own pace."""
     words = sum(len(cell.source.split()) for cell in chapter.cells if cell.kind is CellKind.PROSE)
     return max(1, round(words / WORDS_PER_MINUTE))
 
 
 def _downloads(chapter: Chapter, contents: SiteContents) -> dict[str, str]:
-    """Put the programs of a chapter's nodes into the site: cell -> file. One name may stand for several programs."""
-    places: dict[str, str] = {}
+    """Add the programs of a chapter's nodes to the site; return cell -> file. Programs may share a file name."""
+    paths: dict[str, str] = {}
     for cell in chapter.nodes:
         code = cell.whole.rstrip("\n") + "\n"
-        place = f"{DOWNLOADS}/{cell.module}"
-        if contents.files.get(place, code) != code:
-            place = f"{DOWNLOADS}/{chapter.name}/{cell.id}/{cell.module}"
-        contents.files[place] = code
-        places[cell.id] = place
-    return places
+        path = f"{DOWNLOADS}/{cell.module}"
+        if contents.files.get(path, code) != code:
+            path = f"{DOWNLOADS}/{chapter.name}/{cell.id}/{cell.module}"
+        contents.files[path] = code
+        paths[cell.id] = path
+    return paths
 
 
 def _ran(course: Course, chapter: Chapter) -> ExecutedNotebook:
@@ -240,12 +239,12 @@ def _ran(course: Course, chapter: Chapter) -> ExecutedNotebook:
     try:
         return ExecutedNotebook.read(file)
     except (OSError, ValueError, KeyError):
-        found = "it has not been run yet, so there are no outputs to show."
+        found = "it has not run yet, so there are no outputs to show."
         raise SpinbookError(Problem(chapter.file, None, found, "Run it: spinbook build --execute")) from None
 
 
 def _graph(course: Course, chapter: Chapter) -> str:
-    """The section with the picture of the nodes that were seen while the chapter ran; "" where none were."""
+    """Return the section with the picture of the nodes that ran with the chapter; "" if there were none."""
     graph = node_graph_of(course, chapter)
     return node_graph_section(graph) if graph else ""
 
@@ -334,8 +333,8 @@ def _notebooks(
     repository: Repository,
     contents: SiteContents,
 ) -> None:
-    """The notebooks to download and to open elsewhere, which install what they need and bring their exercises."""
-    wanted = requirement(repository)
+    """Add the notebooks to download and to open elsewhere. They install what they need and contain their exercises."""
+    spinbook = requirement(repository)
     wheels = interface_wheels(course, contents.copies.values())
     written: list[str] = []
     for chapter in chapters:
@@ -343,14 +342,14 @@ def _notebooks(
         notebook = json.loads(file.read_text(encoding="utf-8"))
         held = [cell for cell in chapter.cells if cell.kind is CellKind.EXERCISE and cell.name]
         brought = {path: data for cell in held for path, data in copies[cell.name or ""].items()}
-        _add_notebook(chapter.name, notebook, wanted, _with_wheels(brought, notebook, wheels), contents)
+        _add_notebook(chapter.name, notebook, spinbook, _with_wheels(brought, notebook, wheels), contents)
         written.append(chapter.name)
         for cell in held:
             name = names.exercise_notebook(cell.name or "")
             alone = _only_exercise(notebook, cell.id)
-            _add_notebook(name, alone, wanted, _with_wheels(copies[cell.name or ""], alone, wheels), contents)
+            _add_notebook(name, alone, spinbook, _with_wheels(copies[cell.name or ""], alone, wheels), contents)
             written.append(name)
-    contents.branch |= branch_files(written, wanted, course.title)
+    contents.branch |= branch_files(written, spinbook, course.title)
     for name in written:
         contents.openers[name] = [{"name": o.name, "url": o.url} for o in openers(repository, name)]
 
@@ -358,27 +357,27 @@ def _notebooks(
 def _with_wheels(
     files: Mapping[str, bytes], notebook: Mapping[str, Any], wheels: Mapping[str, bytes]
 ) -> dict[str, bytes]:
-    """Add the wheels of the packages that a notebook, or a file that it brings, names."""
+    """Add the wheels of the packages that a notebook, or one of its files, mentions."""
     text = json.dumps(notebook).encode() + b"".join(files.values())
     needed = {f"wheels/{name}": data for name, data in wheels.items() if package_of(name).encode() in text}
     return {**files, **needed}
 
 
 def _only_exercise(notebook: Mapping[str, Any], cell_id: str) -> dict[str, Any]:
-    """A chapter's notebook without all but its set-up and one exercise: task, starter and check.
+    """Return a chapter's notebook with only its set-up and one exercise: task, starter and check.
 
-    `cell_id` is the exercise's in the chapter, from which the notebook's cells have theirs.
+    `cell_id` is the id of the exercise's cell in the chapter; the ids of the notebook's cells begin with it.
     """
-    wanted = {f"{cell_id}-{part}" for part in ("task", "starter", "check")}
-    task, *rest = [cell for cell in notebook["cells"] if cell["id"] in wanted]
+    ids = {f"{cell_id}-{part}" for part in ("task", "starter", "check")}
+    task, *rest = [cell for cell in notebook["cells"] if cell["id"] in ids]
     setup = [cell for cell in notebook["cells"] if cell["id"] == "spinbook-setup"]
     return {**notebook, "cells": [task, *setup, *rest]}
 
 
 def _add_notebook(
-    name: str, notebook: Mapping[str, Any], wanted: str, exercises: Mapping[str, bytes], contents: SiteContents
+    name: str, notebook: Mapping[str, Any], spinbook: str, exercises: Mapping[str, bytes], contents: SiteContents
 ) -> None:
-    ready = launch_notebook(notebook, wanted, exercises)
+    ready = launch_notebook(notebook, spinbook, exercises)
     for cell in ready["cells"]:
         if cell["cell_type"] == "markdown":
             cell["source"] = without_comments(cell["source"])

@@ -1,4 +1,4 @@
-"""Diagrams and pictures for pages: mermaid fences as SVG, photos as few bytes as look the same."""
+"""Drawings and pictures for pages: renders mermaid diagrams as SVG, and compresses PNGs."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from groundwork.child_process import run_program
 from groundwork.files import write_if_changed
 from spinbook.build.digest import digest
 
-# Mermaid comes from npm's registry, in one version and with one digest, and runs in a Chromium without a window.
+# Mermaid comes from npm's registry, with a pinned version and digest, and runs in a headless Chromium.
 
 
 VERSION = "12.3.0"
-#: As `npm view mermaid@12.3.0 dist.integrity` tells it.
+#: As printed by `npm view mermaid@12.3.0 dist.integrity`.
 INTEGRITY = "sha512-4113TdXeLAsMruJ79OpFL5O8+LTFXhQqZ260rF3tgUmiNAtRm4Uume04I+65PRN6yZ69J4f8rVYWW8zRk65UYw=="
 _REGISTRY = "https://registry.npmjs.org"
 _SCRIPT = "package/dist/mermaid.min.js"
@@ -56,30 +56,29 @@ class Picture:
 
 
 class DrawingError(Exception):
-    """Raised where there is no Chromium, or where mermaid can't be had; says which."""
+    """Raised if mermaid can't draw, for example because there is no Chromium or no network."""
 
 
 def draw(codes: Sequence[str], cache: Path) -> dict[str, Picture | None]:
-    """The pictures of these diagrams, by their code; None for one that mermaid can't read.
+    """Return the pictures of these diagrams, by their code; None for one that mermaid can't read.
 
-    What was drawn before is taken from `cache`. Raises DrawingError when a new one can't be drawn.
+    Earlier drawings come from `cache`. Raises DrawingError if a new one can't be drawn.
     """
-    wanted = dict.fromkeys(codes)
-    found = {code: _remembered(code, cache) for code in wanted}
-    missing = [code for code in wanted if found[code] is None]
+    pictures = {code: _cached(code, cache) for code in codes}
+    missing = [code for code, picture in pictures.items() if picture is None]
     if missing:
         for code, pair in zip(missing, _drawn(missing, _script(cache)), strict=True):
             if pair is not None:
                 write_if_changed(_file(code, cache), json.dumps(pair))
-                found[code] = _picture(pair)
-    return found
+                pictures[code] = _picture(pair)
+    return pictures
 
 
 def _file(code: str, cache: Path) -> Path:
     return cache / f"{digest(code, VERSION, _FONT, repr(_LIGHT), repr(_DARK), _PAGE)[:32]}.json"
 
 
-def _remembered(code: str, cache: Path) -> Picture | None:
+def _cached(code: str, cache: Path) -> Picture | None:
     try:
         return _picture(json.loads(_file(code, cache).read_text(encoding="utf-8")))
     except (OSError, ValueError):
@@ -92,12 +91,12 @@ def _picture(pair: dict[str, str]) -> Picture:
 
 
 def _sized(svg: str) -> tuple[str, int, int]:
-    """The SVG with the size of its view box, as a picture of its own needs it."""
+    """Return the SVG with the size of its view box, for use in an `<img>`; and its width and height (px)."""
     box = re.search(r'viewBox="([-\d.]+) ([-\d.]+) ([\d.]+) ([\d.]+)"', svg)
     width, height = (round(float(box.group(3))), round(float(box.group(4)))) if box else (600, 300)
     opening = svg[: svg.index(">")]
     bare = re.sub(r'\s(?:width|height|style|class|role|aria-[\w-]+)="[^"]*"', "", opening)
-    # A tenth of a pixel is as near as anybody sees, and makes the file four times smaller.
+    # Rounding to a tenth of a pixel is invisible, and makes the file four times smaller.
     body = re.sub(
         r"-?\d+\.\d{2,}(?:e-\d+)?", lambda n: f"{float(n.group()):.1f}".removesuffix(".0"), svg[len(opening) :]
     )
@@ -105,18 +104,18 @@ def _sized(svg: str) -> tuple[str, int, int]:
 
 
 def _script(cache: Path) -> Path:
-    """mermaid's script, from the registry the first time."""
+    """Return mermaid's script; download it the first time."""
     file = cache / f"mermaid-{VERSION}.min.js"
     if not file.exists():
         registry = next((v for k, v in os.environ.items() if k.lower() == "npm_config_registry" and v), _REGISTRY)
         url = f"{registry.rstrip('/')}/mermaid/-/mermaid-{VERSION}.tgz"
         try:
-            with urllib.request.urlopen(url, timeout=_DOWNLOAD_LIMIT_S) as answer:
-                data: bytes = answer.read()
+            with urllib.request.urlopen(url, timeout=_DOWNLOAD_LIMIT_S) as response:
+                data: bytes = response.read()
         except (urllib.error.URLError, OSError) as error:
             raise DrawingError(f"mermaid {VERSION} can't be fetched from npm's registry ({error})") from None
         if base64.b64encode(hashlib.sha512(data).digest()).decode() != INTEGRITY.removeprefix("sha512-"):
-            raise DrawingError(f"what npm's registry sent is not mermaid {VERSION}: its digest is another")
+            raise DrawingError(f"the download from npm's registry is not mermaid {VERSION}: it has another digest")
         with tarfile.open(fileobj=io.BytesIO(data)) as archive:
             member = archive.extractfile(_SCRIPT)
             assert member is not None
@@ -139,10 +138,10 @@ def _drawn(codes: Sequence[str], script: Path) -> list[dict[str, str] | None]:
             ran = run_program(argv, _DRAWING_LIMIT_S)
         except (OSError, subprocess.TimeoutExpired) as error:
             raise DrawingError(f"Chromium did not draw ({error})") from None
-    answer = re.search(r"DRAWN:([^<:]*):", ran.stdout)
-    if answer is None:
+    drawn = re.search(r"DRAWN:([^<:]*):", ran.stdout)
+    if drawn is None:
         raise DrawingError("Chromium showed no drawing")
-    results: list[dict[str, str] | None] = json.loads(urllib.parse.unquote(answer.group(1)))
+    results: list[dict[str, str] | None] = json.loads(urllib.parse.unquote(drawn.group(1)))
     return results
 
 
@@ -159,14 +158,14 @@ def _theme(colours: dict[str, str]) -> dict[str, Any]:
         "textColor": ink,
         "clusterBkg": "transparent",
         "clusterBorder": edge,
-        # The colour of the page (--paper in site.css): an arrow is not drawn through its own label.
+        # The colour of the page (--paper in site.css), so that arrows do not cross their labels.
         "edgeLabelBackground": colours["paper"],
         "useGradient": False,
         "dropShadow": "none",
     }
 
 
-#: The page in which mermaid draws: its text is the answer when all is done.
+#: The page in which mermaid draws. In the end, its text is the result.
 _PAGE = """<!DOCTYPE html><meta charset="utf-8"><body><script src="SCRIPT"></script><script>
 const jobs = JOBS;
 (async () => {
@@ -189,7 +188,7 @@ const jobs = JOBS;
 
 
 FOLDER = "_drawings"
-#: A drawing wider than this (px) could not be read if it were made as narrow as a phone: it scrolls there.
+#: A drawing wider than this (px) would be unreadable if it were scaled down to a phone: there, it scrolls.
 _WIDE = 640
 #: A node of a flowchart: A(["left toe"]), A["/topic"], A{{…}} or a bare A.
 _NODE = r"""(?P<{0}>\w+)(?:[(\[{{<>]+\s*"?(?P<{0}_label>[^"\])}}]*)"?\s*[)\]}}]+)?"""
@@ -199,9 +198,9 @@ _SAYS = re.compile(r"^\s*acc(?:Title|Descr)\s*:\s*(.+)$", re.MULTILINE)
 
 
 def in_words(code: str) -> str:
-    """What a drawing says, for those who don't see it: its own accDescr, otherwise which node leads to which.
+    """Return a drawing in words, for readers who can't see it: its own accDescr, otherwise its edges.
 
-    "" if it is not a flowchart, or one whose edges can't be read.
+    Returns "" if it is not a flowchart, or if its edges can't be read.
     """
     if titles := _SAYS.findall(code):
         return ". ".join(line.strip().rstrip(".") for line in titles) + "."
@@ -211,7 +210,7 @@ def in_words(code: str) -> str:
 
 def _edges(code: str) -> Iterator[tuple[str, str]]:
     labels: dict[str, str] = {}
-    found: list[tuple[str, str]] = []
+    edges: list[tuple[str, str]] = []
     for line in code.splitlines():
         match = _EDGE.search(line)
         if not match:
@@ -219,18 +218,18 @@ def _edges(code: str) -> Iterator[tuple[str, str]]:
         for end in ("start", "end"):
             if match.group(f"{end}_label"):
                 labels[match.group(end)] = match.group(f"{end}_label").strip()
-        found.append((match.group("start"), match.group("end")))
-    for start, end in found:
+        edges.append((match.group("start"), match.group("end")))
+    for start, end in edges:
         yield labels.get(start, start), labels.get(end, end)
 
 
 def drawing_files(code: str, picture: Picture) -> dict[str, str]:
-    """The files of a drawing: path in the site -> SVG."""
+    """Return the files of a drawing: path in the site -> SVG."""
     return {_path(code, "light"): picture.light, _path(code, "dark"): picture.dark}
 
 
 def drawing_html(code: str, picture: Picture | None, root: str) -> str:
-    """A drawing in one line of HTML, for a page from which `root` leads to the site's own folder."""
+    """Return a drawing as one line of HTML, for a page from which `root` leads to the site's folder."""
     words = html.escape(in_words(code))
     if picture is None:
         return _without_picture(code)
@@ -263,9 +262,9 @@ _COLOURS = 256
 
 @dataclass(frozen=True)
 class StillPicture:
-    """What stands for a moving picture in print, and for readers who prefer no motion. `path` is its file in the site.
+    """Replaces a moving picture in print, and for readers who prefer no motion. `path` is its file in the site.
 
-    An SVG in an `<img>` is not told by browsers that it is printed, or that motion is not wanted: its page has to be.
+    Browsers do not apply print and reduced-motion media queries to an SVG in an `<img>`, so the page has to switch.
     """
 
     path: str
@@ -273,7 +272,7 @@ class StillPicture:
 
 
 def still_of(output: Mapping[str, Any]) -> StillPicture | None:
-    """The still of an output that moves: one that has an SVG and a PNG of the same."""
+    """Return the still picture of a moving output, which is one with both an SVG and a PNG; None for any other."""
     data = output.get("data", {})
     if not {"image/svg+xml", "image/png"} <= set(data):
         return None
@@ -282,9 +281,9 @@ def still_of(output: Mapping[str, Any]) -> StillPicture | None:
 
 
 def smaller(png: str) -> str:
-    """A PNG, in base64, with a palette instead of full colour where that makes it smaller.
+    """Return a PNG, in base64, with a palette instead of full colour if that makes it smaller.
 
-    Plots and turtles have few colours, so that nothing is lost that an eye could see.
+    Plots and turtles have few colours, so the loss is invisible.
     """
     data = base64.b64decode(png)
     image = Image.open(io.BytesIO(data)).convert("RGBA")

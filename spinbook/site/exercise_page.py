@@ -19,13 +19,13 @@ class PublicCheck:
 
 
 def public_checks(file: Path) -> tuple[PublicCheck, ...]:
-    """The checks of an exercise's checks.py, in order. They are read, not run; () where the file can't be read."""
+    """Return the checks of an exercise's checks.py, in order, without running it; () if it can't be read."""
     try:
         tree = ast.parse(file.read_text(encoding="utf-8"))
     except (OSError, SyntaxError, UnicodeDecodeError):
         return ()
-    found = (_check(node) for node in tree.body if isinstance(node, ast.FunctionDef))
-    return tuple(check for check in found if check)
+    checks = (_check(node) for node in tree.body if isinstance(node, ast.FunctionDef))
+    return tuple(check for check in checks if check)
 
 
 def _check(function: ast.FunctionDef) -> PublicCheck | None:
@@ -40,9 +40,9 @@ def _check(function: ast.FunctionDef) -> PublicCheck | None:
 
 
 def exercise_markdown(exercise: Exercise, task: str, starter: str, checks: Sequence[PublicCheck], download: str) -> str:
-    """The page in MyST Markdown. `task` is the text of task.md as `rich` made it, so that its lines keep their numbers.
+    """Return the page in MyST Markdown. `task` is the text of task.md from `rich`, so its line numbers are unchanged.
 
-    `download` is where the starter's file lies, seen from the page.
+    `download` is the address of the starter's file, relative to the page.
     """
     sections = [task.rstrip("\n"), _interface(exercise)]
     if starter:
@@ -71,8 +71,8 @@ def _table(head: str, rows: Sequence[str]) -> str:
 
 def _programs(exercise: Exercise) -> str:
     if exercise.programs:
-        programs = [f"`{one.node}` in `{one.file}`" for one in exercise.programs]
-        return f"There are {len(programs)} programs, each with its node: {', '.join(programs)}."
+        programs = [f"`{program.node}` in `{program.file}`" for program in exercise.programs]
+        return f"There are {len(programs)} programs, each with its own node: {', '.join(programs)}."
     name = f" is the class `{exercise.class_name}`" if exercise.class_name else " is"
     return f"The node `{exercise.node_name}`{name} in the file `{exercise.file_name}`."
 
@@ -110,7 +110,7 @@ def _starter(exercise: Exercise, starter: str, download: str) -> str:
     return f"""\
 ## Starter
 
-Begin with this file. The places for your code are marked.
+Start from this file. Comments mark the places for your code.
 
 <p><a class="button" href="{download}" download>Download {exercise.file_name}</a></p>
 
@@ -129,9 +129,9 @@ Save your node as `{exercise.file_name}`, then run this in the course's folder:
 spinbook grade {exercise.name} {exercise.file_name}
 ```
 
-The command starts your node as it is, publishes to it, listens to what it answers, and says what is right and what is
-not yet. You may run it as often as you like. In the notebook of the handout, `%check {exercise.name}` does the same
-for the exercise's cell. Another page says [how to install what it needs](../about.md)."""
+The command starts your node, publishes to it, listens to what it publishes, and says what is right and what is not yet.
+You may run it as often as you like. In the handout's notebook, `%check {exercise.name}` does the same for the
+exercise's cell. [About this course](../about.md) says how to install what you need."""
 
 
 def _points(exercise: Exercise, checks: Sequence[PublicCheck]) -> str:
@@ -139,7 +139,7 @@ def _points(exercise: Exercise, checks: Sequence[PublicCheck]) -> str:
     rows = [f"| {check.title} | {check.points:g} |" for check in checks]
     rest = exercise.points - shown
     if rest > 0:
-        rows.append(f"| The rules of the task, in cases that are not shown | {rest:g} |")
+        rows.append(f"| The rules of the task, in hidden cases | {rest:g} |")
     table = "\n".join(
         ["| What is checked | Points |", "| --- | ---: |", *rows, f"| **All** | **{exercise.points:g}** |"]
     )

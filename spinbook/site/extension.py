@@ -1,4 +1,4 @@
-"""What Spinbook adds to Sphinx: the HTML of code cells, terms, maths and pictures, and the search index."""
+"""Extends Sphinx: the HTML of code cells, terms, maths and pictures, and the search index."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ _IMAGE = re.compile(r"<img\b[^>]*>")
 _SOURCE = re.compile(r'\bsrc="([^"]+)"')
 _HEADING_LINK = re.compile(r'<a class="headerlink" href="(#[^"]*)" title="[^"]*">[^<]*</a>')
 _EMPTY_HEAD = re.compile(r'<th class="head[^"]*">\s*(?:<p></p>)?\s*</th>')
-#: Code in a table, and where a line may break in it: behind the slashes of a type, which is long.
+#: Code in a table, and where its lines may break: after the slashes of a type.
 _CELL_CODE = re.compile(r"(?<=<td>)(?:(?!</td>).)*<code(?:(?!</td>).)*", re.DOTALL)
 _INNER_SLASH = re.compile(r"(?<=\w)/(?=\w)(?=[^<>]*</span></code>)")
 _STYLE = re.compile(r'\sstyle="[^"]*"')
 
 
 def finish(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: nodes.document | None) -> None:
-    """Give pictures their size, headings' links a name, and tables a frame that scrolls."""
+    """Add sizes to pictures, names to the links of headings, and a scrolling frame to tables."""
     context["frame"] = _frame(app, page)
     if "body" not in context:
         return
@@ -54,7 +54,7 @@ def finish(app: Sphinx, page: str, template: str, context: dict[str, Any], doctr
 
 
 def _frame(app: Sphinx, page: str) -> dict[str, Any]:
-    """What was staged next to the page for the theme."""
+    """Return what was staged next to the page for the theme."""
     try:
         frame = json.loads(Path(app.srcdir, f"{page}{FRAME_SUFFIX}").read_text(encoding="utf-8"))
     except OSError:
@@ -63,12 +63,12 @@ def _frame(app: Sphinx, page: str) -> dict[str, Any]:
 
 
 def depend(app: Sphinx, page: str, source: list[str]) -> None:
-    """A page is made again when the files next to it change."""
+    """Rebuild a page when the file next to it changes."""
     app.env.note_dependency(f"{page}{FRAME_SUFFIX}")
 
 
 def _size(file: Path) -> tuple[int, int]:
-    """Width and height of a picture in CSS pixels. Raises OSError or ValueError if it does not say."""
+    """Return width and height of a picture in CSS pixels. Raises OSError or ValueError if they are unknown."""
     if file.suffix != ".svg":
         with Image.open(file) as image:
             return int(image.width), int(image.height)
@@ -82,9 +82,9 @@ def _size(file: Path) -> tuple[int, int]:
 def _sized(tag: str, folder: Path, app: Sphinx) -> str:
     source = _SOURCE.search(tag)
     if source is None or " width=" in tag or 'class="still"' in tag:
-        # What is shown on paper only must be there when somebody prints, and so is not left for later.
+        # A picture that is only printed must not load lazily: it would be missing in print.
         return tag
-    # Sphinx copies pictures after the pages are written; it knows already what they will be called.
+    # Sphinx copies pictures after it has written the pages, but already knows their new names.
     name = Path(source.group(1)).name
     original = next((Path(app.srcdir, at) for at, (_, to) in app.env.images.items() if to == name), folder / name)
     try:
@@ -95,7 +95,7 @@ def _sized(tag: str, folder: Path, app: Sphinx) -> str:
 
 
 _LANGUAGES = {"shell": "bash", "node": "python", "part": "python", "interface": "text"}
-#: By how a package's file ends.
+#: The language of a package's file, by its suffix.
 _FILE_LANGUAGES = {"py": "python", "yaml": "yaml", "yml": "yaml", "xml": "xml"}
 _KINDS = {
     "shell": "Terminal",
@@ -108,7 +108,7 @@ _KINDS = {
 
 
 class DescribeCells(SphinxTransform):
-    """Adds a line above a cell's code, a name to its output, and words to its pictures."""
+    """Adds a line above a cell's code, a heading to its output, and alternative texts to its pictures."""
 
     default_priority = 400
 
@@ -165,7 +165,7 @@ def _head(kind: str, about: dict[str, Any]) -> str:
 
 
 def _pictures(output: nodes.container, alts: list[str], stills: list[str]) -> None:
-    """Gives each picture its words, and a moving one its still; a picture in several formats is one picture."""
+    """Add alternative texts, and still pictures for moving ones. Several formats of a picture are one picture."""
     pictures: dict[int, list[nodes.image]] = {}
     for image in output.findall(nodes.image):
         bundle = image.parent
@@ -176,11 +176,11 @@ def _pictures(output: nodes.container, alts: list[str], stills: list[str]) -> No
         for image in images:
             image["alt"] = alt
         if still:
-            _beside(images[0], still)
+            _add_still(images[0], still)
 
 
-def _beside(image: nodes.image, still: str) -> None:
-    """Puts the still after the image. Style sheets show one of the two: browsers choose no other source to print."""
+def _add_still(image: nodes.image, still: str) -> None:
+    """Add the still picture after the image. Style sheets show one of the two."""
     image["classes"].append("moving")
     alt = escape(image["alt"])
     shown = nodes.raw("", f'<img class="still" src="../{escape(still)}" alt="{alt}">', format="html")
@@ -191,13 +191,13 @@ _LOG = logging.getLogger(__name__)
 
 
 def visit_inline(translator: HTML5Translator, node: nodes.math) -> None:
-    """`$…$` in a line."""
+    """Render `$…$` in a line."""
     translator.body.append(_mathml(node, "inline"))
     raise nodes.SkipNode
 
 
 def visit_block(translator: HTML5Translator, node: nodes.math_block) -> None:
-    """`$$…$$`, on a line of its own."""
+    """Render `$$…$$`, on a line of its own."""
     translator.body.append(f'<div class="math">{_mathml(node, "block")}</div>\n')
     raise nodes.SkipNode
 
@@ -213,7 +213,7 @@ _THIN = '<mspace width="0.167em" />'
 
 
 def spaced(mathml: str) -> str:
-    """Put the thin spaces around names of functions that the library leaves out: 0.5 sin t, and not 0.5sint."""
+    """Add thin spaces around names of functions, which the library leaves out: 0.5 sin t, and not 0.5sint."""
     return _OPERATOR.sub(_with_spaces, mathml)
 
 
@@ -231,20 +231,20 @@ def _mathml(node: nodes.Element, display: str) -> str:
         return f"<code>{node.astext()}</code>"
 
 
-# Sphinx's own index knows pages, and needs a server to show what it found in them. Chapters are long, and a reader who
-# looks for "publisher" wants the section; a page opened from a folder has no server.
+# Sphinx's own index lists pages, and needs a server to show excerpts. Chapters are long, so readers need sections; and
+# a page that is opened from a folder has no server.
 
 
 FILE = "_static/search-data.js"
 
 
 def no_index_of_sphinx(app: Sphinx) -> None:
-    """Keep Sphinx from writing an index that nobody reads."""
+    """Keep Sphinx from writing its own index, which is unused."""
     app.builder.search = False  # type: ignore[attr-defined]
 
 
 def write(app: Sphinx, error: Exception | None) -> None:
-    """Write the sections of every page."""
+    """Write the search data: the sections of every page."""
     if error is None:
         rows = [row for page in sorted(app.env.found_docs) if page != HOME for row in _sections(app, page)]
         text = ",\n".join(json.dumps(row, ensure_ascii=False) for row in rows)
@@ -252,7 +252,7 @@ def write(app: Sphinx, error: Exception | None) -> None:
 
 
 def _sections(app: Sphinx, page: str) -> Iterator[tuple[str, str, str, str]]:
-    """Address, page's title, section's title, and the section's words without those of its subsections."""
+    """Yield each section: address, page title, section title, and its text without subsections."""
     title = app.env.titles[page].astext()
     for section in app.env.get_doctree(page).findall(nodes.section):
         heading = next((child.astext() for child in section.children if isinstance(child, nodes.title)), "")
@@ -272,13 +272,13 @@ def _words(node: nodes.Element) -> Iterator[str]:
             yield from _words(child)
 
 
-#: A link to another page is a pending_xref until all pages are read.
+#: A link to another page is a pending_xref until Sphinx has read all pages.
 _LINKS = (nodes.reference, addnodes.pending_xref)
 _NOT_IN = (nodes.title, *_LINKS, nodes.literal, nodes.raw, nodes.math, nodes.caption, nodes.literal_block)
 
 
 class LinkTerms(SphinxTransform):
-    """Works on chapters and exercises; code, headings, links and tables stay as they are."""
+    """Links the first use of each term to the glossary, in prose of chapters and exercises only."""
 
     default_priority = 850
 
@@ -330,7 +330,7 @@ NAME = "spinbook.site.extension"
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Called by Sphinx. Each module adds what its name says."""
+    """Register everything with Sphinx, which calls this function."""
     app.add_config_value("spinbook_terms", [], "env")
     app.add_lexer("ros-log", LogLexer)
     app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))

@@ -1,4 +1,4 @@
-"""The node graph that was seen while a chapter ran, as pages show it."""
+"""Shows on pages the node graph that was recorded while a chapter ran."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from spinbook.graph.layout import drawings
 from spinbook.graph.model import NodeGraph
 from spinbook.graph.picture import node_graph_svgs
 
-#: How many parts of a graph are enough to show what one looks like.
+#: The home page shows this many parts of a graph, as an example.
 _PARTS = 2
 
 
 def node_graph_of(course: Course, chapter: Chapter) -> NodeGraph | None:
-    """The graph that was seen while the chapter ran; None where no node was."""
+    """Return the graph that was recorded while the chapter ran; None if no node ran."""
     graph = read_node_graph(course.build_folder / "executed" / f"{chapter.name}.graph.json")
     return graph if graph and graph.nodes else None
 
 
 def read_node_graph(file: Path) -> NodeGraph | None:
-    """The graph in build/executed/NAME.graph.json; None where there is none that can be read."""
+    """Return the graph in build/executed/NAME.graph.json; None if the file is missing or invalid."""
     try:
         return NodeGraph.from_json(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -29,22 +29,22 @@ def read_node_graph(file: Path) -> NodeGraph | None:
 
 
 def node_graph_html(graph: NodeGraph) -> str:
-    """One line of HTML with a small picture for each part of the graph; they stand side by side where there is room.
+    """Return one line of HTML with a small picture per part of the graph, side by side if there is room.
 
-    Needs no style. A page may set `--node-graph-node` and `--node-graph-topic`, the colours of the boxes.
+    It needs no style sheet. A page may set `--node-graph-node` and `--node-graph-topic`, the colours of the boxes.
     """
     return _together(node_graph_svgs(graph))
 
 
 def node_graph_excerpt(graph: NodeGraph) -> str:
-    """As `node_graph_html`, with the parts only that have the most nodes."""
+    """Return the same as `node_graph_html`, but only the parts with the most nodes."""
     parts = zip(drawings(graph), node_graph_svgs(graph), strict=True)
     largest = sorted(parts, key=lambda part: len(part[0].nodes), reverse=True)
     return _together([svg for _, svg in largest[:_PARTS]])
 
 
 def node_graph_section(graph: NodeGraph) -> str:
-    """The section of a chapter's page, in Markdown."""
+    """Return the section of a chapter's page, in Markdown."""
     return f"""\
 ## The nodes, as they were seen
 

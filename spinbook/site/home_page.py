@@ -31,14 +31,14 @@ _LOG_LINES = 6
 
 @dataclass(frozen=True)
 class HomePicture:
-    """A picture of the home page: the files that it needs, path -> content, and what the theme needs to know."""
+    """A picture of the home page: its files, path -> content, and the values for the theme."""
 
     files: dict[str, bytes]
     about: dict[str, Any]
 
 
 def home_chapters(chapters: list[Chapter], exercises: Mapping[str, Exercise]) -> list[dict[str, Any]]:
-    """The chapters with their exercises, for the list on the home page."""
+    """Return the chapters with their exercises, for the list on the home page."""
     return [
         {
             "title": chapter.title,
@@ -56,29 +56,29 @@ def home_chapters(chapters: list[Chapter], exercises: Mapping[str, Exercise]) ->
 
 
 def home_drawing(drawings: Mapping[str, Picture | None]) -> str:
-    """The course's first drawing that could be drawn, as HTML; "" where there is none."""
+    """Return the first drawing of the course that could be drawn, as HTML; "" if there is none."""
     return next((drawing_html(code, picture, "") for code, picture in drawings.items() if picture), "")
 
 
 def home_pictures(runs: list[tuple[Chapter, ExecutedNotebook]]) -> list[HomePicture]:
-    """The richest plot and the last trail of a turtle that the chapters' nodes drew, where there are some."""
+    """Return the plot with the longest description and the last trail of a turtle, if the chapters have them."""
     pictures = [(chapter, cell, output) for chapter, ran in runs for cell, output in _pictures(chapter, ran)]
-    plots = [found for found in pictures if "samples" in alternative(found[2], found[1])]
-    turtles = [found for found in pictures if "turtlesim" in alternative(found[2], found[1]).lower()]
-    # One that has moved has a moving picture.
-    turtles = [found for found in turtles if "image/svg+xml" in found[2]["data"]] or turtles
+    plots = [drawn for drawn in pictures if "samples" in alternative(drawn[2], drawn[1])]
+    turtles = [drawn for drawn in pictures if "turtlesim" in alternative(drawn[2], drawn[1]).lower()]
+    # A turtle that has moved has a moving picture: prefer that.
+    turtles = [drawn for drawn in turtles if "image/svg+xml" in drawn[2]["data"]] or turtles
     chosen = []
     if plots:
         chosen.append(
-            (max(plots, key=lambda found: len(alternative(found[2], found[1]))), "What a topic carried, as it arrived")
+            (max(plots, key=lambda drawn: len(alternative(drawn[2], drawn[1]))), "What a topic carried, as it arrived")
         )
     if turtles:
         chosen.append((turtles[-1], "A turtle, driven by a node"))
-    return [_shown(*found, caption) for found, caption in chosen]
+    return [_shown(*drawn, caption) for drawn, caption in chosen]
 
 
 def home_log(runs: list[tuple[Chapter, ExecutedNotebook]]) -> dict[str, str]:
-    """What the last node with something to warn of printed, and where; {} where no node has printed anything."""
+    """Return the log of the last node that warns, and its page; {} if no node has printed anything."""
     best: tuple[bool, dict[str, str]] = (False, {})
     for chapter, ran in runs:
         for cell in chapter.nodes:
@@ -92,7 +92,7 @@ def home_log(runs: list[tuple[Chapter, ExecutedNotebook]]) -> dict[str, str]:
 
 
 def _coloured(log: str) -> str:
-    """A log as HTML, coloured as on the chapters' pages."""
+    """Return a log as HTML, coloured as on the chapters' pages."""
     return str(highlight(log, LogLexer(), HtmlFormatter(nowrap=True)))
 
 
@@ -128,7 +128,7 @@ def _shown(chapter: Chapter, cell: ChapterCell, output: Mapping[str, Any], capti
 
 
 def built_on() -> str:
-    """Today, or the day that SOURCE_DATE_EPOCH names: https://reproducible-builds.org/specs/source-date-epoch/."""
+    """Return today, or SOURCE_DATE_EPOCH's day: https://reproducible-builds.org/specs/source-date-epoch/."""
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
     utc = datetime.timezone.utc
     now = datetime.datetime.fromtimestamp(int(epoch), utc) if epoch.isdigit() else datetime.datetime.now(utc)
@@ -136,7 +136,7 @@ def built_on() -> str:
 
 
 def about_markdown(course: Course, repository: Repository, middleware: str) -> str:
-    """The page in MyST Markdown."""
+    """Return the page in MyST Markdown."""
     return f"""\
 # About this course
 

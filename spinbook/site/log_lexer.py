@@ -1,4 +1,4 @@
-"""Colours what nodes print: warnings and errors stand out, times and names step back."""
+"""Highlights the logs of nodes: warnings and errors stand out, times and names are muted."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pygments.token import Comment, Generic, Text
 
 
 class LogLexer(RegexLexer):  # type: ignore[misc]
-    """The lines of rcl's console output, `[SEVERITY] [node]: words`; anything else stays as it is."""
+    """Highlights rcl's console output, `[SEVERITY] [node]: message`; other lines are unchanged."""
 
     name = "ROS log"
     aliases: ClassVar[list[str]] = ["ros-log"]

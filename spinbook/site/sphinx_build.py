@@ -1,4 +1,4 @@
-"""Stages the pages, runs Sphinx on them, and publishes the site: nothing that students must not see."""
+"""Stages the pages, runs Sphinx on them, and publishes the site, after making sure that it reveals no secret."""
 
 from __future__ import annotations
 
@@ -25,54 +25,54 @@ from spinbook.site.contents import SiteContents
 from spinbook.site.extension import NAME
 from spinbook.site.page import FRAME_SUFFIX, HOME, SEARCH
 
-#: What is taken from Sphinx's output.
+#: The pictures and the other files of Sphinx's output that are published.
 _IMAGES = "_images"
 _OURS = ("early.js", "site.js", "run.js", "search.js", "site.css", "print.css", "icon.svg", "search-data.js")
 
 
 def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], site: Path) -> int:
-    """Make `site` hold these `pages` of `html` and these `files`: path -> content. Returns how many files it holds."""
-    wanted = {Path(f"{page}.html"): (html / f"{page}.html").read_bytes() for page in pages}
-    used = b"\n".join(wanted.values())
+    """Make `site` consist of these `pages` of `html` and these `files`: path -> content. Return the number of files."""
+    published = {Path(f"{page}.html"): (html / f"{page}.html").read_bytes() for page in pages}
+    used = b"\n".join(published.values())
     for image in (html / _IMAGES).glob("*"):
-        # Sphinx keeps pictures of earlier builds.
+        # Sphinx keeps pictures of earlier builds: skip those that no page uses.
         if image.name.encode() in used:
-            wanted[image.relative_to(html)] = image.read_bytes()
+            published[image.relative_to(html)] = image.read_bytes()
     for name in _OURS:
-        wanted[Path("_static", name)] = (html / "_static" / name).read_bytes()
+        published[Path("_static", name)] = (html / "_static" / name).read_bytes()
     for path, content in files.items():
-        wanted[Path(path)] = content.encode("utf-8") if isinstance(content, str) else content
-    # Pages of GitHub would leave out folders that begin with an underscore.
-    wanted[Path(".nojekyll")] = b""
-    for relative, data in wanted.items():
+        published[Path(path)] = content.encode("utf-8") if isinstance(content, str) else content
+    # Without this file, GitHub Pages leaves out folders that begin with an underscore.
+    published[Path(".nojekyll")] = b""
+    for relative, data in published.items():
         write_if_changed(site / relative, data)
-    _remove_others(site, set(wanted))
-    return len(wanted)
+    _remove_others(site, set(published))
+    return len(published)
 
 
-def _remove_others(site: Path, wanted: set[Path]) -> None:
+def _remove_others(site: Path, published: set[Path]) -> None:
     for file in sorted(site.rglob("*"), reverse=True):
-        if file.is_file() and file.relative_to(site) not in wanted:
+        if file.is_file() and file.relative_to(site) not in published:
             file.unlink()
         elif file.is_dir() and not any(file.iterdir()):
             file.rmdir()
 
 
 def stage(contents: SiteContents, folder: Path) -> None:
-    """Make `folder` hold the pages, and nothing else. Files that are as they should be keep their times."""
-    wanted: dict[Path, str | bytes] = {folder / path: data for path, data in contents.pictures.items()}
+    """Make `folder` consist of the pages. Unchanged files are not written, so that Sphinx skips them."""
+    staged: dict[Path, str | bytes] = {folder / path: data for path, data in contents.pictures.items()}
     for page in contents.pages:
-        wanted[folder / f"{page.name}{page.suffix}"] = page.text + (_table_of(contents) if page.name == HOME else "")
-        wanted[folder / f"{page.name}{FRAME_SUFFIX}"] = page.frame(contents.openers)
-    for file, content in wanted.items():
+        staged[folder / f"{page.name}{page.suffix}"] = page.text + (_table_of(contents) if page.name == HOME else "")
+        staged[folder / f"{page.name}{FRAME_SUFFIX}"] = page.frame(contents.openers)
+    for file, content in staged.items():
         write_if_changed(file, content)
     for file in folder.rglob("*"):
-        if file.is_file() and file not in wanted:
+        if file.is_file() and file not in staged:
             file.unlink()
 
 
 def _table_of(contents: SiteContents) -> str:
-    """Sphinx learns the order of the pages from it; the theme shows it its own way."""
+    """Return the table of contents, which gives Sphinx the order of the pages. The theme shows its own."""
     pages = "\n".join(page.name for page in contents.pages if page.name != HOME)
     return f"\n```{{toctree}}\n:hidden:\n\n{pages}\n```\n"
 
@@ -84,20 +84,20 @@ _FIX = (
 
 
 def prove_nothing_leaks(course: Course, contents: SiteContents) -> None:
-    """Raise SpinbookError if a solution, a hidden check or a scenario of any exercise is in what is to be published.
+    """Raise SpinbookError if the site would reveal a solution, a hidden check or a scenario of any exercise.
 
-    The pages are looked at before Sphinx gets them: in HTML every line of code is full of marks.
+    This searches the sources of the pages, because HTML has markup in every line of code.
     """
     exercises = [_load(course, name) for name in sorted(course.exercises)]
     taught = "\n".join([*contents.taught, authors_code(contents.copies)])
     known, names = secrets_of_all(exercises, taught)
-    found: dict[Path, str] = {}
+    leaked: dict[Path, str] = {}
     for file, what in leaks(_published(contents), known + names):
         page = file.removesuffix(".frame").partition(".")[0]
-        found.setdefault(contents.origins.get(page, Path("build", file)), what)
-    if found:
-        text = (Problem(file, None, f"{what} would be published.", _FIX) for file, what in found.items())
-        raise SpinbookError(*text)
+        leaked.setdefault(contents.origins.get(page, Path("build", file)), what)
+    if leaked:
+        problems = (Problem(file, None, f"{what} would be published.", _FIX) for file, what in leaked.items())
+        raise SpinbookError(*problems)
 
 
 def _load(course: Course, name: str) -> Exercise:
@@ -113,32 +113,32 @@ def _published(contents: SiteContents) -> dict[str, bytes]:
     others = _of_pyodide()
     files |= {f"site/{path}": content for path, content in contents.files.items() if others.get(path) != content}
     files |= {f"launch/{path}": content for path, content in contents.branch.items()}
-    # Packed, nothing could be found in them.
+    # In the notebooks they are compressed, where nothing could be found.
     files |= {f"launch/{path}": content for path, content in contents.copies.items()}
     return {path: content.encode() if isinstance(content, str) else content for path, content in files.items()}
 
 
 def _of_pyodide() -> dict[str, bytes]:
-    """Return Pyodide's own files, by their path in a site. They are large, and have nothing of a course in them."""
+    """Return Pyodide's files, by their path in a site. They are large and contain nothing of a course."""
     folder = pyodide_folder()
     return {f"{FOLDER}/{name}": content for name, content in pyodide_files(folder).items()} if folder else {}
 
 
 _THEMES = Path(__file__).parent
 _WARNING = re.compile(r"^(?P<file>/.*?):(?:(?P<line>\d+):)? (?:WARNING|ERROR|CRITICAL): (?P<what>.*)$")
-#: What docutils minds of a line `---` between sections; it is shown as a line all the same.
+#: Warnings of docutils about a line `---` between sections, which is shown correctly nevertheless.
 _NO_MATTER = re.compile(r"[Tt]ransition(s)? (must|are)|(begin|end) with a transition|separate transitions")
 _ANSI = re.compile(r"\x1b\[[0-9;]*m")
 #: myst-nb counts the lines of each cell from this many times the cell's number.
-_LINES_A_CELL = 10_000
+_LINES_PER_CELL = 10_000
 
 
 def run_sphinx(
     contents: SiteContents, source: Path, cache: Path, course: Course, on_page: Callable[[str], None]
 ) -> tuple[Path, list[Problem]]:
-    """Make the pages in `cache / "html"` from the staged folder `source`. Returns that folder, and what to fix.
+    """Make the pages in `cache / "html"` from the staged folder `source`. Return that folder, and what to fix.
 
-    Pages that have not changed are not made again. Raises SpinbookError if Sphinx can't go on.
+    Unchanged pages are not rebuilt. Raises SpinbookError if Sphinx can't continue.
     """
     output = cache / "html"
     text = StringIO()
@@ -157,11 +157,15 @@ def run_sphinx(
         app.connect("html-page-context", lambda app, page, *rest: on_page(page))
         app.build()
     except Exception as error:
-        # A broken memory of earlier builds is not worth keeping.
+        # The cache may be what is broken: the next build starts without it.
         shutil.rmtree(cache / "doctrees", ignore_errors=True)
         words = str(error).strip().splitlines()
         found = f"the pages could not be made: {words[-1] if words else type(error).__name__}"
-        fix = "Look at what was changed last." if isinstance(error, SphinxError) else "This is a fault of Spinbook's."
+        fix = (
+            "Check your last changes."
+            if isinstance(error, SphinxError)
+            else "This is a bug in Spinbook: please report it."
+        )
         raise SpinbookError(*_problems(text.getvalue(), contents, source), Problem(source, None, found, fix)) from None
     finally:
         _close_handlers()
@@ -207,11 +211,11 @@ def _problems(text: str, contents: SiteContents, source: Path) -> Iterator[Probl
         seen.add(line)
         file, number = _place(match.group("file"), match.group("line"), contents, source)
         found = re.sub(r"\s*\[[\w.-]+\]$", "", match.group("what"))
-        yield Problem(file, number, found, "The page shows it as well as it can.", Severity.WARNING)
+        yield Problem(file, number, found, "The page shows it as well as possible.", Severity.WARNING)
 
 
 def _place(file: str, line: str | None, contents: SiteContents, source: Path) -> tuple[Path, int | None]:
-    """The author's file and line for a place in a staged page."""
+    """Return the author's file and line for a line in a staged page."""
     try:
         page = Path(file).relative_to(source.resolve()).with_suffix("").as_posix()
     except ValueError:
@@ -223,13 +227,13 @@ def _place(file: str, line: str | None, contents: SiteContents, source: Path) ->
     starts = contents.lines.get(page)
     if starts is None:
         return origin, number
-    cell, within = divmod(number, _LINES_A_CELL)
+    cell, within = divmod(number, _LINES_PER_CELL)
     # myst-nb counts a cell's lines from 1, and MyST's parser adds one more.
     return origin, starts[min(cell, len(starts)) - 1] + max(within - 2, 0) if cell else None
 
 
 def _close_handlers() -> None:
-    """Sphinx leaves handlers at its logger, which would speak again at the next build."""
+    """Remove Sphinx's log handlers, which would repeat every message in the next build."""
     logger = logging.getLogger("sphinx")
     for handler in list(logger.handlers):
         logger.removeHandler(handler)

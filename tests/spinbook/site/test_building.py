@@ -80,7 +80,7 @@ def test_a_chapter_that_has_never_run_can_not_be_shown(course: SmallCourse) -> N
     said = course.spinbook_site("--no-run")
 
     assert said.returncode == 1
-    assert "chapters/01-talk.md: error: it has not been run yet" in said.stdout
+    assert "chapters/01-talk.md: error: it has not run yet" in said.stdout
     assert snapshot(course.site) == before
 
 
