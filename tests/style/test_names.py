@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections import defaultdict
 
-from tests.tree import ROOT
+from tree import ROOT
 
 #: Folders whose classes are product code. Course code, templates and tests may use any names.
 PRODUCT = ("grader", "spinbook", "packages")
@@ -16,7 +16,6 @@ EXCEPTIONS: dict[str, str] = {
     "ActionServer": "rcl_python has the names of rclpy's C module; a scenario has servers by the names of ROS 2",
     "Context": "rcl_python has the names of rclpy's C module, launch files those of launch",
     "Node": "rcl_python has the names of rclpy's C module, launch files those of launch",
-    "ProgramOutput": "to be renamed",
     "Upload": "to be renamed",
     "Message": "written by authors: a message that a check expects, and one that a scenario publishes",
 }

@@ -41,7 +41,7 @@ class ProgramText:
 
 
 @dataclass(frozen=True)
-class ProgramEnd:
+class PageProgramEnd:
     """How a program ended: its exit code, or the signal that killed it. No limits apply in a page."""
 
     code: int | None
@@ -50,7 +50,7 @@ class ProgramEnd:
 
 
 @dataclass(frozen=True)
-class ProgramOutput:
+class PageOutput:
     """What a program has printed. Nothing is dropped in a page."""
 
     text: str
@@ -70,18 +70,18 @@ class PageProgram:
         """Return its process ids: none, because it runs in this process."""
         return ()
 
-    def output(self) -> ProgramOutput:
+    def output(self) -> PageOutput:
         """Return what it has printed."""
-        return ProgramOutput(self._log.getvalue())
+        return PageOutput(self._log.getvalue())
 
-    def poll(self) -> ProgramEnd | None:
+    def poll(self) -> PageProgramEnd | None:
         """Return how it ended; None if it still runs."""
         return self._end() if self._turns.has_ended else None
 
-    def _end(self) -> ProgramEnd:
-        return ProgramEnd(None, signal.SIGABRT) if self._turns.aborted else ProgramEnd(self.code)
+    def _end(self) -> PageProgramEnd:
+        return PageProgramEnd(None, signal.SIGABRT) if self._turns.aborted else PageProgramEnd(self.code)
 
-    def wait(self, timeout_s: float) -> ProgramEnd | None:
+    def wait(self, timeout_s: float) -> PageProgramEnd | None:
         """Return the same as `poll`: the program does not run while the grader's thread does."""
         return self.poll()
 
@@ -97,7 +97,7 @@ class PageProgram:
         """Return whether it has hit a limit: there are none."""
         return False
 
-    def kill(self) -> ProgramEnd:
+    def kill(self) -> PageProgramEnd:
         """End the program, and return how it ended."""
         if not self._turns.has_ended:
             self._turns.is_over = True
