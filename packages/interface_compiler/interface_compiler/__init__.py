@@ -8,7 +8,7 @@ toolchain   whether gcc and Python.h are there, and what to install if not
 generators  runs ROS's code generators
 gcc         runs gcc over what they wrote
 prefix_builder  makes a prefix of packages, in a process of its own
-store       compiled packages, kept for as long as nothing changes
+store       compiled packages, kept until something they are made from changes
 activation  lets this process and its children import compiled packages
 near        what was compiled for a project before
 wheel       compiled packages as a wheel

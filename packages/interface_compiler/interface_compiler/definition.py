@@ -14,8 +14,8 @@ KINDS = {"msg": 0, "srv": 1, "action": 2}
 class Definition:
     """One interface as its author wrote it.
 
-    `kind` is msg, srv or action. `file` and `line` say where the text begins, with lines counted from 1: `line` is 1
-    for a file of its own, and more for a code fence in a chapter.
+    `kind` is msg, srv or action. The text begins at `line` of `file`, counted from 1: `line` is 1
+    for a file of its own, and greater for a code fence in a chapter.
     """
 
     package: str
@@ -32,7 +32,7 @@ class Definition:
 
     @property
     def title_line(self) -> int | None:
-        """The line with a fence's title, which names it; None for a file of its own."""
+        """The line with a fence's title, which contains the name; None for a file of its own."""
         return self.line - 1 or None
 
     @property

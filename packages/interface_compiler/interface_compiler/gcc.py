@@ -1,7 +1,7 @@
-"""Runs gcc over the generated code of one package: everything native becomes one Python extension module.
+"""Compiles the generated code of one package with gcc, into one Python extension module.
 
-CMake makes eight libraries per package, which find one another by name on LD_LIBRARY_PATH. Here they are one, so
-nothing has to be found: a table in it (`dispatch.cpp`) replaces the search of `librosidl_typesupport_c`.
+CMake makes eight libraries per package, which find one another by name on LD_LIBRARY_PATH. Here they are one library,
+which needs no search: a table in it (`dispatch.cpp`) replaces the search of `librosidl_typesupport_c`.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ _PARTS_BY_CMAKE = (
 )
 _FLAGS = ("-O1", "-fPIC", "-g0", "-fvisibility=default")
 _DISPATCH = Path(__file__).with_name("dispatch.cpp.in")
-#: Holds the conversion from and to Python to the limited API. What it does not have has to be an error, not a warning.
+#: Restricts the converters from and to Python to the limited API. Using anything else must be an error, not a warning.
 _PYTHON_UNIT = "python.c"
 _LIMITED_API = Path(__file__).with_name("limited_api.h")
-_CONVERTING = ("-include", str(_LIMITED_API), "-Werror=implicit-function-declaration")
-#: The type's name, which the limited API does not show: how the generated code asks for it, and how it can.
+_CONVERTER_FLAGS = ("-include", str(_LIMITED_API), "-Werror=implicit-function-declaration")
+#: `tp_name` is not in the limited API: the test in the generated code, which `is_named` of limited_api.h replaces.
 _TYPE_NAME = re.compile(r'strcmp\(field->ob_type->tp_name, ("[\w.]+")\) == 0')
 _TYPE_IS_NAMED = "assert(field->ob_type->tp_name != NULL);"
 _SYMBOL = re.compile(r"STRINGIFY\(ROSIDL_TYPESUPPORT_INTERFACE__(MESSAGE|SERVICE)_SYMBOL_NAME\((\w+), ([^)]*)\)\)")
@@ -98,8 +98,7 @@ def compile_package(generated: GeneratedCode, work: Path, dependencies: Sequence
     objects = [work / f"{number}.o" for number in range(len(units))]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         done = pool.map(lambda unit, target: _compile(unit, target, flags, generated.package), units, objects)
-        # To raise what a compiler has raised.
-        list(done)
+        list(done)  # raises what a compiler has raised
     module = generated.python / module_name(generated.package)
     libraries = [str(library) for dependency in dependencies for library in dependency.libraries()]
     libraries += [str(wheels / "lib" / f"lib{name}.so") for name in _LIBRARIES]
@@ -111,7 +110,7 @@ def compile_package(generated: GeneratedCode, work: Path, dependencies: Sequence
 
 
 def _units(generated: GeneratedCode, work: Path) -> list[Path]:
-    """Return the compiler's inputs: as few as possible, as most of its time is spent on reading headers."""
+    """Return the compiler's inputs, as few as possible: it spends most of its time on reading headers."""
     c, introspection = generated.c / generated.package, generated.introspection / generated.package
     kinds = ("msg", "srv", "action")
     details = [c / kind / "detail" for kind in kinds]
@@ -147,7 +146,7 @@ def _python_sources(generated: GeneratedCode) -> list[Path]:
 
 
 def _limit(source: Path) -> None:
-    """Let the code ask for the name of a type in a way that the limited API has."""
+    """Replace the test of a type's name by one that the limited API allows."""
     text = source.read_text(encoding="utf-8").replace(_TYPE_IS_NAMED, "")
     source.write_text(_TYPE_NAME.sub(r"is_named(field, \1)", text), encoding="utf-8")
 
@@ -185,7 +184,7 @@ def _compile(unit: Path, target: Path, flags: Sequence[str], package: str) -> No
         compiler = ["g++", "-std=c++17", *renamed]
     else:
         compiler = ["gcc", "-std=gnu11"]
-    compiler += _CONVERTING if unit.name == _PYTHON_UNIT else ["-w"]
+    compiler += _CONVERTER_FLAGS if unit.name == _PYTHON_UNIT else ["-w"]
     _run([*compiler, *flags, "-c", str(unit), "-o", str(target)], package)
 
 

@@ -1,7 +1,7 @@
-"""Runs ROS's code generators over the definitions of one package.
+"""Runs ROS's code generators on the definitions of one package.
 
-They are the ones that `rosidl_generate_interfaces` of CMake runs, so types and hashes are the same. Their command
-lines describe their input: https://github.com/ros2/rosidl and https://github.com/ros2/rosidl_python.
+They are those that CMake's `rosidl_generate_interfaces` runs, so types and hashes are the same. Their command lines
+describe their input: https://github.com/ros2/rosidl and https://github.com/ros2/rosidl_python.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def generate(sources: DefinitionFolder, work: Path, python: Path, templates: Pat
 
     Args:
         sources: the definitions.
-        work: an empty folder for what is needed until the compiler has run.
+        work: an empty folder for files that only the compiler needs.
         python: where the Python package goes.
         templates: the `share` folder that has the generators' templates.
     """
@@ -149,7 +149,7 @@ def _write_visibility(generated: GeneratedCode, templates: Path) -> None:
 
 @functools.cache
 def _read_each_idl_once() -> None:
-    """Let the generators share what they parse: otherwise each would read every .idl, which is most of their time."""
+    """Let the generators share what they parse: otherwise each spends most of its time on parsing every .idl again."""
     import rosidl_generator_py.generate_py_impl
     import rosidl_generator_type_description
     import rosidl_parser.parser
@@ -176,7 +176,7 @@ def _read_each_idl_once() -> None:
 
 @functools.cache
 def _search_each_template_once() -> None:
-    """Let the template engine remember where expressions end: it searches a template again for each message."""
+    """Let the template engine remember where expressions end: otherwise it parses a template again for each message."""
     import em
 
     for name in ("complex", "next"):
@@ -184,7 +184,7 @@ def _search_each_template_once() -> None:
 
 
 def _remembered(search: Callable[..., int], failures: tuple[type[Exception], ...]) -> Callable[..., int]:
-    """Remember what a search found, or how it failed, by the text, the position in it, and the arguments."""
+    """Cache the result or exception of a search by the text, the position in it and the arguments."""
     found: dict[tuple[object, ...], int | Exception] = {}
 
     def remembered(scanner: Any, *words: object) -> int:

@@ -1,8 +1,8 @@
-"""The lines of a definition: fields, constants and separators, each with what is wrong in it.
+"""Parses the lines of a definition (fields, constants, separators) and reports what is wrong in them.
 
-The language is described at https://docs.ros.org/en/jazzy/Concepts/Basic/About-Interfaces.html. ROS's own parser says
-what is wrong without saying where, so each line is read here first; that parser, `rosidl_adapter.parser`, only
-decides whether a value fits its type.
+The language is described at https://docs.ros.org/en/jazzy/Concepts/Basic/About-Interfaces.html. ROS's own parser does
+not say where an error is, so each line is parsed here first. That parser, `rosidl_adapter.parser`, only decides
+whether a value fits its type.
 """
 
 from __future__ import annotations

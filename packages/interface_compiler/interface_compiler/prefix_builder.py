@@ -1,6 +1,6 @@
-"""Makes packages in a prefix, in a process of its own: `python -m interface_compiler.prefix_builder PREFIX PACKAGE …`.
+"""Builds packages in a prefix, in a process of its own: `python -m interface_compiler.prefix_builder PREFIX PACKAGE …`.
 
-The generators change global state and import many modules, which a notebook's kernel should not keep.
+The generators change global state and import many modules, which must not stay in a notebook's kernel.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _PACKAGE_XML = """\
 
 
 def build(prefix: Path, package: str) -> None:
-    """Make one package in a prefix from `prefix/definitions/PACKAGE/{msg,srv,action}/`.
+    """Build one package in a prefix from `prefix/definitions/PACKAGE/{msg,srv,action}/`.
 
     Other packages it needs are in the same prefix, or installed. Raises CompileError if gcc fails.
     """
@@ -85,7 +85,7 @@ def _copy_headers(generated: GeneratedCode, prefix: Path) -> None:
 
 
 def _write_index(prefix: Path, sources: DefinitionFolder, needed: Sequence[str]) -> None:
-    """Write what makes the package known to ament: its markers, and its package.xml."""
+    """Write what ament finds the package by: its markers and its package.xml."""
     files = [file for item in sources.interfaces() for file in (item.as_posix(), item.with_suffix(".idl").as_posix())]
     markers = {
         "rosidl_interfaces": "\n".join(sorted(files)) + "\n",

@@ -1,4 +1,4 @@
-"""Compiled packages, stored for as long as nothing changes that they are made from."""
+"""Stores compiled packages until something that they are made from changes."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from interface_compiler.prefixes import PYTHON, RESOURCES
 
 #: Wheels whose version affects the generated code.
 _WHEELS = ("ros-rosidl-adapter", "ros-rosidl-generator-py", "ros-rosidl-typesupport-fastrtps-c", "ros-fastcdr")
-#: The files of this folder that decide it, too.
+#: The files of this folder that also affect it.
 _OWN = ("generators.py", "gcc.py", "prefix_builder.py", "dispatch.cpp.in", "limited_api.h")
-#: Prefixes that a store keeps: notebooks that are open may still use one of an earlier text.
+#: How many prefixes a store keeps: open notebooks may still use an earlier one.
 _KEPT = 8
 
 
@@ -51,7 +51,7 @@ class CompiledPackages:
 def ensure(definitions: Sequence[Definition], store: Path) -> CompiledPackages:
     """Return the compiled packages of these definitions, compiled now if they are not in the store yet.
 
-    Two processes that want the same wait for each other.
+    If two processes need the same packages, one waits for the other.
 
     Raises:
         DefinitionError: if a definition is wrong.
@@ -93,7 +93,7 @@ def _check(definitions: Sequence[Definition]) -> None:
 
 
 def keys(definitions: Sequence[Definition]) -> dict[str, str]:
-    """Return package -> its key: texts that differ, also in a package that it needs, never have the same key."""
+    """Return package -> its key. It differs if any text differs, even in a package that this one needs."""
     packages = by_package(definitions)
     plain = {
         package: digest(_machine(), package, *(part for item in members for part in (item.path, item.text)))
@@ -101,7 +101,7 @@ def keys(definitions: Sequence[Definition]) -> dict[str, str]:
     }
     if len(plain) < 2:
         return plain
-    # Which ones need which is known only after reading them: with several, each depends on all.
+    # Which package needs which is known only after parsing: with several, each depends on all.
     return {package: digest(key, *plain.values()) for package, key in plain.items()}
 
 

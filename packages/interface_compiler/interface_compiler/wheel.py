@@ -1,4 +1,4 @@
-"""A compiled package as a wheel, for every Python from 3.10 on: the same bytes each time.
+"""Makes a reproducible wheel of a compiled package, for Python 3.10 and later.
 
 A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Recording installed projects").
 """
@@ -25,7 +25,7 @@ from interface_compiler.definition import CompileError
 from interface_compiler.prefixes import PYTHON, RESOURCES
 
 _VERSION = "0.1.0"
-#: Python 3.10 and every later one: limited_api.h sees to it.
+#: Python 3.10 and later, as limited_api.h allows nothing else.
 _PYTHONS = "cp310-abi3"
 
 
@@ -51,7 +51,7 @@ def wheel(package: str, prefix: Path) -> tuple[str, bytes]:
 
 
 def wheel_platform() -> str:
-    """What the name of a wheel that is compiled here ends in, such as `linux_x86_64`."""
+    """Return the platform in the name of a wheel that is compiled here, such as `linux_x86_64`."""
     return sysconfig.get_platform().replace("-", "_").replace(".", "_")
 
 
@@ -84,7 +84,7 @@ def install(package: str) -> bool:
 
 
 def needed(package: str) -> list[str]:
-    """Return the packages that one of these needs, each after those that it needs itself."""
+    """Return the packages that a shipped package needs, each after those that it needs itself."""
     found: list[str] = []
     for name in sorted(dependencies(shipped.definitions(package))[package]):
         if name in (*shipped.standard(), *shipped.optional()):
@@ -129,7 +129,7 @@ def _pip_install(files: Sequence[Path]) -> None:
         raise CompileError(f"The compiled package could not be installed with pip: {error}")
 
 
-#: The earliest moment that a zip can contain.
+#: The earliest date that a zip can contain.
 _DATE = (1980, 1, 1, 0, 0, 0)
 
 

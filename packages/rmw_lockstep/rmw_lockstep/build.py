@@ -31,19 +31,19 @@ from rmw_lockstep.ros import Ros, installed_ros
 _COMPILE = ("-std=c++17", "-O2", "-fPIC", "-fvisibility=hidden", "-pthread", "-Wall", "-Wextra", "-c")
 _LINK = ("-shared", "-s", "-pthread", "-Wl,-z,defs")
 
-#: liblockstep is loaded into every program. It includes its own C++ library, and exports only what the map names.
+#: liblockstep is loaded into every program. It includes its own C++ library, and exports only what the map lists.
 _ALONE = (
     *("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL", "-ldl"),
     f"-Wl,--version-script={SOURCES / 'lockstep/exports.map'}",
 )
 
-_EMPTY = "libnothing.so"
+_STUB = "libnothing.so"
 
-#: Compilers that run at once: each takes some 300 MB.
+#: How many compilers run at once. Each takes about 300 MB.
 _AT_ONCE = 2
 
-#: How many earlier sets of libraries are kept, for programs that still use them.
-_FORMER = 3
+#: How many earlier sets of libraries to keep for programs that still use them.
+_KEPT_SETS = 3
 
 _NO_COMPILER = UnavailableLibrary("g++ is not installed", "Install it: sudo apt-get install g++")
 
@@ -66,10 +66,8 @@ def build() -> Library | UnavailableLibrary:
         return _NO_COMPILER
     root = next((root for root in library_folders() if _writable(root)), None)
     if root is None:
-        return UnavailableLibrary(
-            "there is no folder for it that can be written to", "Set HOME to a folder of your own."
-        )
-    with _turn(root):
+        return UnavailableLibrary("no folder for it is writable", "Set HOME to a folder of your own.")
+    with _build_lock(root):
         found = library()  # another process may have compiled it meanwhile
         return found if isinstance(found, Library) else Library(_compiled(ros, root), ros.prefix)
 
@@ -95,11 +93,11 @@ def compile_into(folder: Path, ros: Ros) -> None:
 
 
 def _replace_unused(folder: Path, ros: Ros) -> None:
-    """Make one empty library, and let it stand for all to which the wheels are linked without using them.
+    """Make one empty stub for the libraries that the wheels are linked to but never call.
 
-    Every program is forked from a process that has them in memory: without them a fork costs a tenth less.
+    Programs are forked from a process that has its libraries in memory: without these a fork is a tenth cheaper.
     """
-    empty = folder / _EMPTY
+    empty = folder / _STUB
     _run(["-shared", "-s", "-nostdlib", "-x", "c++", "/dev/null", "-o", empty])
     for name in ros.unused_libraries:
         (folder / name).symlink_to(empty.name)
@@ -112,14 +110,14 @@ def _compiled(ros: Ros, root: Path) -> Path:
         folder.mkdir(mode=0o755)
         compile_into(folder, ros)
         folder.rename(target)
-    _forget_former(root, target)
+    _remove_old(root, target)
     return target
 
 
 def _compile(file: Path, objects: Path, ros: Ros) -> Path:
     relative = file.relative_to(SOURCES)
     output = objects / f"{'-'.join(relative.with_suffix('').parts)}.o"
-    # liblockstep is for any program, also for one without ROS 2.
+    # liblockstep runs in any program, even one without ROS 2.
     folders = () if relative.parts[0] == "lockstep" else ros.include_folders
     own = (SOURCES / "lockstep", SOURCES / "src", SOURCES)
     _run([*_COMPILE, file, "-o", output, *(f"-I{folder}" for folder in own), *(f"-isystem{f}" for f in folders)])
@@ -141,21 +139,21 @@ def _writable(root: Path) -> bool:
 
 
 @contextlib.contextmanager
-def _turn(root: Path) -> Iterator[None]:
-    """Let one of several processes that want to compile do it; the others wait for it."""
+def _build_lock(root: Path) -> Iterator[None]:
+    """Let one of several processes compile while the others wait."""
     with (root / ".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         yield
 
 
-def _forget_former(root: Path, current: Path) -> None:
-    former = [folder for folder in root.iterdir() if folder != current and not folder.name.startswith(".")]
-    for folder in sorted(former, key=lambda folder: folder.stat().st_mtime, reverse=True)[_FORMER:]:
+def _remove_old(root: Path, current: Path) -> None:
+    old = [folder for folder in root.iterdir() if folder != current and not folder.name.startswith(".")]
+    for folder in sorted(old, key=lambda folder: folder.stat().st_mtime, reverse=True)[_KEPT_SETS:]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
 def main() -> None:
-    """Compile, and print the folder of the libraries; or the reason why not, with exit code 1."""
+    """Compile, and print the folder of the libraries; or print the reason why that is impossible and exit with 1."""
     try:
         found = build()
     except BuildError as error:

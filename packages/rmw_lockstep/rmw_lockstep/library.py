@@ -1,4 +1,4 @@
-"""Finds the compiled middleware, and knows how to make a process load it."""
+"""Finds the compiled middleware, and the environment in which a process loads it."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Library:
         return self.folder if Ros(self.prefix).chooses_at_run_time else self.folder / "wheels"
 
     def environment(self, of: Mapping[str, str]) -> dict[str, str]:
-        """Return the variables with which a process loads this middleware, given those that it would have otherwise.
+        """Return the variables that make a process load this middleware; `of` are those it would have otherwise.
 
         With PyPI's wheels `RMW_IMPLEMENTATION` chooses nothing. But rcl compares it with the middleware that was
         loaded, and ends the process with exit code 102 if they differ.
@@ -138,7 +138,7 @@ def compiler() -> list[str] | None:
 
 
 def key(ros: Ros) -> str:
-    """Return the key of the libraries that would be compiled now: a digest of sources, compiler, CPU and ROS 2."""
+    """Return the key of the libraries that this machine would compile: a digest of sources, compiler, CPU and ROS 2."""
     command = compiler()
     described: list[object] = [sources_digest(), description(ros), command]
     if command:

@@ -44,12 +44,12 @@ class QosPolicies:
 
 
 def compatible(offered: QosPolicies, requested: QosPolicies) -> bool:
-    """Return whether a subscription that requests one gets what a publisher sends that offers the other."""
+    """Return whether a subscription that requests `requested` gets messages from a publisher that offers `offered`."""
     return not first_mismatch(offered, requested)
 
 
 def first_mismatch(offered: QosPolicies, requested: QosPolicies) -> int:
-    """Return the policy that keeps two endpoints from matching, 0 if they match.
+    """Return the policy that keeps two endpoints from matching, or 0 if they match.
 
     The rules are DDS's "requested versus offered" (DDS 1.4, section 2.2.3), in the order in which Fast DDS reports.
     """
@@ -64,5 +64,5 @@ def first_mismatch(offered: QosPolicies, requested: QosPolicies) -> int:
 
 
 def _duration(nanoseconds: int) -> int:
-    """Return a duration; zero means "not specified" in rmw, which is no limit."""
+    """Return a duration; 0 means "not specified" in rmw, which is no limit."""
     return nanoseconds or INFINITE

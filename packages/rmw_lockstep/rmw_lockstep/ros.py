@@ -1,4 +1,4 @@
-"""The ROS 2 that the middleware is compiled against: PyPI's wheels in this environment, or one that was sourced."""
+"""The ROS 2 that the middleware is compiled for: PyPI's wheels in this environment, or a sourced one."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LIBRARIES = (
     *("rosidl_runtime_c", "rosidl_typesupport_fastrtps_c", "rosidl_typesupport_fastrtps_cpp"),
 )
 
-#: The libraries of Fast DDS alone: its RMW, itself, and what it needs. In the wheels' lib/, and beside their packages.
+#: The libraries of Fast DDS alone: its RMW, itself, and what it needs. In the wheels' lib/, and next to their packages.
 _FAST_DDS = ("librmw_fastrtps_shared_cpp.so", "librmw_dds_common*.so", "libfastrtps.so.*")
 _NEEDED_BY_FAST_DDS = ("libtinyxml2-*", "libssl-*", "libcrypto-*")
 
@@ -60,7 +60,7 @@ class Ros:
 
     @property
     def unused_libraries(self) -> tuple[str, ...]:
-        """The names of libraries to which PyPI's wheels are linked, and of which nothing calls anything: Fast DDS's."""
+        """The names of the libraries that PyPI's wheels are linked to but never call: those of Fast DDS."""
         if self.chooses_at_run_time:
             return ()
         beside = self.prefix.glob("lib/python3*/site-packages/ros_fastrtps.libs")
@@ -73,7 +73,7 @@ _DECISIVE = ("rmw", "rcutils", "rosidl_runtime_c", "rosidl_typesupport_fastrtps_
 
 
 def installed_ros() -> Ros | None:
-    """Return the ROS 2 that this Python imports, with its headers; None if there is none.
+    """Return the ROS 2 that this Python imports, or None. It must have its headers.
 
     A sourced ROS 2 comes first, as in Python's own search: its packages are on `PYTHONPATH`.
     """

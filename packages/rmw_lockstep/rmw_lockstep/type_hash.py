@@ -18,12 +18,12 @@ from pathlib import Path
 #: Bytes of a type hash: its version, and SHA-256.
 HASH_BYTES = 33
 
-#: For a type whose package has none: version 0 is "none".
+#: The hash of a type whose package has no hashes: version 0 means "none".
 NO_HASH = bytes(HASH_BYTES)
 
 _HASH = re.compile(r"RIHS(?P<version>\d\d)_(?P<value>[0-9a-f]{64})")
 
-#: Next to this file where the packages' own files are not, as in a web page: type -> hash.
+#: Next to this file if the packages' own files are not installed, as in a web page: type -> hash.
 _TABLE = "type_hashes.json"
 
 

@@ -1,4 +1,4 @@
-"""Makes a wheel of the compiled libraries, for machines without a compiler: `python -m rmw_lockstep.wheel FOLDER`.
+"""Makes a wheel of the compiled libraries, for machines that have no compiler: `python -m rmw_lockstep.wheel FOLDER`.
 
 It does not depend on Python's version. It fits ROS 2 of the same versions (except patches) on the same kind of
 processor, with the C library of the machine that made it or a newer one.
@@ -66,7 +66,7 @@ def _version() -> str:
 
 
 def main() -> None:
-    """Write the wheel and print its path; or the reason why not, with exit code 1."""
+    """Write the wheel and print its path; or print the reason why that is impossible and exit with 1."""
     ros = installed_ros()
     if ros is None or compiler() is None:
         sys.exit(f"No wheel can be made: {'g++ is' if ros else 'ROS 2 and its headers are'} not installed here.")

@@ -114,10 +114,10 @@ def flood(frames: list[bytes], process: Make, hub: Hub) -> tuple[str, str]:
 @pytest.mark.parametrize(
     ("frames", "why"),
     [
-        ([data(PUB, b"x" * 9_000)] * 6, ("bytes", "54,000 bytes in all messages together, where 50,000 are allowed")),
-        ([data(PUB)] * 1_001, ("messages", "1,001 messages, where 1,000 are allowed")),
-        ([idle(0)] * 20_001, ("frames", "20,001 frames, where 20,000 are allowed")),
-        ([node(1 << 32 | n) for n in range(10, 40)], ("nodes", "10 nodes, where 10 are allowed")),
+        ([data(PUB, b"x" * 9_000)] * 6, ("bytes", "54,000 bytes in all messages together; the limit is 50,000")),
+        ([data(PUB)] * 1_001, ("messages", "1,001 messages; the limit is 1,000")),
+        ([idle(0)] * 20_001, ("frames", "20,001 frames; the limit is 20,000")),
+        ([node(1 << 32 | n) for n in range(10, 40)], ("nodes", "10 nodes; the limit is 10")),
     ],
     ids=["bytes", "messages", "frames", "nodes"],
 )
@@ -138,7 +138,7 @@ def test_connections_are_counted(hub: Hub) -> None:
     connections = [Raw(hub.path) for _ in range(8)]
     hub.pause()
     connections.append(Raw(hub.path))
-    assert reason(hub) == ("connections", "9 processes, where 8 are allowed")
+    assert reason(hub) == ("connections", "9 processes; the limit is 8")
     for connection in connections:
         connection.close()
 

@@ -1,4 +1,4 @@
-"""The hub's end of the protocol between programs and the hub: see PROTOCOL.md."""
+"""The hub's side of the protocol: see PROTOCOL.md."""
 
 from rmw_lockstep.hub.endpoints import (
     DeliveredMessage,

@@ -1,4 +1,4 @@
-"""The hub's own nodes and their ends of the graph: how a test or a grader takes part in it."""
+"""The hub's own nodes and their endpoints, by which a test or a grader takes part in the graph."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ class DeliveredMessage(NamedTuple):
     """A message that arrived from a process.
 
     `now` is the time of the process (ns). `stage` is the number of the hub's last publication that the process had
-    handled. `handled` counts the hub's frames that it had handled. `ordered` tells whether this node's messages on this
-    topic have an order: the main thread of its process sent this one, and no other process publishes there under the
-    same node's name.
+    handled. `handled` counts the hub's frames that it had handled. `ordered` is true if the
+    order of this node's messages on this topic is reproducible: the main thread of its process sent this one, and no
+    other process publishes there under the same node name.
     """
 
     publisher: EndpointFrame
@@ -29,7 +29,7 @@ class DeliveredMessage(NamedTuple):
 
 
 class Moment(NamedTuple):
-    """When a process sent something: see `DeliveredMessage`. `main` tells whether its main thread sent it."""
+    """When a process sent something: see `DeliveredMessage`. `main` is true if its main thread sent it."""
 
     now: int
     stage: int
@@ -48,7 +48,7 @@ class PendingRequest(NamedTuple):
 
 
 class EndpointHost(Protocol):
-    """What the ends need from the hub."""
+    """What the endpoints need from the hub."""
 
     def publish(self, publisher: HubPublisher, cdr: bytes) -> int: ...
     def request(self, client: HubClient, number: int, cdr: bytes) -> bool: ...
@@ -78,7 +78,7 @@ class HubEndpoint:
 
 
 class HubPublisher(HubEndpoint):
-    """Publishes serialized messages. It keeps those that a later subscription will get, as its QoS says."""
+    """Publishes serialized messages. It keeps those that its QoS promises to later subscriptions."""
 
     def __init__(self, post: EndpointHost, endpoint: EndpointFrame) -> None:
         keeps = endpoint.qos.durability == TRANSIENT_LOCAL

@@ -25,7 +25,7 @@ class HubGraph:
         self.nodes[node.id] = node
 
     def remove_node(self, number: int) -> NodeFrame:
-        """Remove a node; the caller has to remove the endpoints that it still had."""
+        """Remove a node. The caller must remove its endpoints."""
         return self.nodes.pop(number)
 
     def add(self, endpoint: EndpointFrame) -> None:
@@ -45,7 +45,7 @@ class HubGraph:
         return endpoint
 
     def readers(self, publisher: EndpointFrame) -> tuple[EndpointFrame, ...]:
-        """Return the subscriptions that get what `publisher` sends. Cached until a change: each message needs it."""
+        """Return the subscriptions that get what `publisher` sends. Cached, as each message needs it."""
         found = self._readers.get(publisher.id)
         if found is None:
             found = tuple(e for e in self._named(publisher, SUBSCRIPTION) if compatible(publisher.qos, e.qos))

@@ -1,7 +1,7 @@
-"""The hub: every process of a program is connected to it, and it alone decides what happens, and when.
+"""The hub: every process of a program connects to it, and it alone decides what happens and when.
 
-It listens on a socket in a folder, advances time, and knows exactly when the whole program has nothing left to do.
-It never waits for a process without a limit: `on_tick` is called every 20 ms while it waits, and may raise.
+It listens on a socket in a folder, advances time and knows exactly when the whole program has nothing left to do.
+It never waits for a process indefinitely: `on_tick` is called every 20 ms while it waits, and may raise.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ LONGEST_PATH = 107
 #: How often `on_tick` is called while the hub waits (s).
 TICK_S = 0.02
 
-#: After how many of these a new process begins even if others are not idle.
+#: A new process begins after this many ticks even if others are not idle.
 WELCOME_TICKS = 10
 
 #: How often a process may be granted time without its time advancing.
@@ -43,15 +43,15 @@ MOST_STANDSTILLS = 100
 
 
 def _do_nothing() -> None:
-    """Wait without a limit, and ignore every end."""
+    """The default callback."""
 
 
 class Hub:
     """Use it as a context manager, from one thread.
 
-    `main` is the id of the program's first process, as this process sees it, once it is known: the program is not
-    idle while that one is not connected. `mains` has those of further programs. `before_end` is called before the end
-    points of a process are removed from the graph.
+    `main` is the id of the program's first process, as this process sees it. Set it as soon as it is known: the program
+    is never idle while that process is not connected. `mains` has those of further programs. `before_end` is called
+    before the endpoints of a process are removed from the graph.
     """
 
     def __init__(
@@ -102,7 +102,7 @@ class Hub:
     # --- for the owner of the hub
 
     def add_listener(self, folder: Path) -> Path:
-        """Listen in another folder, too, for another program, and return the socket's path.
+        """Also listen in another folder, for another program, and return the socket's path.
 
         `ProcessLink.listener` counts these from 1.
         """
@@ -151,8 +151,8 @@ class Hub:
     def advance(self, until: int) -> None:
         """Advance time to `until` (ns).
 
-        With a single process this is only queued, before everything published after it, until `wait_until_idle`.
-        With several, time advances from one wake-up of any of them to the next, and this returns when it is there.
+        With a single process, this is only queued, ahead of everything published later, until `wait_until_idle`. With
+        several, time advances from one wake-up of any of them to the next, and this returns when it is `until`.
         """
         self._until = max(until, self._until)
         if self._is_alone():
@@ -172,13 +172,13 @@ class Hub:
         while True:
             self._flush()
             if not self._is_idle():
-                self._flush()  # including its questions to processes, or it would wait for the answers in vain
+                self._flush()  # including ASK, or the answers would never come
                 self._take()
             elif not self._go_on():
                 return
 
     def interrupted(self) -> None:
-        """Ask the program again: what it reported is no longer true, as it was sent a signal."""
+        """Ask the program again, as it was sent a signal: what it reported is no longer true."""
         for link in self.links:
             link.queue(frames.ASK)
 
@@ -195,7 +195,7 @@ class Hub:
         return self._is_idle()
 
     def drain(self, at_most_s: float = 1.0) -> None:
-        """Take all that processes sent before they ended; to be called when the program is dead. Raises `Violation`."""
+        """Take everything that processes sent before they ended. The program must be dead. Raises `Violation`."""
         self.on_tick = _do_nothing
         deadline = time.monotonic() + at_most_s
         self._accept()
@@ -236,9 +236,9 @@ class Hub:
         link.queue(frames.to_time(until))
 
     def _go_on(self) -> bool:
-        """Advance the idle program's time to the next wake-up of any process. Return False if it has reached its goal.
+        """Advance the idle program's time to the next wake-up of any process. Return False if it has reached `until`.
 
-        No process gets ahead of the others: what one sends at its wake-up, another may get before it wakes itself.
+        No process gets ahead of the others: what one sends at its wake-up may reach another before that one wakes.
         """
         if self._reach_instant():
             return True
@@ -254,7 +254,7 @@ class Hub:
         """Advance the time of processes that are behind the current instant: first of all that do not wake then, after
         them that of the others, one after another. Return False when all are there.
 
-        A process that is woken may end, and so wake its parent, whose clock must show the same time by then.
+        A process that is woken may end and so wake its parent, whose clock must show the same time by then.
         """
         behind = [link for link in self.links if link.now < self._instant]
         if not behind:
@@ -269,12 +269,12 @@ class Hub:
         """Raise `Violation` when a process's time does not advance."""
         self._standstills = self._standstills + 1 if link.granted == self._instant else 0
         if self._standstills > MOST_STANDSTILLS:
-            raise Violation("protocol", "a process is granted time again and again, and its time does not go on")
+            raise Violation("protocol", "a process is granted time again and again, but its time does not advance")
 
     # --- connections
 
     def _is_idle(self) -> bool:
-        """Return whether every process is idle, including the children that they name."""
+        """Return whether every process is idle, including the children that they report."""
         links = self.links
         self._awaited = False
         if not links or not all(link.is_idle for link in links if link.began):
@@ -293,7 +293,7 @@ class Hub:
     def _is_confirmed(self) -> bool:
         """Return whether each of several processes has reported twice to be idle, with no thread running in between.
 
-        One may wake another in a way that is not seen here, such as a pipe, after the other has reported to be idle.
+        One may wake another in a way that the hub can't see, such as a pipe, after the other has reported to be idle.
         """
         if len(self.links) == 1:
             return True
@@ -306,7 +306,7 @@ class Hub:
         return False
 
     def _missing_children(self) -> list[ProcessLink]:
-        """Return the processes that name a child which is not connected: not yet, no longer, or never."""
+        """Return the processes that report a child that is not connected: not yet, no longer, or never."""
         naming = [link for link in self.links if link.idle and link.idle.children]
         if not naming:
             return []
@@ -349,7 +349,7 @@ class Hub:
     def _welcome(self) -> bool:
         """Start those that have sent HELLO, at the time of the others. Return whether there were any.
 
-        A new process waits until the others are idle: then its parent's time is known.
+        A new process waits until the others are idle, as only then its parent's time is known.
         """
         waiting = sorted((one for one in self.links if one.hello and not one.began), key=lambda one: one.order)
         now = max((link.now for link in self.links if link.began), default=self._until)

@@ -1,12 +1,12 @@
-"""What a program may request from the hub, and the one exception for requesting more."""
+"""What a program may use of the hub, and the exception for exceeding it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Literal
 
-#: Why the hub stopped a program. `protocol`: it broke a rule of PROTOCOL.md. `at once`: it sent too much at one moment,
-#: and `own messages`: on a topic that it listens to itself.
+#: Why the hub stopped a program. `protocol`: it broke a rule of PROTOCOL.md. `at once`: it sent too much at one moment;
+#: `own messages`: the same, on a topic that it subscribes to itself.
 Reason = Literal[
     "protocol",
     "message",
@@ -25,9 +25,9 @@ Reason = Literal[
 
 @dataclass(frozen=True)
 class HubLimits:
-    """How much all processes of a program may send, own and leave unread, from the first connection to the last.
+    """How much all processes of a program together may send, create and leave unread during the whole run.
 
-    Sizes are in bytes. No correct program comes near any of them.
+    Sizes are in bytes. No correct program comes close to any limit.
     """
 
     message_bytes: int = 1_000_000
@@ -37,7 +37,7 @@ class HubLimits:
     messages: int = 20_000
     """The number of these."""
     at_once: int = 1_500
-    """Messages and requests at one moment of its clock, including those that nobody outside the program gets."""
+    """Messages and requests at one moment of its clock, including those that stay inside the program."""
     frames: int = 1_000_000
     """Frames of any kind."""
     nodes: int = 200
@@ -51,11 +51,11 @@ class HubLimits:
     unread_bytes: int = 16_000_000
     """What is kept for a process that does not read."""
     wake_ups: int = 1_000_000
-    """How often several processes may be granted time. A single process is granted it in one piece."""
+    """How often several processes may be granted time. A single process gets it in one piece."""
 
 
 class Violation(Exception):
-    """Raised when a program sends what no correct program sends. `limit` is the number that `found` exceeds, or 0."""
+    """Raised when a program sends what no correct program sends. `found` exceeds `limit`, unless that is 0."""
 
     def __init__(self, reason: Reason, text: str, *, found: int = 0, limit: int = 0) -> None:
         super().__init__(text)
@@ -66,7 +66,7 @@ class Violation(Exception):
 
 
 class HubUsage:
-    """What a program has used so far. Each method raises `Violation` when that exceeds `limits`."""
+    """What a program has used so far. Each method raises `Violation` if that exceeds `limits`."""
 
     def __init__(self, limits: HubLimits) -> None:
         self.limits = limits
@@ -95,7 +95,7 @@ class HubUsage:
             raise _exceeded("messages", "messages", self.messages, limits.messages)
 
     def connection(self, alive: int) -> None:
-        """Count a connection, besides `alive` others."""
+        """Count a connection in addition to `alive` others."""
         self.connections += 1
         if alive >= self.limits.connections:
             raise _exceeded("connections", "processes", alive + 1, self.limits.connections)
@@ -125,4 +125,4 @@ class HubUsage:
 
 
 def _exceeded(reason: Reason, what: str, found: int, limit: int) -> Violation:
-    return Violation(reason, f"{found:,} {what}, where {limit:,} are allowed", found=found, limit=limit)
+    return Violation(reason, f"{found:,} {what}; the limit is {limit:,}", found=found, limit=limit)

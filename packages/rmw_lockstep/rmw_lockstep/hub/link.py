@@ -1,4 +1,4 @@
-"""The hub's end of the connection to one process: frames in, frames out, and what the process has reported."""
+"""The hub's end of the connection to one process: incoming and outgoing frames, and what the process has reported."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from collections.abc import Callable
 from rmw_lockstep.hub.frames import KERNEL_SLEEP, HelloFrame, IdleFrame
 from rmw_lockstep.hub.limits import HubUsage, Violation
 
-#: How much is read at once: little enough that a process which never stops sending can't block the hub.
+#: How much is read at once (bytes). A process that never stops sending must not block the hub.
 PIECE = 65_536
 
 #: A frame contains more than the message in it.
@@ -22,9 +22,9 @@ _WAIT = struct.Struct("ll")
 
 
 class ProcessLink:
-    """One process. `number` begins its identities; `pid` is its process id as the hub sees it.
+    """One process. Its identities begin with `number`; `pid` is its process id as the hub sees it.
 
-    `listener` is the number of the listening socket to which it connected: that of its program.
+    `listener` is the number of the listening socket that it connected to, and so identifies its program.
     """
 
     def __init__(self, sock: socket.socket, number: int, use: HubUsage, listener: int = 0) -> None:
@@ -61,16 +61,16 @@ class ProcessLink:
 
     @property
     def pid_inside(self) -> int:
-        """The process's id as it sees it itself: in the order in which the program's processes were started."""
+        """The process id as the process itself sees it. These ids are in the order in which processes were started."""
         return self.hello.pid if self.hello else 0
 
     def is_main(self, thread: int) -> bool:
-        """Return whether this is the number of the process's main thread, which is the process's own (gettid(2))."""
+        """Return whether this is the process's main thread, whose number equals the process id (gettid(2))."""
         return thread == self.pid_inside
 
     @property
     def order(self) -> tuple[int, int]:
-        """Its position among all processes, the same in each run: by program, then in the order of their start."""
+        """The sort key of a process, the same in every run: by program, then in the order of their start."""
         return self.listener, self.pid_inside
 
     def wait_at_most(self, seconds: float) -> None:
@@ -89,11 +89,11 @@ class ProcessLink:
 
     @property
     def unsent(self) -> int:
-        """How many bytes the process has left unread, beyond what the kernel keeps for it."""
+        """How many bytes the process has left unread, in addition to what the kernel buffers."""
         return len(self._unsent)
 
     def flush(self) -> None:
-        """Send what is queued, as far as possible without waiting. Raises `Violation` when too much is left over."""
+        """Send what is queued, as far as possible without waiting. Raises `Violation` if too much is left."""
         if self._queued:
             self._unsent += b"".join(self._queued)
             self._queued.clear()
@@ -105,7 +105,7 @@ class ProcessLink:
         self._use.unread(len(self._unsent))
 
     def mark(self, ordinal: int) -> None:
-        """Note that what the hub has published as number `ordinal` is handled once the current queue is."""
+        """Note that publication number `ordinal` of the hub is handled as soon as the current queue is."""
         self._marks_at.append(self.sent)
         self._marks.append(ordinal)
 
@@ -153,13 +153,13 @@ class ProcessLink:
         return Violation("protocol", f"a frame of {length:,} bytes")
 
     def moment(self, handled: int, now: int) -> tuple[int, int]:
-        """Return a reported moment, corrected to be possible: neither number decreases, or exceeds what was allowed."""
+        """Return a reported moment, clamped: neither number may decrease or exceed what was allowed."""
         self.handled = min(max(handled, self.handled), self.sent)
         self.now = min(max(now, self.now), self.granted)
         return self.handled, self.now
 
     def believe(self, idle: IdleFrame) -> None:
-        """Note that the process reports to be idle."""
+        """Note that the process reports that it is idle."""
         _, now = self.moment(idle.handled, idle.now)
         self.idle = self.last_idle = idle._replace(now=now)
 

@@ -1,4 +1,4 @@
-"""What a program sends at one moment of its clock: a program that answers its own messages never gets past it."""
+"""Limits what a program sends at one moment of its clock: one that answers its own messages never leaves it."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from rmw_lockstep.hub.frames import PUBLISHER, EndpointFrame
 from rmw_lockstep.hub.graph import HubGraph
 from rmw_lockstep.hub.limits import HubLimits, Reason, Violation
 
-#: A topic or service with less than this part of what is allowed is not what the program is busy with.
+#: Blame only topics and services with at least 1/SHARE of the limit.
 SHARE = 20
 
-#: If that is so of all, this many are named: those with most.
+#: If there are none, name this many: those with the most messages.
 NAMED = 3
 
 
@@ -19,7 +19,7 @@ class MomentCounter:
     """Counts the messages and requests of all processes at the current moment, by their topics and services."""
 
     def __init__(self, graph: HubGraph, limits: HubLimits) -> None:
-        """`graph` tells who listens to what is sent."""
+        """`graph` knows who subscribes to what."""
         self._graph, self._limit = graph, limits.at_once
         self._now = 0
         self._total = 0
@@ -27,12 +27,12 @@ class MomentCounter:
         self._senders: dict[str, EndpointFrame] = {}
 
     def begin(self) -> None:
-        """Count from 0: the hub has published something, which the program may answer."""
+        """Count from 0 again: the hub has published something, which the program may answer."""
         self._total = 0
         self._sent.clear()
 
     def count(self, sender: EndpointFrame, now: int, number: int = 1) -> None:
-        """Count what was sent at the time `now` (ns). Raises `Violation` when it is too much."""
+        """Count what was sent at the time `now` (ns). Raises `Violation` if it is too much."""
         if now != self._now:
             self._now = now
             self.begin()
@@ -43,7 +43,7 @@ class MomentCounter:
             raise self._violation()
 
     def _violation(self) -> Violation:
-        """Say what is too much. It names all that the program is busy with: which comes last may be chance."""
+        """Return the violation. It names everything that the program is busy with: which comes last may be random."""
         busy = sorted(self._busy())
         reason: Reason = "own messages" if any(map(self._is_heard_inside, busy)) else "at once"
         return Violation(reason, " and ".join(busy), found=self._total, limit=self._limit)
@@ -53,6 +53,6 @@ class MomentCounter:
         return enough or sorted(self._sent, key=lambda name: (-self._sent[name], name))[:NAMED]
 
     def _is_heard_inside(self, name: str) -> bool:
-        """Return whether the program itself listens to a publisher of this topic."""
+        """Return whether the program itself subscribes to this topic."""
         sender = self._senders[name]
         return sender.kind == PUBLISHER and any(reader.process for reader in self._graph.readers(sender))

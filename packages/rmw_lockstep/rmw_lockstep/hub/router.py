@@ -1,4 +1,4 @@
-"""What the hub does with each frame: it updates the graph, and forwards messages to their recipients."""
+"""Handles each frame: updates the graph and forwards messages to their recipients."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ MOST_REQUESTS = 10_000
 class Route:
     """Where the messages of one publisher go: to the hub's subscriptions, and to processes.
 
-    `shared` tells whether another process publishes on the topic under the same node's name. Which of the two is
-    faster is random, and nothing else tells one from the other.
+    `shared` is true if another process publishes on the topic under the same node name. Which of the two is faster is
+    random, and nothing else distinguishes them.
     """
 
     node: str
@@ -44,7 +44,7 @@ class Route:
 
 
 class Router:
-    """Knows every link and the hub's own ends, and forwards frames between them."""
+    """Forwards frames between the links to processes and the hub's own endpoints."""
 
     def __init__(self, use: HubUsage, calendar: Callable[[], int], epoch: int) -> None:
         """`calendar` is the current calendar time, which stamps the hub's messages (ns)."""
@@ -145,7 +145,7 @@ class Router:
             self._replay(link, endpoint)
 
     def _replay(self, link: ProcessLink, subscription: EndpointFrame) -> None:
-        """Send a subscription what was published before, if it requests that. Processes replay their own messages."""
+        """Send a new subscription what the hub published before. Processes replay their own messages."""
         for writer in self.graph.writers(subscription):
             publisher = self._ends.get(writer.id)
             if isinstance(publisher, HubPublisher):
@@ -166,7 +166,7 @@ class Router:
 
     def _new(self, link: ProcessLink, number: int, known: dict[int, NodeFrame] | dict[int, EndpointFrame]) -> None:
         if number >> 32 != link.number or number in known:
-            raise Violation("protocol", "an identity that is not the process's own, or is given twice")
+            raise Violation("protocol", "an identity that is not the process's own, or is used twice")
 
     def _add(self, endpoint: EndpointFrame) -> None:
         self.graph.add(endpoint)
@@ -182,16 +182,16 @@ class Router:
                 self._pass_on(origin, link, frame)
 
     def _pass_on(self, origin: ProcessLink | None, to: ProcessLink, frame: bytes) -> None:
-        """Hold what one process sends to another until all are idle: see `deliver`."""
+        """Keep what one process sends to another until all are idle: see `deliver`."""
         if origin is None:
             to.queue(frame)
         else:
             self._held.append((origin.order, to, frame))
 
     def deliver(self) -> bool:
-        """Forward what processes sent to one another, one sender after the other. Return whether there was anything.
+        """Forward what processes sent to one another, in the order of the senders. Return whether there was anything.
 
-        Processes run in parallel, so without this it would be random whose message another one gets first.
+        Processes run in parallel; otherwise it would be random whose message arrives first.
         """
         held, self._held = sorted(self._held, key=lambda one: one[0]), []
         for _, to, frame in held:
@@ -230,14 +230,14 @@ class Router:
             self._pass_on(link, other, frames.to_data(publisher.id, data.only, data.source_time, data.cdr))
 
     def _kept(self, link: ProcessLink, payload: bytes) -> None:
-        """A process has sent much at one moment that nobody else gets."""
+        """Count messages that stayed inside a process."""
         kept = frames.kept(payload)
         sender = self._own(link, kept.sender, PUBLISHER, CLIENT)
         _, now = link.moment(kept.handled, kept.now)
         self._at_once.count(sender, now, kept.number)
 
     def _replayed(self, link: ProcessLink, payload: bytes) -> None:
-        """A process has sent all that its publisher had kept for a subscription that came later."""
+        """Tell a late subscription that a process has sent everything its publisher had kept."""
         number, subscription = frames.replayed(payload)
         publisher = self._own(link, number, PUBLISHER)
         other = self._link(subscription >> 32)
@@ -300,7 +300,7 @@ class Router:
         self._use.data(len(call.cdr))
         moment = self._moment(link, call)
         if (call.client, call.number) not in link.requests:
-            raise Violation("protocol", "a response to what was not requested")
+            raise Violation("protocol", "a response to a request that was never sent")
         link.requests.discard((call.client, call.number))
         own = self._ends.get(call.client)
         if isinstance(own, HubClient):
@@ -317,8 +317,8 @@ class Router:
     def _stage(self, link: ProcessLink, handled: int) -> int:
         """Return the number of the last publication before a moment of a process.
 
-        One process may act on a message that another one has told it of, whether or not it has handled the message
-        itself. So whatever any of several sends counts as sent after what was published while all were idle.
+        Processes may pass a message on to one another, so one may act on it before it has handled the message itself.
+        So with several processes, everything counts as sent after what was published while all were idle.
         """
         return max(self._certain, link.stage(handled))
 
@@ -330,10 +330,10 @@ class Router:
     def _link(self, number: int) -> ProcessLink | None:
         return next((link for link in self.links if link.number == number), None)
 
-    # --- the hub's own ends: see `rmw_lockstep.hub.endpoints.EndpointHost`
+    # --- the hub's own endpoints: see `rmw_lockstep.hub.endpoints.EndpointHost`
 
     def new_node(self, name: str, namespace: str = "/") -> NodeFrame:
-        """Return a new node of the hub's."""
+        """Return a new node of the hub."""
         node = NodeFrame(next(self._numbers), name, namespace)
         self.graph.add_node(node)
         self._broadcast(frames.to_node(node))
@@ -352,7 +352,7 @@ class Router:
             self._replay_nothing(end.endpoint)
 
     def _replay_nothing(self, publisher: EndpointFrame) -> None:
-        """A new publisher has kept nothing for the subscriptions that were there before."""
+        """Tell existing subscriptions that a new publisher has kept nothing for them."""
         for reader in self.graph.readers(publisher):
             link = self._link(reader.process)
             if link is not None and reader.qos.durability == TRANSIENT_LOCAL:
@@ -379,7 +379,7 @@ class Router:
         return tuple(other for other in others(endpoint) if other.process != HUB)
 
     def publish(self, publisher: HubPublisher, cdr: bytes) -> int:
-        """Queue a message for every process that it is for, or may be for by the time it arrives."""
+        """Queue a message for every process that subscribes, or may subscribe by the time the message arrives."""
         self.published += 1
         self._at_once.begin()
         if self._use.connections > 1:

@@ -16,13 +16,13 @@ LOCKSTEP_API uint32_t lockstep_process() { return core().process(); }
 LOCKSTEP_API void lockstep_lock() { core().lock(); }
 LOCKSTEP_API void lockstep_unlock() { core().unlock(); }
 LOCKSTEP_API void lockstep_participate(const lockstep_participant * participant) { core().participate(participant); }
-LOCKSTEP_API void lockstep_send(const uint8_t * frame, size_t size) { core().tell(frame, size); }
+LOCKSTEP_API void lockstep_send(const uint8_t * frame, size_t size) { core().report(frame, size); }
 LOCKSTEP_API lockstep_moment lockstep_here() { return core().here(); }
 LOCKSTEP_API void lockstep_sent_output() { core().sent_output(); }
 LOCKSTEP_API void lockstep_sent() { discount_readings(); }
 LOCKSTEP_API void lockstep_settle_signals() { signals().settle(); }
 LOCKSTEP_API uint64_t lockstep_sleeps() { return sleeps; }
-LOCKSTEP_API void lockstep_looked(int in_vain) { poll_loop.look(in_vain); }
+LOCKSTEP_API void lockstep_polled(int fruitless) { poll_loop.poll(fruitless); }
 
 LOCKSTEP_API int64_t lockstep_now() { return virtual_time() ? core().now() : real::now(CLOCK_MONOTONIC); }
 

@@ -1,4 +1,4 @@
-// The computer's clocks, as the hub says.
+// The computer's clocks, which show the hub's time.
 #include <errno.h>
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 namespace lockstep {
 namespace {
 
-// A thread that reads the clock this often without ever waiting waits for a time to come; from then on every so many
-// readings take this long (ns). Python reads it once per lock that it takes, so many readings are free, and so many
-// more with each message that the thread sends: one that answers its own messages does not wait for a time.
+// A thread that reads the clock this often without ever waiting is in a busy wait for a time. From then on it sleeps
+// TIME_PER_READINGS (ns) after every READINGS readings. Python reads the clock for each lock that it takes, so many
+// readings are free, and each message that the thread sends adds READINGS more: it does more than wait for a time.
 constexpr unsigned FREE_READINGS = 100'000, READINGS = 1'000;
 constexpr int64_t TIME_PER_READINGS = 1'000'000;
 
@@ -29,9 +29,9 @@ void count_reading() {
   sleeps_before = sleeps;  // this sleep is not one of the program's
 }
 
-// A thread that looks at files again and again at one moment, without waiting, sees a little time pass (ns per look),
-// as it would with a real clock. Python's `Connection.poll()` returns only when the time is later than when it began:
-// it would go on until the readings of the clock are no longer free. The first looks are: asyncio makes some per moment.
+// A thread that polls files again and again at one moment, without waiting, sees 1 ns pass with each poll, as it would
+// with a real clock. Python's `Connection.poll()` returns only when the time is later than when it began; otherwise it
+// would use up its free readings of the clock. The first polls are free, as asyncio makes several at each moment.
 constexpr unsigned FREE_LOOKS = 100, MOST_LOOKS = 500'000;
 
 thread_local int64_t looked_at = -1;
@@ -101,7 +101,7 @@ LOCKSTEP_API time_t time(time_t * out) {
   return seconds;
 }
 
-// ROS 2's own (rcutils/time.h), which it calls for a timer, and only then while it polls.
+// ROS 2's own (rcutils/time.h). While it polls, it calls this only for a timer.
 LOCKSTEP_API int rcutils_steady_time_now(int64_t * now) { return read_for_ros(CLOCK_MONOTONIC, now); }
 LOCKSTEP_API int rcutils_system_time_now(int64_t * now) { return read_for_ros(CLOCK_REALTIME, now); }
 

@@ -10,8 +10,8 @@
 namespace lockstep {
 namespace {
 
-// A thread of Python asks for the global lock, every 5 ms of real time, until its holder releases it. Here it does so
-// after as much CPU time of the process, so that a busy machine does not change which thread runs next (ns).
+// A thread of Python asks for the GIL every 5 ms of real time until its holder releases it. Here it asks after the same
+// CPU time of the process (ns), so that a busy machine does not change which thread runs next.
 constexpr int64_t LOOK = 5'000'000, SWITCH = 20'000'000;
 
 struct Range {
@@ -22,7 +22,7 @@ struct Range {
   }
 };
 
-// The object (python3 or libpython3.so) that the interpreter is in; nothing in a program without Python.
+// The file (python3 or libpython3.so) that contains the interpreter; empty in a program without Python.
 Range find_python() {
   Range range;
   const void * inside = dlsym(RTLD_DEFAULT, "PyEval_RestoreThread");

@@ -20,7 +20,8 @@ namespace {
 
 constexpr uint32_t VERSION = 3;
 
-// While the process is not idle and no thread reports when it is, the listener checks this often: at first, at most (ns).
+// While the process is busy, and no thread would report that it becomes idle, the listener checks at intervals (ns):
+// the first one, then twice as long each time, up to the longest.
 constexpr int64_t FIRST_LOOK = 500'000, LONGEST_LOOK = 2'000'000;
 
 int open_socket(const std::string & path) {
@@ -44,7 +45,7 @@ bool preloaded() { return dlsym(RTLD_DEFAULT, "clock_nanosleep") == reinterpret_
 
 int Core::connect(const std::string & path) {
   if (connected_) return EALREADY;
-  if (!threads_.count()) return ENOSYS;  // without /proc/self/task it would seem to have no other threads
+  if (!threads_.count()) return ENOSYS;  // without /proc/self/task no other thread would be seen
   socket_ = open_socket(path);
   if (socket_ < 0) return errno;
   path_ = path;
@@ -131,7 +132,7 @@ void Core::receive() {
   else lost();
 }
 
-// The hub is gone: nothing will arrive any more, nothing waits for this process, and time is the computer's own.
+// The hub is gone: no frame will arrive, nobody waits for this process, and its time is the computer's from now on.
 void Core::lost() {
   connected_ = false;
   virtual_ = false;

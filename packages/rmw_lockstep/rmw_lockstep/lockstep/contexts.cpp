@@ -1,7 +1,7 @@
 // rcl's functions that end a context, and that ask whether it has ended.
 //
-// They are where a program's own thread and rclpy's thread for signals race, so a program waits here for the other one,
-// wherever the signal has found it: in a callback, in a sleep, in an executor that waits for a condition variable.
+// This is where the program's own thread and rclpy's signal thread race. So the program waits here for the signal
+// thread, whatever the signal interrupted: a callback, a sleep, or an executor that waits for a condition variable.
 #include "lockstep.h"
 #include "real.hpp"
 #include "signals.hpp"
@@ -10,7 +10,7 @@ using namespace lockstep;
 
 namespace {
 
-// librcl is loaded for Python's extension modules alone, so it is not where dlsym(RTLD_NEXT) looks.
+// Python loads librcl for its extension modules only (RTLD_LOCAL), so dlsym(RTLD_NEXT) does not find it.
 void * find(const char * name, const void * caller) {
   Dl_info info;
   void * const object = dladdr(caller, &info) ? dlopen(info.dli_fname, RTLD_LAZY | RTLD_NOLOAD) : nullptr;

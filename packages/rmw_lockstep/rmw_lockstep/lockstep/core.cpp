@@ -71,8 +71,8 @@ void Core::call_later(void (*function)(const void *, size_t), const void * data,
   later_.push_back({function, data, count});
 }
 
-// The thread that reports may fall asleep unseen by this library, so the listener has to check.
-void Core::tell(const uint8_t * frame, size_t size) {
+// The reporting thread may fall asleep in a call that this library does not see, so the listener has to check.
+void Core::report(const uint8_t * frame, size_t size) {
   send(frame, size);
   check_again();
 }
@@ -116,7 +116,8 @@ void Core::wake(Sleeper & sleeper, bool due) {
   nudge(sleeper);
 }
 
-// The thread may be on its way into a call that no signal interrupts any more: the library's own thread sees to that.
+// A signal may come just before the thread enters its system call, which then is not interrupted. So the listener wakes
+// the thread again.
 void Core::interrupt() {
   if (!own_sleeper || !connected_) return;
   const int fault = errno;
@@ -128,7 +129,7 @@ void Core::interrupt() {
   errno = fault;
 }
 
-// Wakes a thread that has been told to wake up, in the way in which it sleeps. False: it may have been too early.
+// Wake a thread whose `awake` is set, in the way in which it sleeps. False: that may have been too early, so repeat it.
 bool Core::nudge(const Sleeper & sleeper) {
   if (sleeper.semaphore) {
     const int operation = FUTEX_WAKE | (sleeper.semaphore_shared ? 0 : FUTEX_PRIVATE_FLAG);
@@ -145,7 +146,7 @@ bool Core::may_lengthen(const Sleeper & sleeper) const {
   return sleeper.period && sleeper.period <= LONGEST_SLEEP / 2 && !has_own_pace_ && poll_loop.can_wait();
 }
 
-// Something happens that threads may look for. At one moment, those with a higher number look after this `thread`.
+// Let polling threads see what happens now. At the same moment, threads with a higher number than `thread` poll later.
 void Core::shorten_sleeps(pid_t thread) {
   for (Sleeper * sleeper : sleepers_)
     if (sleeper->lengthened) shorten(*sleeper, sleeper->thread > thread ? now() - 1 : now());
@@ -158,8 +159,8 @@ void Core::sent_output() {
 
 // ---- idle
 
-// A child may end at any moment, and its end may wake a thread. So this comes first: a child that ends while threads are
-// looked at is reported as if it lived, and the hub asks again.
+// A child may end at any moment, and its end may wake a thread. So this comes first: a child that ends while the threads
+// are checked is still reported as alive, and the hub asks again.
 void Core::forget_dead_children() {
   children_.erase(std::remove_if(children_.begin(), children_.end(), [](pid_t child) {
     siginfo_t info{};
@@ -202,7 +203,7 @@ void Core::step() {
     const uint8_t * frame = front(size);
     const char kind = frame ? static_cast<char>(frame[0]) : 0;
     const bool gate = kind == 'T' || kind == '|';
-    if (gate && awaited) {  // a thread waits for what is behind it: see lockstep_block_until
+    if (gate && awaited) {  // a thread waits for a frame behind it: see lockstep_block_until
       time_runs_ = false;
       pop();
       continue;
@@ -239,7 +240,7 @@ void Core::begin_time(const uint8_t * frame, uint32_t size) {
   sent_output_ = false;
 }
 
-// Called when the process is idle. Wakes the next thread in turn, or ends the time.
+// Called when the process is idle. Wake the thread with the earliest deadline, or finish the TIME frame.
 void Core::go_on() {
   if (!(stop_at_output_ && sent_output_)) {
     Sleeper * next = nullptr;

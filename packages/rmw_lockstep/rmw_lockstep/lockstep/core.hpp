@@ -1,4 +1,4 @@
-// What this process is: its connection, its time, and its threads that sleep.
+// The state of this process: its connection, its time and its sleeping threads.
 #pragma once
 
 #include <poll.h>
@@ -17,8 +17,8 @@ namespace lockstep {
 
 constexpr int64_t NEVER = LOCKSTEP_NEVER;
 
-// A thread that waits in this library, on that thread's own stack. It is in `Core::sleepers` from before it falls
-// asleep until after it has woken, so that a thread on its way into or out of its sleep is never considered asleep.
+// A thread that waits in this library; lives on that thread's stack. It is in `Core::sleepers_` from before it falls
+// asleep until after it has woken, so that a thread on its way into or out of its sleep is never taken to be asleep.
 struct Sleeper {
   int64_t deadline = NEVER;          // on the steady clock (ns)
   int64_t period = 0;                // what the program asked for (ns), if it may sleep longer while nothing happens
@@ -37,15 +37,15 @@ struct Sleeper {
   nfds_t file_count = 0;
   bool holds_interpreter = false;    // it reads the clock repeatedly, and threads that wait for it wait for Python
 
-  // Whether what it waits for, besides its time, is there.
+  // Whether something other than its deadline would wake it now.
   bool satisfied() const;
-  // Whether being in the list proves that it sleeps: with a condition variable there is no telling who was woken.
+  // Whether being in the list proves that it sleeps. With a condition variable, nobody knows which waiter was woken.
   bool certain() const { return !condition; }
 };
 
 class Core {
 public:
-  // The lock. A thread that waits for it looks asleep to the kernel, so it is counted.
+  // The lock. To the kernel, a thread that waits for it looks asleep, so these threads are counted.
   void lock();
   void unlock();
 
@@ -56,10 +56,10 @@ public:
   int64_t epoch() const { return epoch_; }
   uint32_t process() const { return process_; }
 
-  // All below: with the lock held.
+  // Call everything below with the lock held.
   void participate(const lockstep_participant * participant) { participant_ = participant; }
-  // What the hub is sent about the graph, or a message: it considers the process busy from then on.
-  void tell(const uint8_t * frame, size_t size);
+  // Send the hub a frame about the graph, or a message. From then on the hub considers the process busy.
+  void report(const uint8_t * frame, size_t size);
   void sent_output();
   lockstep_moment here();
   void call_later(void (*function)(const void *, size_t), const void * data, size_t count);
@@ -72,16 +72,16 @@ public:
   // Wake the calling thread's own sleeper, if there is one: for signal handlers.
   void interrupt();
 
-  void poke();                     // the library's own thread is to look again
-  void check_again();              // and is to check whether the process is idle, whatever has changed
+  void poke();                     // wake the listener, which then checks again
+  void check_again();              // the same, even if nothing has changed since the last IDLE
 
-  // Threads of Python that are about to run, unless the holder of its global lock sleeps.
+  // Python's threads that wait for the GIL: about to run, unless the holder of the GIL sleeps.
   Contenders contenders;
 
   // How many threads wait for a frame in transit, which may be behind a time or a barrier. With the lock held.
   int awaited = 0;
 
-  // In the parent, and in the child, of a fork. A child that is about to become another program does not connect.
+  // After a fork, in the parent and in the child. A child that is about to run exec does not connect.
   void forked(pid_t child);
   void reset_in_child(bool connect_again);
 
@@ -131,20 +131,20 @@ private:
   uint64_t handled_ = 0;
   bool changed_ = false;           // since the process reported to be idle
   std::atomic<bool> disturbed_{false};  // by a signal
-  bool has_own_pace_ = false;      // it has sent something at a time of its own, between looks in vain
-  bool asked_ = false;             // by the hub, whether it still is idle
+  bool has_own_pace_ = false;      // it has sent something between fruitless polls, at a time of its own
+  bool asked_ = false;             // the hub wants another IDLE, even if nothing has changed
   bool time_runs_ = false, stop_at_output_ = false, sent_output_ = false;
   int64_t until_ = 0;
 };
 
-// The one of this process. Never destroyed: threads use it until the process ends.
+// This process's core. It is never destroyed: threads use it until the process ends.
 Core & core();
 
 // The kernel's number of the calling thread, and how often it has slept in this library.
 pid_t thread_number();
 extern thread_local uint64_t sleeps;
 
-// Whether the calling thread's readings of the clock are not counted: it is not one of the program's.
+// Whether the calling thread's readings of the clock are not counted, as it is not one of the program's threads.
 extern thread_local bool reads_clock_freely;
 
 }  // namespace lockstep

@@ -1,6 +1,6 @@
 // poll(2), select(2) and epoll_wait(2) with a time-out.
 //
-// Each thread polls an eventfd besides the program's files, which wakes it when its time has come.
+// Each thread polls an eventfd together with the program's files. It wakes the thread at its deadline.
 #include <errno.h>
 #include <sys/eventfd.h>
 
@@ -51,7 +51,7 @@ int poll_until(const pollfd * files, nfds_t count, int64_t deadline, const sigse
   return found;
 }
 
-// Pass on what the real call has found. `waits`: it would have waited for as long as there is nothing.
+// Return what the real call found. `waits`: it would have waited until there was something.
 int without_waiting(int found, bool waits) {
   if (virtual_time() && found == 0 && !waits) poll_found_nothing();
   return found;

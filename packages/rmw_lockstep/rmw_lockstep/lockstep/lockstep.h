@@ -1,4 +1,4 @@
-// liblockstep: the end of the hub's socket in every process of a program under test. See PROTOCOL.md.
+// liblockstep: a process's end of the connection to the hub. See PROTOCOL.md.
 //
 // The library is preloaded. It connects to the hub, sets the computer's time as the hub says, lets sleeping threads
 // sleep in that time, and reports to the hub when the process is idle. A client that speaks ROS 2 over the connection
@@ -37,7 +37,7 @@ LOCKSTEP_API uint32_t lockstep_process(void);
 LOCKSTEP_API void lockstep_lock(void);
 LOCKSTEP_API void lockstep_unlock(void);
 
-/// What the hub's frames other than time and barriers are passed to, with the lock held. `next` returns when the
+/// Receives all of the hub's frames except TIME, BARRIER and ASK, with the lock held. `next` returns when the
 /// participant wants `due` to be called (ns, LOCKSTEP_NEVER: not at all). `waiting` counts threads in rmw_wait.
 /// `reset` is called in the child of a fork, where the connection and what belongs to it are gone.
 typedef struct lockstep_participant {
@@ -58,7 +58,7 @@ typedef struct lockstep_moment { uint64_t handled; int64_t now; uint32_t thread;
 LOCKSTEP_API lockstep_moment lockstep_here(void);
 LOCKSTEP_API void lockstep_sent_output(void);
 
-/// Report that the calling thread has sent a message or request, to whomever: it does not just wait for a time to come.
+/// Report that the calling thread has sent a message or request, whoever receives it: the thread does more than wait for a time.
 LOCKSTEP_API void lockstep_sent(void);
 
 /// Let the calling thread wait until it is woken or until `deadline` on the steady clock. The lock is released
@@ -67,20 +67,20 @@ typedef struct lockstep_waiter { void * sleeper; int woken; } lockstep_waiter;
 LOCKSTEP_API int lockstep_wait(lockstep_waiter * waiter, int64_t deadline);
 LOCKSTEP_API void lockstep_wake(lockstep_waiter * waiter);
 
-/// Block, in real time, until `*done` is not 0 or the hub is gone. The thread counts as busy. Times and barriers that
-/// the hub has sent end meanwhile: what the thread waits for may be behind them.
+/// Block, in real time, until `*done` is not 0 or the hub is gone. The thread counts as busy. Frames TIME
+/// and BARRIER end early meanwhile: what the thread waits for may be behind them.
 LOCKSTEP_API void lockstep_block_until(const volatile int * done);
 
-/// Wait until rclpy's thread for signals has done what the signals so far ask for: at once, if there were none. Called
-/// without the lock.
+/// Wait until rclpy's signal thread has handled all signals so far; return at once if there were none. Call it without
+/// the lock.
 LOCKSTEP_API void lockstep_settle_signals(void);
 
-/// How often the calling thread has waited for anything so far: two equal answers mean that it never waited in between.
+/// How often the calling thread has waited for anything so far. Two equal results mean that it did not wait in between.
 LOCKSTEP_API uint64_t lockstep_sleeps(void);
 
-/// Report that the calling thread has looked for something without waiting. `in_vain`: it found nothing, and nothing has
-/// happened since it looked before. While that goes on, its short sleeps become longer: see PROTOCOL.md, "Idle".
-LOCKSTEP_API void lockstep_looked(int in_vain);
+/// Report that the calling thread has polled without waiting. `fruitless`: it found nothing, and nothing has happened
+/// since its last poll. As long as that continues, its short sleeps become longer: see PROTOCOL.md, "Idle".
+LOCKSTEP_API void lockstep_polled(int fruitless);
 
 /// Call `function(data, count)` once the lock is released.
 LOCKSTEP_API void lockstep_call_later(void (*function)(const void *, size_t), const void * data, size_t count);

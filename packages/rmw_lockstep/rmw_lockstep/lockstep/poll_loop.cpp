@@ -4,8 +4,8 @@ namespace lockstep {
 
 thread_local PollLoop poll_loop;
 
-void PollLoop::look(bool in_vain) {
-  const bool goes_on = in_vain && sleeps - slept_ <= 1;
+void PollLoop::poll(bool fruitless) {
+  const bool goes_on = fruitless && sleeps - slept_ <= 1;
   polls_ = goes_on ? polls_ + (sleeps != slept_) : 0;
   slept_ = sleeps;
 }

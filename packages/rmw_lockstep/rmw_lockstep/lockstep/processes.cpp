@@ -1,4 +1,4 @@
-// Where a process begins: as a program of its own, as a fork, or when it is told to.
+// Where a process connects: when its program starts, after a fork, or when lockstep_connect is called.
 #include <stdlib.h>
 #include <sys/wait.h>
 
@@ -60,7 +60,7 @@ LOCKSTEP_API int posix_spawnp(
   }, pid);
 }
 
-// As system(3), by way of the fork above.
+// Like system(3), but with the fork above.
 LOCKSTEP_API int system(const char * command) {
   if (!command) return 1;
   struct sigaction ignore{}, interrupt, quit;

@@ -1,4 +1,5 @@
-// POSIX semaphores, which Python's locks are made of. glibc posts them; here they are waited for, and rclpy's is counted.
+// POSIX semaphores, of which Python's locks are made. Posting is glibc's; waiting happens here in simulated time, and
+// posts of rclpy's own semaphore are counted (signals.hpp).
 //
 // The value of a sem_t is its first 32 bits, the number of waiting threads the next 32, and whether it is shared between
 // processes the 32 after (glibc, sysdeps/nptl/internaltypes.h, `struct new_sem`, since 2.21 on 64-bit machines).

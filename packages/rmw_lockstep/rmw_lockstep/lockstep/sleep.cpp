@@ -1,4 +1,4 @@
-// sleep(3), nanosleep(2) and their kin.
+// sleep(3), nanosleep(2) and related functions.
 #include "sleep.hpp"
 
 #include <errno.h>

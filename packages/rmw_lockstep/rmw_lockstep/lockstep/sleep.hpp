@@ -1,4 +1,4 @@
-// What the functions that wait have in common.
+// What all functions that wait share.
 #pragma once
 
 #include <time.h>
@@ -12,12 +12,12 @@ namespace lockstep {
 // Whether the calling thread sleeps in the hub's time.
 inline bool virtual_time() { return core().virtual_time(); }
 
-// A moment on any of the computer's clocks, as one on the steady clock (ns).
+// Convert a time of any of the computer's clocks to the steady clock (ns).
 inline int64_t steady(clockid_t clock, int64_t moment) {
   return clock == CLOCK_REALTIME ? moment - core().epoch() : moment;
 }
 
-// Is in the core's list of sleepers for as long as it lives.
+// Keeps a sleeper in the core's list until the end of the scope, except between `leave` and `enter`.
 class SleepScope {
 public:
   explicit SleepScope(Sleeper & sleeper) : sleeper_(sleeper) { enter(); }
@@ -35,16 +35,16 @@ private:
 // Sleep until the steady clock shows `deadline`. Returns 0, or EINTR if a signal arrived first.
 int sleep_until(int64_t deadline, bool holds_interpreter = false);
 
-// The thread has looked at files without waiting, and nothing was there: see clock.cpp.
+// Note that the thread polled files without waiting and found nothing: see clock.cpp.
 void poll_found_nothing();
 
-// Discount the last reading of the clock: it was not the program's own, and is random.
+// Do not count the last reading of the clock: Python made it, and how often it does is random.
 void discount_reading();
 
-// The thread has sent something: see clock.cpp.
+// Note that the thread has sent something: see clock.cpp.
 void discount_readings();
 
-// Wait on a word of memory, at most for a real time; returns what the futex call set errno to, 0 if it woke.
+// Wait on a futex for at most `most` of real time. Returns 0 if woken, otherwise the errno of futex(2).
 int futex_wait(std::atomic<uint32_t> & word, uint32_t while_it_is, bool shared = false, const timespec * most = nullptr);
 
 }  // namespace lockstep

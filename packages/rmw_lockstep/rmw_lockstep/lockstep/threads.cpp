@@ -70,7 +70,7 @@ bool without_timeout(const Call & call, bool children) {
     case SYS_epoll_pwait2: return call.argument[3] == 0;
 #endif
     case SYS_rt_sigtimedwait: return call.argument[2] == 0;
-    // There is no telling what a child waits for that this library does not know.
+    // A child that this library does not know may wait for anything.
     case SYS_wait4: case SYS_waitid: return children;
     case SYS_read: case SYS_readv: case SYS_recvfrom: case SYS_recvmsg: case SYS_accept: case SYS_accept4:
     case SYS_rt_sigsuspend: case SYS_flock: case SYS_fcntl: return true;
@@ -126,7 +126,7 @@ bool Threads::open_thread(pid_t number) {
   return true;
 }
 
-// Read twice how much CPU each got, and in between the state of each: if none ran, all slept at the same moment.
+// Read the CPU time of each thread twice, and its state in between. If none ran, all slept at the same moment.
 Threads::Look Threads::look(const std::vector<pid_t> & known, bool children) {
   // A thread that has ended meanwhile is missing when they are read again. The program may also have no files left.
   if (!complete_) return Look::busy;
@@ -144,7 +144,7 @@ Threads::Look Threads::look(const std::vector<pid_t> & known, bool children) {
     if (skipped(number)) continue;
     Call call;
     const Sleeps sleeps = thread.call >= 0 ? read_call(thread.call, call) : Sleeps::elsewhere;
-    // A thread whose time has come waits for a CPU, and has not got any yet.
+    // A thread whose deadline has passed is waiting for a CPU.
     if (sleeps == Sleeps::no_more) return Look::busy;
     if (sleeps == Sleeps::in_call) timed |= !without_timeout(call, children);
     if (text_of(thread.schedule) != thread.before) return Look::busy;

@@ -21,7 +21,7 @@ public:
 
   // How many there are, the calling one included.
   unsigned count();
-  // Checks every thread except those in `known`, which are known to sleep. `children`: whether there are any.
+  // Check every thread except those in `known`, which are known to sleep. `children`: whether the process has any.
   Look look(const std::vector<pid_t> & known, bool children);
   // A number that differs from the last one if any thread except `listener` has run since.
   uint64_t runs(pid_t listener);

@@ -1,4 +1,4 @@
-// Deadlines and liveliness: what happens because nothing happens. The time is the computer's steady clock's.
+// Deadlines and liveliness: events because nothing happened in time. All times are of the steady clock (ns).
 #include <algorithm>
 
 #include "frames.hpp"
@@ -33,7 +33,7 @@ bool by_hand(const Endpoint & publisher) {
 
 }  // namespace
 
-// A publisher asserts that it is alive, by publishing or by `assert_liveliness`.
+// Assert that a publisher of this process is alive: it has published, or called `assert_liveliness`.
 void Graph::assert_liveliness(Endpoint & publisher) {
   if (!by_hand(publisher)) return;
   publisher.asserted = true;
@@ -52,7 +52,7 @@ void Graph::publisher_is_alive(uint64_t id) {
   notify();
 }
 
-// A subscription gets news of a publisher: it is alive, and its message is in time.
+// Note for a subscription that a publisher is alive, and that its message is in time.
 void Graph::subscription_got(Endpoint & subscription, uint64_t id) {
   const Endpoint * publisher = find(id);
   auto known = subscription.publishers.find(id);

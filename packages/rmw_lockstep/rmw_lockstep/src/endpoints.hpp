@@ -1,4 +1,4 @@
-// Publishers, subscriptions, service servers and clients: this process's, and those that the hub tells of.
+// Publishers, subscriptions, service servers and clients: of this process, and of others as the hub reports them.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ struct Message {
   int64_t expires = INT64_MAX;  // steady time (ns)
 };
 
-// Who is notified of data or of an event, and how much there was before.
+// A callback for data or events, and the count of those that came before it was set.
 struct Listener {
   rmw_event_callback_t function = nullptr;
   const void * data = nullptr;

@@ -201,7 +201,7 @@ void Graph::join() {
   lockstep_block_until(&complete_);
 }
 
-// In the child of a fork: what was announced is the parent's, and the child gets a graph of its own.
+// Called in the child of a fork: what was announced belongs to the parent, and the child starts with its own graph.
 void Graph::forget_hub() {
   joined_ = false;
   complete_ = 0;

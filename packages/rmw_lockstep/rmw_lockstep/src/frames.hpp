@@ -1,4 +1,4 @@
-// What this process and the hub say to one another about the graph: see PROTOCOL.md.
+// The frames about the graph and its messages, to and from the hub: see PROTOCOL.md.
 #pragma once
 
 #include "endpoints.hpp"

@@ -1,6 +1,6 @@
-// All that this process knows of the ROS graph, and what passes between its endpoints.
+// What this process knows of the ROS graph, and the delivery of messages between its endpoints.
 //
-// Everything is called with the library's lock held (`Lock`).
+// Call everything with the library's lock held (`Lock`).
 #pragma once
 
 #include <functional>
@@ -68,7 +68,7 @@ public:
   void deliver(const Endpoint & publisher, const Message & message, uint64_t only = 0);
   void request(Endpoint & client, Bytes bytes);
   void respond(uint64_t client, int64_t number, Bytes bytes);
-  void replayed(uint64_t publisher, uint64_t subscription);  // what comes from it now is new
+  void replayed(uint64_t publisher, uint64_t subscription);  // its next messages are new ones
   void enqueue(Endpoint & receiver, Message message);
   bool take(Endpoint & receiver, Message & message);
 

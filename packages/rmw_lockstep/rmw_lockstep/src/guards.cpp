@@ -9,7 +9,7 @@ namespace {
 
 constexpr int FOR_CALLBACK = 2, FOR_ENDPOINT = 1;
 
-// An executor to which its first node was added.
+// An executor triggers it once when its first node is added.
 constexpr uint64_t BEFORE_FIRST_WAIT = 1;
 
 // How often the calling thread's executor is expected to have triggered its guard condition so far.
@@ -21,7 +21,7 @@ void for_triggered(const rmw_guard_conditions_t & guards, Each each) {
     if (auto guard = static_cast<Guard *>(guards.guard_conditions[i]); guard && guard->triggered) each(*guard);
 }
 
-// Whether a guard condition, the only one of several, has been triggered as often as expected since the wait before.
+// Whether a guard condition has been triggered as often as expected since the last wait. `only`: no other one was.
 bool as_expected(Guard & guard, bool only) {
   const uint64_t since = expected - std::exchange(guard.expected, expected);
   const bool first = !std::exchange(guard.waited_for, true);

@@ -1,4 +1,4 @@
-// How messages, requests and responses get from one endpoint to another.
+// Delivers messages, requests and responses from one endpoint to another.
 #include <algorithm>
 
 #include "frames.hpp"
@@ -25,13 +25,13 @@ bool accepts(const Endpoint & subscription, const Endpoint & publisher, uint64_t
          compatible(publisher.qos, subscription.qos);
 }
 
-// So many messages at one moment that nobody else gets are reported to the hub, which would not know of them.
+// Report to the hub after this many messages from one endpoint at one moment that stay inside this process.
 constexpr uint32_t REPORTED = 100;
 
-// Whoever calls a logger in a loop sends many of these, and they lead to nothing.
+// Log messages do not count: logging in a loop is harmless.
 constexpr char LOG[] = "/rosout";
 
-// Whether a message is part of the replay that is on its way: taken now, it would come twice, and before older ones.
+// Whether a message will arrive with the replay that is on its way: now it would be a duplicate, and out of order.
 bool comes_later(const Endpoint & subscription, const Endpoint & publisher, uint64_t only) {
   const auto found = subscription.publishers.find(publisher.id);
   return !only && found != subscription.publishers.end() && found->second.replays;
@@ -56,7 +56,7 @@ void Graph::publish(Endpoint & publisher, Bytes bytes) {
   notify();
 }
 
-// Without this a node that answers its own messages would be busy for ever, and the hub would not know with what.
+// Without this, the hub would not know why a node that answers its own messages is never idle.
 void Graph::sent(Endpoint & sender, bool elsewhere) {
   if (sender.name == LOG) return;
   lockstep_sent();

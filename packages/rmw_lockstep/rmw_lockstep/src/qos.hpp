@@ -1,4 +1,4 @@
-// Quality of service: what a profile comes to, and which publisher suits which subscription.
+// Quality of service: the policies that a profile results in, and which publisher matches which subscription.
 #pragma once
 
 #include <cstdint>

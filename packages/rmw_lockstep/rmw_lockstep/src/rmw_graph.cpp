@@ -1,4 +1,4 @@
-// What there is in the graph.
+// Queries of the graph.
 #include <map>
 #include <set>
 

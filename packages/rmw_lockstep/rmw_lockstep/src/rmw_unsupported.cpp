@@ -1,4 +1,4 @@
-// What this middleware does not do: each says so.
+// What this middleware does not support: each function says so in its error message.
 #include "checks.hpp"
 #include "rmw/dynamic_message_type_support.h"
 #include "rmw/get_network_flow_endpoints.h"

@@ -10,28 +10,28 @@ using namespace rmw_lockstep;
 
 namespace {
 
-// How long a thread is considered to wait that polls repeatedly without waiting (ns).
+// A thread that polls repeatedly without waiting counts as waiting for this long each time (ns).
 constexpr int64_t POLL = 10'000'000;
 constexpr int UNCHANGED_POLLS = 2;
 
-// How often this thread has polled in a row without anything happening in between.
+// How often this thread has polled in a row while nothing happened.
 struct Polls {
   uint64_t activity = 0, sleeps = 0;
   int unchanged = 0;
   void count(bool ready) {
     const uint64_t now = graph().activity, slept = lockstep_sleeps();
-    const bool in_vain = !ready && activity == now;
-    lockstep_looked(in_vain);
-    unchanged = in_vain && sleeps == slept ? unchanged + 1 : 0;
+    const bool fruitless = !ready && activity == now;
+    lockstep_polled(fruitless);
+    unchanged = fruitless && sleeps == slept ? unchanged + 1 : 0;
     activity = now;
     sleeps = slept;
   }
 };
 thread_local Polls polls;
 
-// A thread whose executor has always something to do, at one moment, does not get past it: a timer without a period, a
-// task or a guard condition that starts itself again, in one thread or in turns with others. After so many turns it is
-// taken to poll. Whatever is sent, taken or received is a reason for some more turns.
+// An executor that always has something to do at one moment never gets past it: with a timer without a period, or a task
+// or guard condition that starts itself again, in one thread or in turns with others. After this many turns it counts as
+// polling. Everything that is sent, taken or received adds some more turns.
 constexpr uint64_t FREE_TURNS = 1'000, TURNS_PER_ACTIVITY = 10;
 
 struct Turns {
@@ -53,7 +53,7 @@ int64_t deadline_of(const rmw_time_t * timeout) {
   return duration > INT64_MAX / 2 ? LOCKSTEP_NEVER : lockstep_now() + duration;
 }
 
-// True if the thread is one that polls, and has waited.
+// Let a thread that polls wait. Returns whether it did.
 bool wait_as_poll(Waiter & waiter) {
   // rclpy's spin_once(timeout_sec=0) triggers a guard condition of its own each time, which does not count as activity.
   if (!lockstep_virtual()) return false;
@@ -76,13 +76,13 @@ void wait_until(Waiter & waiter, int64_t deadline) {
   }
 }
 
-// As long as a poll, or until the thread would have woken by itself, or until something comes that it has to take.
+// Wait as long as a poll takes, but only until `deadline` or until there is something to take.
 void rest(Waiter & waiter, int64_t deadline) {
   const int64_t now = lockstep_now();
   waiter.rests = true;
   lockstep_wait(&waiter.thread, deadline > now ? std::min(deadline, now + POLL) : now + POLL);
   waiter.rests = false;
-  turns.at = lockstep_now();  // only other waits than these get the thread past the moment
+  turns.at = lockstep_now();  // this wait does not count as getting past the moment
 }
 
 void keep_ready(size_t count, void ** items) {
@@ -90,7 +90,7 @@ void keep_ready(size_t count, void ** items) {
     if (auto endpoint = static_cast<Endpoint *>(items[i]); endpoint && endpoint->queue.empty()) items[i] = nullptr;
 }
 
-// Keeps what is ready, and sets everything else to null.
+// Keep what is ready and set everything else to null, as rmw_wait has to.
 void keep_what_is_ready(Waiter & waiter) {
   if (waiter.guards) keep_triggered(*waiter.guards);
   if (waiter.subscriptions) keep_ready(waiter.subscriptions->subscriber_count, waiter.subscriptions->subscribers);
