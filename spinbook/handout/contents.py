@@ -1,4 +1,4 @@
-"""Puts a handout together. It contains what is listed here, and nothing else from the course's folders."""
+"""Assembles a handout. It contains what this module lists, and nothing else from the course's folders."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from spinbook.interfaces.definitions import compile_course
 from spinbook.problem import SpinbookError
 from spinbook.update.handout import base_files
 
-#: What must be the same for students as for the instructor who made the handout, so that checks give the same results.
+#: Packages that students need in the instructor's version, so that checks give the same results.
 _PINNED = ("ros-{distro}-rclpy", "ros-{distro}-rmw-fastrtps-cpp", "ros-{distro}-common-interfaces")
 
 #: Name in the handout -> template.
@@ -179,11 +179,11 @@ def _listing(exercise: Exercise, workers: WorkerPool) -> Listing:
 
 
 def _prove(files: dict[str, bytes], known: list[Secret]) -> None:
-    """Raise if there is a secret in any file."""
+    """Raise SpinbookError if there is a secret in any file."""
     fix = (
         "Students must not see it. Take it out of the chapter, the task or the public checks. A line of the solution "
         "that they may see belongs before # BEGIN SOLUTION. "
-        "Exercises that no chapter holds count, too."
+        "Exercises that are in no chapter count, too."
     )
     folder = Path("build", "handout")
     problems = []
@@ -200,8 +200,8 @@ def command(start: Path) -> None:
     """Write what students get: a folder and a zip, in build/handout/.
 
     In it are the notebooks, the exercises with starters and public checks, a README with three steps, and what installs
-    Spinbook and ROS 2. Solutions, hidden checks and their scenarios, and comments in chapters are not: every file is
-    looked through for them before anything is written. The same course gives the same bytes.
+    Spinbook and ROS 2. Solutions, hidden checks and their scenarios, and comments in chapters are not: every file
+    is searched for them before anything is written. The same course gives the same bytes.
 
     Exit codes: 0 written, 1 a chapter or an exercise has to be fixed first.
     """

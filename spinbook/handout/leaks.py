@@ -1,4 +1,4 @@
-"""Searches a handout for what students must not see, and lists what that is for each exercise."""
+"""Searches a handout for secrets that students must not see, and lists the secrets of each exercise."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from grader.exercise.mistakes import EDITS, mistakes_of
 from grader.exercise.starter import hidden_blocks, starter
 from spinbook.problem import SpinbookError
 
-#: A line with this many characters besides spaces is not a coincidence, nor are this many lines with this many in all.
+#: A line with this many characters, without spaces, is no coincidence; neither are this many lines with this many.
 _ONE_LINE = 40
 _LINES, _CHARACTERS = 3, 40
 #: Spinbook's own modules, in a wheel or in what a page loads.
@@ -29,14 +29,14 @@ _PIECE = 8
 class Secret:
     """A piece of text that no student may see, without spaces, and what it is; `at` is its file and first line.
 
-    `tells` is whether it gives something away in Spinbook's own modules, too, which everybody has. They may well have
-    the same `main` as a mistake, or the same line as a hidden check. What they must not have is a part of a solution.
+    `is_solution` says that Spinbook's own modules must not have it either. They may have the same `main` as a mistake,
+    or the same line as a hidden check, because everybody has them.
     """
 
     what: str
     text: str
     at: str = ""
-    tells: bool = False
+    is_solution: bool = False
 
 
 #: A line's number, and the line without spaces.
@@ -63,7 +63,7 @@ def secrets(exercise: Exercise, taught: str, others: str = "") -> list[Secret]:
         for lines in _solved(source):
             found += _pieces(what, place, lines, known)
             windows = [secret for secret in _windows(what, place, lines) if secret.text not in elsewhere]
-            found += [replace(secret, tells=True) for secret in windows]
+            found += [replace(secret, is_solution=True) for secret in windows]
     known = bare(message)
     found += [secret for secret in _other_programs(exercise) if secret.text not in known]
     for file in sorted(exercise.folder.glob("*.py")):
@@ -257,7 +257,7 @@ def _located(files: Mapping[str, bytes], search: _Search) -> Iterator[Leak]:
         first: dict[str, Secret] = {}
         own = _OWN.search(name)
         found = search.found_in(bare(f"{name}\n{_readable(name, content)}"))
-        for secret in (secret for secret in found if secret.tells or not own):
+        for secret in (secret for secret in found if secret.is_solution or not own):
             first.setdefault(secret.what, secret)
         for secret in first.values():
             yield _leak(name, content, secret)

@@ -50,13 +50,13 @@ def spinbook_wheel() -> tuple[str, bytes]:
 
 
 def _built(source: Path) -> dict[str, bytes]:
-    """Return what setuptools makes from a checkout, which is left as it is: made again only if a file has changed."""
+    """Return what setuptools makes from a checkout, which is not changed. Build it again only if a file has changed."""
     kept = cached("wheels") / f"{_key(source)}.whl"
     try:
         content = kept.read_bytes()
     except OSError:
         content = _build(source)
-        with contextlib.suppress(OSError):  # where nothing can be kept, it is made each time
+        with contextlib.suppress(OSError):  # without a cache, it is built each time
             write_if_changed(kept, content)
             _remove_all_but(kept)
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
@@ -138,7 +138,7 @@ def interface_wheels(course: Course, texts: Iterable[bytes], environment: Path =
 
 
 def package_of(wheel: str) -> str:
-    """The ROS package in a wheel of interfaces, by the wheel's file name."""
+    """Return the ROS package in a wheel of interfaces, from the wheel's file name."""
     return wheel.partition("-")[0].removeprefix("compiled_interfaces_")
 
 
@@ -156,7 +156,7 @@ def _packages(course: Course, text: bytes, environment: Path) -> Iterator[tuple[
 
 
 def requirement(file: str) -> str:
-    """The line of a requirements.txt for a wheel: for the machine, and the Pythons, that it was compiled for."""
+    """Return the line of requirements.txt for a wheel, with the machine and the Pythons that it was compiled for."""
     version, abi, platform = file.removesuffix(".whl").split("-")[2:5]
     machine = f'platform_machine == "{platform.partition("_")[2]}"'
     if abi == "abi3":

@@ -25,7 +25,7 @@ _OBJECT = re.compile(r"(?:=|\bexport\s+default)\s*(?=\{)")
 
 
 def objects_in(text: str) -> Iterator[Any]:
-    """The objects that a file assigns or exports."""
+    """Yield the objects that a file assigns or exports."""
     for match in _OBJECT.finditer(text):
         tokens = list(_tokens(text[match.end() :]))
         value, _ = _value(tokens, 0)
@@ -45,7 +45,7 @@ def _tokens(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _value(tokens: list[tuple[str, str]], at: int) -> tuple[Any, int]:
-    """(the value that begins at a token, the place behind it). What is not a literal is None."""
+    """Return the value that begins at a token, and the index after it. Anything but a literal is None."""
     kind, text = tokens[at] if at < len(tokens) else ("mark", "}")
     if (kind, text) == ("mark", "{"):
         return _object(tokens, at + 1)
@@ -82,16 +82,16 @@ def _list(tokens: list[tuple[str, str]], at: int) -> tuple[list[Any], int]:
     return found, at + 1
 
 
-# Known are mkdocs.yml, _toc.yml (Jupyter Book), myst.yml, _quarto.yml, sidebars.js (Docusaurus), SUMMARY.md (mdBook,
-# GitBook) and _sidebar.md (docsify). A folder without any of them is read file by file.
+# The known files are mkdocs.yml, _toc.yml (Jupyter Book), myst.yml, _quarto.yml, sidebars.js (Docusaurus), SUMMARY.md
+# (mdBook, GitBook) and _sidebar.md (docsify). In a folder without any of them, all Markdown files are chapters.
 
 
 @dataclass(frozen=True)
 class Book:
     """An existing book. `root` is the folder that becomes the course; `chapters` are relative to it, in order.
 
-    `contents` is the file that says the order, None if there is none. `left_out` are pages that it lists and that
-    are no Markdown, or do not exist.
+    `contents` is the file that defines the order, None if there is none. `left_out` are listed pages that are not
+    Markdown or do not exist.
     """
 
     root: Path
@@ -110,7 +110,7 @@ _Yaml.add_multi_constructor("", lambda loader, suffix, node: None)
 
 
 def read_book(path: Path) -> Book:
-    """Read the book at `path`: a folder, or the file that says its order. Raises SpinbookError."""
+    """Read the book at `path`: a folder, or the file that defines its order. Raises SpinbookError."""
     path = path.resolve()
     if not path.exists():
         raise SpinbookError(Problem(path, None, "there is no such file or folder.", "Name a book's folder."))
@@ -128,7 +128,7 @@ def read_book(path: Path) -> Book:
 
 
 def _contents_in(folder: Path) -> Path | None:
-    """The file that says the order, in a folder or one below."""
+    """Return the file that defines the order, in a folder or one below it; None if there is none."""
     for below in ("", "docs", "website", "book", "doc", "source", "src", "content"):
         for name in _READERS:
             found = sorted(path for path in (folder / below).glob(f"{name}*") if path.is_file())
@@ -138,7 +138,7 @@ def _contents_in(folder: Path) -> Path | None:
 
 
 def _root(path: Path, contents: Path | None) -> Path:
-    """The folder that holds everything: the one that was named, or that of the repository."""
+    """Return the folder of the whole book: `path` itself, or the repository of the file at `path`."""
     if path.is_dir():
         return path
     assert contents is not None
@@ -204,7 +204,7 @@ def _docusaurus(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
 
 
 def _items(item: Any, folder: Path, pages: Pages) -> Iterator[str | Path]:
-    """The pages of a Docusaurus sidebar."""
+    """Yield the pages of a Docusaurus sidebar."""
     if isinstance(item, str):
         yield item
     elif isinstance(item, list):
@@ -232,7 +232,7 @@ def _list_of_links(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path
 
 
 _Reader = Callable[[Path, Pages], tuple[str, Path, list[str | Path]]]
-#: How the name of a file that says a book's order begins -> what reads it.
+#: The first part of the name of a file that defines the order -> the function that reads it.
 _READERS: dict[str, _Reader] = {
     "mkdocs.y": _mkdocs,
     "_toc.yml": _jupyter_book,
@@ -255,7 +255,7 @@ def _load(file: Path) -> dict[str, Any]:
 
 
 def _strings(value: Any) -> Iterator[str]:
-    """Every page in nested lists and `Title: page` pairs."""
+    """Yield every page in nested lists and `Title: page` pairs."""
     if isinstance(value, str):
         if "://" not in value:
             yield value
@@ -265,7 +265,7 @@ def _strings(value: Any) -> Iterator[str]:
 
 
 def _under(value: Any, keys: tuple[str, ...]) -> Iterator[str]:
-    """The strings under these keys, however deep, in order."""
+    """Yield the strings under these keys at any depth, in order."""
     if isinstance(value, dict):
         for key, item in value.items():
             if key in keys and isinstance(item, str):
@@ -278,7 +278,7 @@ def _under(value: Any, keys: tuple[str, ...]) -> Iterator[str]:
 
 
 def _title_of(root: Path) -> str:
-    """The book's title in its settings."""
+    """Return the title in the book's settings; "" if there is none."""
     for name in ("_config.yml", "docs/_config.yml"):
         if (root / name).is_file() and (title := _load(root / name).get("title")):
             return str(title)
@@ -293,7 +293,7 @@ def _title_of(root: Path) -> str:
 
 
 def _repository(root: Path) -> str:
-    """The address of the repository on GitHub, as its clone remembers it."""
+    """Return the address of the repository on GitHub, from the clone's settings; "" if there is none."""
     for folder in (root, *root.parents):
         config = folder / ".git" / "config"
         if config.is_file():

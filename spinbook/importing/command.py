@@ -30,7 +30,7 @@ _MARKED = re.compile(r"(```[^\n]+|`[^`]*`)")
 
 
 def report_page(course: Course, chapters: Sequence[Chapter], problems: Sequence[Problem]) -> str:
-    """The page as HTML, complete in itself."""
+    """Return the page as HTML, in a single file."""
     environment = Environment(loader=PackageLoader("spinbook.importing", "."), autoescape=select_autoescape(["j2"]))
     environment.filters["code"] = _code
     rows = [_row(chapter, course) for chapter in chapters]
@@ -53,7 +53,7 @@ def report_page(course: Course, chapters: Sequence[Chapter], problems: Sequence[
 
 
 def _code(text: str) -> Markup:
-    """Text with what is between backticks as code; a fence's opening line keeps its own."""
+    """Return text as HTML, with code between backticks. The opening line of a fence keeps its backticks."""
     parts = _MARKED.split(text)
     code = (Markup("<code>{}</code>").format(p if p.startswith("```") else p.strip("`")) for p in parts[1::2])
     return Markup("").join(piece for pair in zip_longest(map(escape, parts[::2]), code, fillvalue="") for piece in pair)
@@ -111,7 +111,7 @@ def import_book(book: Path, title: str | None, package: str | None) -> None:
 
 
 def course_toml(book: Book, title: str, package: str) -> str:
-    """The course.toml of a book."""
+    """Return the course.toml of a book."""
     chapters = "".join(f"  {_quoted(chapter.as_posix())},\n" for chapter in book.chapters)
     repository = f"repository = {_quoted(book.repository)}\n" if book.repository else ""
     return (
@@ -123,13 +123,13 @@ def course_toml(book: Book, title: str, package: str) -> str:
 
 
 def package_of(title: str) -> str:
-    """A ROS package's name for a title."""
+    """Return a name for a ROS package from a title."""
     name = re.sub(r"[^a-z0-9]+", "_", title.lower()).strip("_")[:40].strip("_")
     return name if name[:1].isalpha() else f"course_{name}".strip("_")
 
 
 def _quoted(text: str) -> str:
-    """A basic string of TOML."""
+    """Return a basic string of TOML."""
     escaped = text.replace("\\", "\\\\").replace('"', '\\"')
     return f'"{"".join(letter if letter.isprintable() else " " for letter in escaped)}"'
 

@@ -42,7 +42,7 @@ class Pages:
         self._root = root
 
     def find(self, folder: Path, name: str) -> Path | None:
-        """The file that a table of contents in `folder` calls `name`: with or without its ending or its number."""
+        """Return the file that a table of contents in `folder` calls `name`, with or without its suffix or number."""
         name = unquote(name.strip().split("?")[0]).strip("/")
         for base in (folder, self._root):
             path = base / name
@@ -59,7 +59,7 @@ class Pages:
 
     @functools.cache  # noqa: B019
     def _by_id(self, folder: Path) -> dict[str, Path]:
-        """Docusaurus's ids: the path without its ending and without numbers; `id` in the front matter ends it."""
+        """Return the files by Docusaurus's ids: the path without suffix and numbers, with the front matter's `id`."""
         found: dict[str, Path] = {}
         for file in self.in_folder(folder):
             parts = [_NUMBER.sub("", part) for part in file.relative_to(folder.resolve()).with_suffix("").parts]
@@ -69,7 +69,7 @@ class Pages:
         return found
 
     def in_folder(self, folder: Path) -> Iterator[Path]:
-        """The chapters below a folder, in the order that their front matter or their names give."""
+        """Yield the chapters below a folder, in the order of their front matter or their names."""
         if not folder.is_dir():
             return
         entries = [entry for entry in folder.resolve().iterdir() if self._is_wanted(entry)]
@@ -114,14 +114,14 @@ class Pages:
         return dict(source.front_matter) if source else {}
 
     def title_of(self, file: Path) -> str:
-        """The title of a page, or its folder's name in words."""
+        """Return the title of a page, or its folder's name in words."""
         return str(self._front_matter(file).get("title") or self._root.name.replace("-", " ").replace("_", " "))
 
 
 def _listed(folder: Path, entries: list[Path]) -> list[Path]:
-    """The entries that a folder's `.pages` lists, in its order; `...` stands for the rest. Without one, all.
+    """Return the entries in the order of the folder's `.pages`, where `...` means the rest. Without one, return all.
 
-    A folder that is not listed but named as a page is, such as `part1/` of `part1.md`, comes behind that page.
+    A folder that is not listed but has the name of a page, such as `part1/` of `part1.md`, comes after that page.
     """
     try:
         about = yaml.safe_load((folder / ".pages").read_text(encoding="utf-8"))
@@ -150,5 +150,5 @@ def _category(folder: Path) -> dict[str, Any]:
 
 
 def _natural(name: str) -> list[tuple[int, str]]:
-    """`2.md` before `10.md`."""
+    """Return a sort key that puts `2.md` before `10.md`."""
     return [(int(part), "") if part.isdigit() else (-1, part.lower()) for part in re.split(r"(\d+)", name)]

@@ -95,8 +95,8 @@ def skeleton(exercise: Exercise) -> str:
         return _program(exercise.title, node, exercise.topics, exercise.endpoints, exercise.parameters)
     todo = [f"        # TODO: {line}, if it is this node that does." for line in _listed(exercise)]
     parts = (
-        f"# file: {one.file}\n{_filled(exercise.title, one, _imports((), ()), _marked(todo), '')}"
-        for one in exercise.programs
+        f"# file: {program.file}\n{_filled(exercise.title, program, _imports((), ()), _marked(todo), '')}"
+        for program in exercise.programs
     )
     return "\n\n".join(parts)
 
@@ -105,8 +105,8 @@ def _listed(exercise: Exercise) -> Iterator[str]:
     for topic in exercise.topics:
         quality = ", ".join(policy.replace("_", " ") for policy in (topic.reliability, topic.durability))
         yield f"{_VERBS[topic.direction]} {topic.name} ({topic.type}, depth {topic.depth}, {quality})"
-    for one in exercise.endpoints:
-        yield f"{_VERBS[one.role]} {one.name} ({one.type})"
+    for endpoint in exercise.endpoints:
+        yield f"{_VERBS[endpoint.role]} {endpoint.name} ({endpoint.type})"
     for parameter in exercise.parameters:
         yield f"declare the parameter {parameter.name}"
 
@@ -121,7 +121,7 @@ def _program(
     ends = [line for topic in topics for line in _topic(topic)]
     init = [f"        {line}" for line in (*map(_parameter, parameters), *ends, *map(_end, endpoints))]
     callbacks = [*_callbacks(topics, endpoints)]
-    methods = "".join(_method(one) for one in callbacks)
+    methods = "".join(_method(callback) for callback in callbacks)
     init += [] if callbacks else _marked([_TIMER])
     return _filled(title, node, _imports(topics, endpoints), init, methods)
 
@@ -134,51 +134,53 @@ def _filled(title: str, node: ProgramFile, imports: str, init: Sequence[str], me
     return f'"""{title}."""\n\n{imports}\n\n\n{body}'
 
 
-def _parameter(one: Parameter) -> str:
-    if one.default is None:
-        kind = f"Parameter.Type.{one.type.upper()}"
-        return f'self.declare_parameter("{one.name}", rclpy.parameter.{kind})'
-    return f'self.declare_parameter("{one.name}", {one.default!r})'
+def _parameter(parameter: Parameter) -> str:
+    if parameter.default is None:
+        kind = f"Parameter.Type.{parameter.type.upper()}"
+        return f'self.declare_parameter("{parameter.name}", rclpy.parameter.{kind})'
+    return f'self.declare_parameter("{parameter.name}", {parameter.default!r})'
 
 
-def _topic(one: Topic) -> Iterator[str]:
-    name, type_, quality = _name(one.name), one.type.rpartition("/")[2], _quality(one)
-    if quality != str(one.depth):
+def _topic(topic: Topic) -> Iterator[str]:
+    name, type_, quality = _name(topic.name), topic.type.rpartition("/")[2], _quality(topic)
+    if quality != str(topic.depth):
         yield f"{name}_quality = {quality}"
         quality = f"{name}_quality"
-    if one.direction == "publish":
-        yield f"self.{name}_publisher = self.create_publisher({type_}, {_quoted(one.name)}, {quality})"
+    if topic.direction == "publish":
+        yield f"self.{name}_publisher = self.create_publisher({type_}, {_quoted(topic.name)}, {quality})"
     else:
-        yield f"self.create_subscription({type_}, {_quoted(one.name)}, self.on_{name}, {quality})"
+        yield f"self.create_subscription({type_}, {_quoted(topic.name)}, self.on_{name}, {quality})"
 
 
-def _quality(one: Topic) -> str:
+def _quality(topic: Topic) -> str:
     """Return only the depth if that is enough for what is declared."""
-    policies = [_ENUMS[policy] for policy in (one.reliability, one.durability) if policy in _ENUMS]
-    return f"QoSProfile({', '.join([f'depth={one.depth}', *policies])})" if policies else str(one.depth)
+    policies = [_ENUMS[policy] for policy in (topic.reliability, topic.durability) if policy in _ENUMS]
+    return f"QoSProfile({', '.join([f'depth={topic.depth}', *policies])})" if policies else str(topic.depth)
 
 
-def _end(one: ServiceOrAction) -> str:
-    return _ENTRY[one.role].format(name=_name(one.name), type=one.type.rpartition("/")[2], topic=_quoted(one.name))
+def _end(endpoint: ServiceOrAction) -> str:
+    return _ENTRY[endpoint.role].format(
+        name=_name(endpoint.name), type=endpoint.type.rpartition("/")[2], topic=_quoted(endpoint.name)
+    )
 
 
 def _callbacks(topics: Sequence[Topic], endpoints: Sequence[ServiceOrAction]) -> Iterator[_Callback]:
     for topic in topics:
         if topic.direction == "subscribe":
             yield _Callback(f"on_{_name(topic.name)}", "message", f"Called once for each message on {topic.name}.")
-    for one in endpoints:
-        name, type_ = _name(one.name), one.type.rpartition("/")[2]
-        if one.role == "service":
+    for endpoint in endpoints:
+        name, type_ = _name(endpoint.name), endpoint.type.rpartition("/")[2]
+        if endpoint.role == "service":
             about = "Called once for each request. What it returns is sent as the response."
             yield _Callback(f"on_{name}", "request, response", about, "return response")
-        elif one.role == "action":
+        elif endpoint.role == "action":
             about = "Called once for each accepted goal. What it returns is the goal's result."
             yield _Callback(f"execute_{name}", "goal_handle", about, f"return {type_}.Result()")
 
 
-def _method(one: _Callback) -> str:
-    lines = [f"    def {one.name}(self, {one.arguments}):", f'        """{one.about}"""']
-    lines += _marked(["        # TODO: write this."], one.last)
+def _method(callback: _Callback) -> str:
+    lines = [f"    def {callback.name}(self, {callback.arguments}):", f'        """{callback.about}"""']
+    lines += _marked(["        # TODO: write this."], callback.last)
     return "\n" + "\n".join(lines) + "\n"
 
 
@@ -189,14 +191,14 @@ def _marked(todo: Sequence[str], last: str = "") -> list[str]:
 
 
 def _imports(topics: Sequence[Topic], endpoints: Sequence[ServiceOrAction]) -> str:
-    threads = {"MultiThreadedExecutor" for one in endpoints if one.role == "action"}
+    threads = {"MultiThreadedExecutor" for endpoint in endpoints if endpoint.role == "action"}
     found = {
         "rclpy.executors": {"ExternalShutdownException", *threads},
         "rclpy.node": {"Node"},
-        "rclpy.action": {kind for one in endpoints if (kind := _ACTION_ENDS.get(one.role))},
+        "rclpy.action": {kind for endpoint in endpoints if (kind := _ACTION_ENDS.get(endpoint.role))},
         "rclpy.qos": {word for topic in topics for word in re.findall(r"QoSProfile|\w+Policy", _quality(topic))},
     }
-    for type_ in (*(topic.type for topic in topics), *(one.type for one in endpoints)):
+    for type_ in (*(topic.type for topic in topics), *(endpoint.type for endpoint in endpoints)):
         package, kind, name = type_.split("/")
         found.setdefault(f"{package}.{kind}", set()).add(name)
     lines = [f"from {module} import {', '.join(sorted(names))}" for module, names in sorted(found.items()) if names]

@@ -1,4 +1,4 @@
-"""Makes a course or an exercise from a template, with a name that works everywhere."""
+"""Makes a course or an exercise from a template, with a name that is valid everywhere."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def title_of(text: str, file: Path) -> str:
 def _refuse_taken(name: str, file: Path) -> None:
     """Refuse a name whose module would hide another, or be hidden by it."""
     if keyword.iskeyword(name) or keyword.issoftkeyword(name):
-        found = f"`{name}` is a word of Python's own."
+        found = f"`{name}` is a keyword of Python."
     elif name in sys.stdlib_module_names or _exists(name):
         found = f"there is a Python module `{name}` already, and nodes would import the wrong one."
     else:
@@ -86,7 +86,7 @@ def _exists(module: str) -> bool:
     return importlib.machinery.PathFinder.find_spec(module, elsewhere) is not None
 
 
-# Nothing is ever overwritten: everything is put together in a folder of its own, which is then renamed.
+# Nothing is ever overwritten: a temporary folder is filled first, and then renamed.
 
 
 #: The exercise of a new course.
@@ -131,7 +131,7 @@ def write_solution(course: Path, exercise: Exercise) -> Path:
 
 def _refuse_existing(folder: Path) -> None:
     if folder.exists() or folder.is_symlink():
-        found = "there is something of that name already."
+        found = "something with this name exists already."
         raise SpinbookError(
             Problem(folder, None, found, "Nothing is overwritten: choose another name, or move it away.")
         )

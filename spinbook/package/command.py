@@ -37,7 +37,7 @@ class Notebooks:
 
 
 def read_notebooks(folder: Path) -> Notebooks:
-    """Read every notebook of a folder, in order of names. Raises SpinbookError where none is a chapter's."""
+    """Read every notebook of a folder, in order of names. Raises SpinbookError if none is a chapter's."""
     read = Notebooks()
     for file in sorted(folder.glob("*.ipynb")):
         read.code.clear()
@@ -93,7 +93,7 @@ def _take_interface(read: Notebooks, title: str, text: str, file: Path) -> None:
 
 
 def _module(name: str, words: Sequence[str], code: str, read: Notebooks) -> Module:
-    """Return the module of a `%%node` cell, whole: with what `--after` and `--usual-imports` stand for."""
+    """Return the complete module of a `%%node` cell, with the code that `--after` and `--usual-imports` add."""
     options = _options(words[2:])
     whole = code
     if "--after" in options or "--usual-imports" in options:
@@ -101,7 +101,7 @@ def _module(name: str, words: Sequence[str], code: str, read: Notebooks) -> Modu
         try:
             whole = join(code, pieces).whole
         except CodeError:
-            whole = code  # Python says best itself what is wrong.
+            whole = code  # Python itself reports best what is wrong.
     pairs = [known.partition("/") for known in options.get("--as", ())]
     own = read.package.name if read.package else ""
     executables = tuple(executable for package, _, executable in pairs if package == own)
@@ -130,7 +130,7 @@ def _words(line: str) -> list[str]:
 
 @click.command()
 @click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")
-@click.option("--workspace", type=click.Path(path_type=Path), help="Where to write. [default: as course.toml says]")
+@click.option("--workspace", type=click.Path(path_type=Path), help="Where to write. [default: as in course.toml]")
 def package(start: Path, workspace: Path | None) -> None:
     """Write the chapters' nodes as a ROS 2 package, ready for colcon.
 
@@ -161,7 +161,7 @@ def package(start: Path, workspace: Path | None) -> None:
 
 @dataclass(frozen=True)
 class PackageSources:
-    """What a package is written from, and the folder where its workspace goes.
+    """Everything that a package is made from, and the folder of its workspace.
 
     `interfaces` are the names of the packages that `definitions` make; `files` are launch and parameter files.
     """
@@ -200,7 +200,7 @@ def _of_notebooks(folder: Path) -> PackageSources:
 
 
 def course_modules(course: Course) -> list[Module]:
-    """Every node cell of the course as a module. Raises SpinbookError where two chapters' modules clash."""
+    """Return every node cell of the course as a module. Raises SpinbookError if two chapters' modules clash."""
     first: dict[str, tuple[Path, ChapterCell]] = {}
     problems: list[Problem] = []
     for reading in read_all(course):
@@ -210,7 +210,7 @@ def course_modules(course: Course) -> list[Module]:
             assert reading.chapter is not None
             file, known = first.setdefault(cell.name, (reading.chapter.file, cell))
             if file == reading.chapter.file:
-                # Shown again, changed: the file as it is in the end.
+                # The chapter shows the file several times: the last version counts.
                 first[cell.name] = (file, cell)
             elif known.whole != cell.whole:
                 found = f"the node `{cell.name}` is also defined in {file}:{known.line}, with other code."
@@ -222,9 +222,9 @@ def course_modules(course: Course) -> list[Module]:
 
 
 def course_files(course: Course) -> dict[str, str]:
-    """Every launch and parameter file of the course: its path in the package -> its text.
+    """Return every launch and parameter file of the course: its path in the package -> its text.
 
-    Raises SpinbookError where two chapters' files clash.
+    Raises SpinbookError if two chapters' files clash.
     """
     first: dict[str, tuple[Path, ChapterCell]] = {}
     for reading in read_all(course):

@@ -19,7 +19,7 @@ from spinbook.course.course import Package
 class Module:
     """A node's file: `name` without .py, and its code, byte for byte.
 
-    `executables` are what `ros2 run` calls it; none: the same as its file.
+    `executables` are its names for `ros2 run`; if there are none, it is that of its file.
     """
 
     name: str
@@ -28,7 +28,7 @@ class Module:
 
     @property
     def has_main(self) -> bool:
-        """Whether it can be an executable: `ros2 run` calls its `main`."""
+        """Whether it has a `main`, which `ros2 run` calls."""
         try:
             return inspect(self.code).has_main
         except CodeError:
@@ -38,7 +38,7 @@ class Module:
 def package_files(
     package: Package, modules: Sequence[Module], interfaces: Sequence[str] = (), extra: Mapping[str, str] | None = None
 ) -> dict[str, str]:
-    """Path within the package's folder -> content. `interfaces` are the course's own packages of interfaces.
+    """Return path in the package -> content. `interfaces` are the course's own packages of interfaces.
 
     `extra` are launch and parameter files (path -> content): setup.py installs their folders.
     """
@@ -63,12 +63,12 @@ def _manifest(package: Package, needs: Sequence[str]) -> Manifest:
 
 
 def _executables(modules: Sequence[Module]) -> list[tuple[str, str]]:
-    """(executable, module) of all that `ros2 run` can start."""
+    """Return (executable, module) for everything that `ros2 run` can start."""
     return [(name, m.name) for m in modules if m.has_main for name in m.executables or (m.name,)]
 
 
 def _dependencies(modules: Sequence[Module], interfaces: Sequence[str]) -> list[str]:
-    """The ROS packages that the modules import."""
+    """Return the ROS packages that the modules import."""
     imported: set[str] = set()
     for module in modules:
         try:
@@ -83,12 +83,12 @@ def _dependencies(modules: Sequence[Module], interfaces: Sequence[str]) -> list[
 
 
 def interface_package_files(course: Package, definitions: Sequence[Definition]) -> dict[str, str]:
-    """Path within the package's folder -> content, for the definitions of one package.
+    """Return path in the package -> content, for the definitions of one package.
 
     Maintainer, version and licence are those of the course's package of nodes.
     """
     name = definitions[0].package
-    # ROS adds what services and actions need by itself, action_msgs apart.
+    # ROS itself adds what services and actions need, except action_msgs.
     needed = sorted(dependencies(definitions)[name] - {"service_msgs", "unique_identifier_msgs", "action_msgs"})
     if any(item.kind == "action" for item in definitions):
         needed.append("action_msgs")

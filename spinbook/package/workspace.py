@@ -1,4 +1,4 @@
-"""Writes packages into a colcon workspace, changing only what changed, so that colcon rebuilds only that."""
+"""Writes packages into a colcon workspace. Unchanged files are not touched, so colcon rebuilds only what changed."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from interface_compiler.definition import KINDS, Definition, by_package, read_fo
 from spinbook.course.course import Package
 from spinbook.package.files import Module, interface_package_files, package_files
 
-#: What was written is remembered here, one module per line.
+#: The file that lists the modules that were written, one per line.
 _RECORD = ".spinbook-modules"
-#: And the launch and parameter files here, one path per line.
+#: The file that lists the launch and parameter files that were written, one path per line.
 _FILES = ".spinbook-files"
 
 
 def package_folder(workspace: Path, package: Package) -> Path:
-    """Where the package's sources are in a workspace."""
+    """Return the folder of the package's sources in a workspace."""
     return workspace / "src" / package.name
 
 
@@ -28,9 +28,9 @@ def write_package(
     interfaces: Sequence[str] = (),
     extra: Mapping[str, str] | None = None,
 ) -> Path:
-    """Make the package's sources exactly these modules; files that a person put next to them stay. Returns its folder.
+    """Make the package's sources exactly these modules; other files in the folder are kept. Return the folder.
 
-    A module that was written before and is no longer among them is removed: its executable is gone too.
+    A module that was written before and is no longer among them is removed, with its executable.
     `interfaces` are the course's own packages of interfaces, on which modules may depend. `extra` are launch and
     parameter files, by their path in the package.
     """
@@ -51,21 +51,21 @@ def write_package(
 
 
 def _written(folder: Path) -> dict[str, tuple[str, ...]]:
-    """The modules that were written before, each with its executables."""
+    """Return the modules that were written before, each with its executables."""
     record = folder / _RECORD
     lines = record.read_text(encoding="utf-8").splitlines() if record.exists() else []
     return {words[0]: tuple(words[1:]) for words in map(str.split, lines) if words}
 
 
 def _written_files(folder: Path) -> dict[str, str]:
-    """The launch and parameter files that were written before, as they are now."""
+    """Return the current texts of the launch and parameter files that were written before."""
     record = folder / _FILES
     paths = record.read_text(encoding="utf-8").splitlines() if record.exists() else []
     return {path: (folder / path).read_text(encoding="utf-8") for path in paths if (folder / path).is_file()}
 
 
 def _written_modules(folder: Path, package: Package) -> list[Module]:
-    """The modules that were written before, as they are now."""
+    """Return the modules that were written before, with their current code."""
     return [
         Module(name, file.read_text(encoding="utf-8"), executables)
         for name, executables in _written(folder).items()
@@ -74,7 +74,7 @@ def _written_modules(folder: Path, package: Package) -> list[Module]:
 
 
 def add_module(workspace: Path, package: Package, module: Module) -> Path:
-    """Put one module into the package, next to those that are there. Returns the module's file."""
+    """Put one module into the package, next to the existing ones. Return the module's file."""
     folder = package_folder(workspace, package)
     others = [other for other in _written_modules(folder, package) if other.name != module.name]
     write_package(workspace, package, [*others, module], extra=_written_files(folder))
@@ -82,14 +82,14 @@ def add_module(workspace: Path, package: Package, module: Module) -> Path:
 
 
 def add_file(workspace: Path, package: Package, path: str, text: str) -> Path:
-    """Put a launch or parameter file into the package, at `path` within it. Returns the file."""
+    """Put a launch or parameter file into the package, at `path` within it. Return the file."""
     folder = package_folder(workspace, package)
     write_package(workspace, package, _written_modules(folder, package), extra={**_written_files(folder), path: text})
     return folder / path
 
 
 def write_interface_packages(workspace: Path, course: Package, definitions: Iterable[Definition]) -> list[Path]:
-    """Make each package's sources exactly these definitions; the packages' folders, sorted.
+    """Make each package's sources exactly these definitions; return the packages' folders, sorted.
 
     A definition that was written before and is no longer among them is removed.
     """
@@ -109,5 +109,5 @@ def _write(workspace: Path, course: Package, members: Sequence[Definition]) -> P
 
 
 def written_definitions(workspace: Path) -> list[Definition]:
-    """The definitions in a workspace's packages."""
+    """Return the definitions in a workspace's packages."""
     return read_folder(workspace / "src")[0]
