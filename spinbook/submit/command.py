@@ -23,10 +23,10 @@ from spinbook.submit.hand_in import (
     HandIn,
     HandInCandidate,
     SelfCheck,
+    candidate_in,
+    choose_candidate,
     default_target,
     exercise_named,
-    found,
-    given,
     is_starter,
     self_check,
     write_upload,
@@ -62,7 +62,7 @@ def submit(
     """
     folder = Path.cwd()
     loaded = exercise_named(exercise)
-    chosen = _ran(code, file, loaded) if code else given(file, loaded) if file else _found(loaded, folder)
+    chosen = _ran(code, file, loaded) if code else candidate_in(file, loaded) if file else _found(loaded, folder)
     name = _student(student, folder)
     checked = SelfCheck(None, "It was left out.") if no_check else self_check(loaded, chosen.submission)
     console = Console(soft_wrap=False, highlight=False)
@@ -94,11 +94,11 @@ def print_result(checked: SelfCheck, exercise: Exercise, console: Console) -> No
 
 def _ran(code: Path, notebook: Path | None, exercise: Exercise) -> HandInCandidate:
     """Return the code that a notebook's kernel ran last and that may not be saved yet."""
-    return replace(given(code, exercise), file=notebook, origin="the cell as you ran it last")
+    return replace(candidate_in(code, exercise), file=notebook, origin="the cell as you ran it last")
 
 
 def _found(exercise: Exercise, folder: Path) -> HandInCandidate:
-    return found(exercise, folder, "spinbook submit", "Which one do you hand in?")
+    return choose_candidate(exercise, folder, "spinbook submit", "Which one do you hand in?")
 
 
 def _student(given: str | None, folder: Path) -> str:
@@ -137,7 +137,7 @@ def check(exercise: str, file: Path | None, verbose: bool) -> None:
     """
     loaded = exercise_named(exercise)
     command, question = "spinbook check", "Which one do you want to check?"
-    chosen = given(file, loaded) if file else found(loaded, Path.cwd(), command, question)
+    chosen = candidate_in(file, loaded) if file else choose_candidate(loaded, Path.cwd(), command, question)
     click.echo(f"Checking {chosen.origin}.")
     grade = _grade(loaded, chosen.submission)
     show(grade, loaded, Console(soft_wrap=False, highlight=False), verbose)

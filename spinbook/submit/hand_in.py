@@ -204,7 +204,7 @@ def exercise_named(name: str) -> Exercise:
         raise SpinbookError(error.problem) from None
 
 
-def given(file: Path, exercise: Exercise) -> HandInCandidate:
+def candidate_in(file: Path, exercise: Exercise) -> HandInCandidate:
     """Return the code in the file that the student named. Raises `UsageError` and `SpinbookError`."""
     if not os.path.lexists(file) and not can_be_read(file.name):
         raise click.UsageError(f"{file}: give a notebook (.ipynb), a Python file (.py), an archive or a folder.")
@@ -223,7 +223,7 @@ def _no_program(file: Path, submission: Submission) -> Problem:
     return Problem(file, None, submission.problem, "There is no code for the exercise in it yet.")
 
 
-def found(exercise: Exercise, folder: Path, command: str, question: str) -> HandInCandidate:
+def choose_candidate(exercise: Exercise, folder: Path, command: str, question: str) -> HandInCandidate:
     """Return the code in the one file of `folder` that holds the exercise; if there are several, the student chooses
     one.
 
