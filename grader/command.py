@@ -12,7 +12,7 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
 from grader.sandbox.middleware import to_be_compiled
 from grader.sandbox.program import Isolation, SandboxUnavailable
-from grader.submission.reading import NoSubmission, Submission, is_one, of_source, read
+from grader.submission.reader import NoSubmission, Submission, is_one, of_source, read
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 
 if TYPE_CHECKING:
@@ -152,7 +152,7 @@ def grade(
             click.echo("Compiling the grader's middleware, once ...", err=True)
         found = load(_folder(exercise))
         if out and not mistake:
-            wishes = {
+            class_options = {
                 "jobs": jobs,
                 "format": form,
                 "attempts": attempts or "",
@@ -166,7 +166,7 @@ def grade(
                 "replace": yes,
                 "publish": publish,
             }
-            sys.exit(_class(found, Path(submission), out, wanted, wishes))
+            sys.exit(_class(found, Path(submission), out, wanted, class_options))
         is_class = submission.endswith(".csv") or (Path(submission).is_dir() and not is_one(Path(submission), found))
         if not mistake and is_class:
             raise click.UsageError(f"{submission}: to grade a class, give a folder for the results with --out.")
@@ -202,20 +202,22 @@ def _options(wanted: dict[str, Any]) -> Options:
     return Options(**wanted)
 
 
-def _class(exercise: Exercise, submissions: Path, out: Path, wanted: dict[str, Any], wishes: dict[str, Any]) -> int:
+def _class(
+    exercise: Exercise, submissions: Path, out: Path, wanted: dict[str, Any], class_options: dict[str, Any]
+) -> int:
     """Grade a class. The imports are here, so that a single submission is graded sooner."""
     from rich.console import Console
 
     from grader.classroom.class_run import grade_class
     from grader.classroom.deadline import OverridesError
     from grader.classroom.formats.registry import FORMATS
-    from grader.classroom.handed_in import SubmissionsError
     from grader.classroom.request import ClassRequest, NoCluster
     from grader.classroom.results import Busy, NotWritable
+    from grader.classroom.submissions import SubmissionsError
 
-    if wishes["format"] not in ("", *FORMATS):
-        raise click.UsageError(f"--format {wishes['format']}: there are {', '.join(FORMATS)}.")
-    class_request = ClassRequest(submissions, out, _options(wanted), **wishes)
+    if class_options["format"] not in ("", *FORMATS):
+        raise click.UsageError(f"--format {class_options['format']}: there are {', '.join(FORMATS)}.")
+    class_request = ClassRequest(submissions, out, _options(wanted), **class_options)
     try:
         return grade_class(exercise, class_request, Console(soft_wrap=False, highlight=False))
     except NotWritable as error:

@@ -36,7 +36,7 @@ from grader.exercise.exercise import Exercise
 from grader.grading.grade import Options
 from grader.grading.grading import grading_of
 from grader.grading.reference import solution_file
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers.pool import WorkerPool
 
 #: Right solutions must get full marks with this many seeds.

@@ -18,7 +18,7 @@ from grader.grading.reference import solution_file
 from grader.recording.recording import Recording
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Scenario
-from grader.submission.reading import Submission, of_source
+from grader.submission.reader import Submission, of_source
 
 #: A node that exists and does nothing.
 IDLE = """import rclpy

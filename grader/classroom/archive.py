@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from datetime import datetime, timezone
 from pathlib import Path, PurePosixPath
 
-from grader.classroom.handed_in import File, SubmissionsError
+from grader.classroom.submissions import File, SubmissionsError
 from grader.classroom.times import Time
 from grader.grading.grade import Skipped
-from grader.submission.reading import MOST_BYTES
+from grader.submission.reader import MOST_BYTES
 
 #: Made by operating systems, editors and Python, never by a student.
 NOISE = {"__MACOSX", "__pycache__", "Thumbs.db", "desktop.ini"}

@@ -10,7 +10,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.text import Text
 
 from grader.classroom.formats.moodle import unknown_to_moodle
-from grader.classroom.handed_in import Submissions
+from grader.classroom.submissions import Submissions
 from grader.grading.grade import Entry, Skipped
 from grader.report.printable import printable
 

@@ -17,24 +17,24 @@ from rich.console import Console
 from rich.prompt import Confirm
 
 from grader.classroom.class_display import ProgressDisplay, say, show_result, show_submissions
-from grader.classroom.collecting import Wishes, collect
-from grader.classroom.deadline import Adjusting, Deadline, deadline_of, overrides_in
+from grader.classroom.collector import CollectOptions, collect
+from grader.classroom.deadline import Adjuster, Deadline, deadline_of, overrides_in
 from grader.classroom.decisions import decisions, show_decisions
 from grader.classroom.gradebook import gradebook, write_gradebook
 from grader.classroom.groups import read_groups
-from grader.classroom.handed_in import HandedIn, Submissions, SubmissionsError
 from grader.classroom.local import LocalBackend, at_once
 from grader.classroom.misconceptions import Signature, failures_of, grouped, signatures
 from grader.classroom.overview import overview_page
-from grader.classroom.publishing import publish
-from grader.classroom.rejudging import difference, rejudge
+from grader.classroom.rejudge import difference, rejudge
 from grader.classroom.request import Backend, ClassRequest, host_error, no_grade
 from grader.classroom.results import ClassGrading, ClassPlan, NotWritable, Results, Tries, not_written
 from grader.classroom.roster import read_roster
+from grader.classroom.student_zips import publish
+from grader.classroom.submissions import StudentSubmission, Submissions, SubmissionsError
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Entry, Grade
 from grader.grading.grading import Grading, grading_of
-from grader.submission.reading import Submission, read
+from grader.submission.reader import Submission, read
 from grader.workers.pool import WorkerPool
 from groundwork.files import write_if_changed
 
@@ -51,13 +51,13 @@ def grade_class(exercise: Exercise, class_request: ClassRequest, console: Consol
     """
     with tempfile.TemporaryDirectory(prefix="spinbook-class-") as unpacked, _ended_by_signals():
         deadline = deadline_of(exercise)
-        collected = collect(class_request.source, exercise, Path(unpacked), _wishes(class_request, deadline))
+        collected = collect(class_request.source, exercise, Path(unpacked), _collect_options(class_request, deadline))
         show_submissions(console, collected)
-        adjusting = _adjusting(class_request, deadline, {student.id for student in collected.students})
+        adjuster = _adjuster(class_request, deadline, {student.id for student in collected.students})
         if deadline:
             say(console, f"Deadline: {deadline}.")
         submissions, unreadable = _read(collected, exercise)
-        to_decide = decisions(collected, adjusting, submissions)
+        to_decide = decisions(collected, adjuster, submissions)
         show_decisions(console, to_decide, class_request.skip)
         if to_decide and not class_request.skip:
             return QUESTIONS
@@ -66,17 +66,19 @@ def grade_class(exercise: Exercise, class_request: ClassRequest, console: Consol
         )
         with Results(class_request.out) as results, WorkerPool() as workers:
             grading = grading_of(exercise, class_request.options, workers)
-            with _backend(grading, class_request) as markers:
-                marking = ClassGrading(exercise, markers, results, adjusting, grading)
+            with _backend(grading, class_request) as backend:
+                class_grading = ClassGrading(exercise, backend, results, adjuster, grading)
                 for one, error in unreadable:
-                    marking.give_up(Entry(one.student, one.file.name, _unread(grading, one)), f"reading it: {error}")
-                code = _graded(marking, grading, collected, submissions, class_request, console)
+                    class_grading.give_up(
+                        Entry(one.student, one.file.name, _unread(grading, one)), f"reading it: {error}"
+                    )
+                code = _graded(class_grading, grading, collected, submissions, class_request, console)
                 return code or (QUESTIONS if to_decide else DONE)
 
 
-def _wishes(class_request: ClassRequest, deadline: Deadline | None) -> Wishes:
+def _collect_options(class_request: ClassRequest, deadline: Deadline | None) -> CollectOptions:
     zone = deadline.zone if deadline else None
-    return Wishes(
+    return CollectOptions(
         class_request.format,
         class_request.attempts,
         zone,
@@ -85,17 +87,17 @@ def _wishes(class_request: ClassRequest, deadline: Deadline | None) -> Wishes:
     )
 
 
-def _adjusting(class_request: ClassRequest, deadline: Deadline | None, students: set[str]) -> Adjusting:
+def _adjuster(class_request: ClassRequest, deadline: Deadline | None, students: set[str]) -> Adjuster:
     zone = deadline.zone if deadline else None
     overrides = overrides_in(class_request.overrides, students, zone) if class_request.overrides else {}
     for student in class_request.regrade:
         if student not in (*students, "*"):
             raise SubmissionsError(f'--regrade {student}: no submission from a student called "{student}".')
-    return Adjusting(deadline, overrides)
+    return Adjuster(deadline, overrides)
 
 
 def _graded(
-    marking: ClassGrading,
+    class_grading: ClassGrading,
     grading: Grading,
     collected: Submissions,
     submissions: Mapping[str, Tries],
@@ -104,18 +106,18 @@ def _graded(
 ) -> int:
     """Grade or judge again, and write the class's files; return the exit code."""
     try:
-        _record_others(marking, grading, collected)
+        _record_others(class_grading, grading, collected)
         if class_request.rejudge:
             may_replace = partial(_may_replace, class_request, console)
-            rejudge(marking, grading, collected, submissions, console, may_replace)
-            marking.take_in(collected)
+            rejudge(class_grading, grading, collected, submissions, console, may_replace)
+            class_grading.take_in(collected)
         else:
             regrade = class_request.regrade
-            plan = marking.plan(collected, submissions, lambda who: "*" in regrade or who in regrade)
-            _grade(marking, plan, submissions, console)
-        return _finish(marking, grading, collected, console, class_request.publish)
+            plan = class_grading.plan(collected, submissions, lambda who: "*" in regrade or who in regrade)
+            _grade(class_grading, plan, submissions, console)
+        return _finish(class_grading, grading, collected, console, class_request.publish)
     except KeyboardInterrupt:
-        kept, wanted = len(marking.entries), len(collected.students)
+        kept, wanted = len(class_grading.entries), len(collected.students)
         console.print(f"Stopped. {kept} of {wanted} are graded and kept. Run the same command to continue.")
         return STOPPED
     except NotWritable as error:
@@ -124,21 +126,21 @@ def _graded(
         return FAULTS
 
 
-def _record_others(marking: ClassGrading, grading: Grading, collected: Submissions) -> None:
+def _record_others(class_grading: ClassGrading, grading: Grading, collected: Submissions) -> None:
     """Give a row to everybody from whom nothing is graded."""
     for student in collected.missing:
-        marking.record(student, no_grade(grading.runner, "missing", "Nothing was handed in."))
+        class_grading.record(student, no_grade(grading.runner, "missing", "Nothing was handed in."))
     for question in collected.questions:
-        marking.record(question.student, no_grade(grading.runner, "undecided", str(question)))
+        class_grading.record(question.student, no_grade(grading.runner, "undecided", str(question)))
 
 
-def _grade(marking: ClassGrading, plan: ClassPlan, submissions: Mapping[str, Tries], console: Console) -> None:
+def _grade(class_grading: ClassGrading, plan: ClassPlan, submissions: Mapping[str, Tries], console: Console) -> None:
     if plan.unchanged:
         console.print(f"{len(plan.unchanged)} unchanged since they were graded.")
     if not plan.to_grade:
         return
     with ProgressDisplay(console, len(plan.to_grade)) as progress:
-        for entry in marking.run(plan, submissions):
+        for entry in class_grading.run(plan, submissions):
             former = plan.former.get(entry.student.id)
             progress.done(entry, difference(former.grade, entry.grade) if former else "")
 
@@ -152,22 +154,24 @@ def _may_replace(class_request: ClassRequest, console: Console, count: int) -> b
     return Confirm.ask(f"Replace {count} grades?", console=console, default=False)
 
 
-def _finish(marking: ClassGrading, grading: Grading, collected: Submissions, console: Console, publishes: bool) -> int:
-    due = marking.adjust.deadline.due if marking.adjust.deadline else None
-    every = [_writable(entry, marking, due) for _, entry in sorted(marking.entries.items())]
+def _finish(
+    class_grading: ClassGrading, grading: Grading, collected: Submissions, console: Console, publishes: bool
+) -> int:
+    due = class_grading.adjust.deadline.due if class_grading.adjust.deadline else None
+    every = [_writable(entry, class_grading, due) for _, entry in sorted(class_grading.entries.items())]
     unscored = [entry for entry in every if entry.final is None]
     entries = [entry for entry in every if entry.final is not None]
     graded = [entry for entry in entries if entry.grade.outcome != "missing"]
-    folder = marking.results.folder
+    folder = class_grading.results.folder
     misconceptions = grouped(graded, _signatures(grading, graded, console))
-    page = overview_page(marking.exercise, entries, collected.skipped, unscored, misconceptions)
+    page = overview_page(class_grading.exercise, entries, collected.skipped, unscored, misconceptions)
     try:
-        write_gradebook(folder, marking.exercise, every, due)
+        write_gradebook(folder, class_grading.exercise, every, due)
         write_if_changed(folder / "index.html", page, durable=True)
         published = publish(folder, graded) if publishes else None
     except OSError as error:
         raise NotWritable(folder, error) from None
-    others = marking.results.others({entry.student.id for entry in every})
+    others = class_grading.results.others({entry.student.id for entry in every})
     if others:
         say(console, f"from an earlier run, unchanged: {', '.join(others)}", "yellow")
     show_result(console, entries, unscored)
@@ -179,7 +183,7 @@ def _finish(marking: ClassGrading, grading: Grading, collected: Submissions, con
     return QUESTIONS if unscored else DONE
 
 
-def _read(collected: Submissions, exercise: Exercise) -> tuple[dict[str, Tries], list[tuple[HandedIn, str]]]:
+def _read(collected: Submissions, exercise: Exercise) -> tuple[dict[str, Tries], list[tuple[StudentSubmission, str]]]:
     """Read the submissions, by student. A file that its reader can't read is listed separately."""
     submissions, unreadable = {}, []
     for one in collected.handed_in:
@@ -190,17 +194,17 @@ def _read(collected: Submissions, exercise: Exercise) -> tuple[dict[str, Tries],
     return submissions, unreadable
 
 
-def _unread(grading: Grading, one: HandedIn) -> Grade:
+def _unread(grading: Grading, one: StudentSubmission) -> Grade:
     nothing = Submission(one.file.name, "", grading.runner.exercise.file_name, "", None)
     return host_error(grading.runner, nothing, "it could not be read")
 
 
-def _writable(entry: Entry, marking: ClassGrading, due: datetime | None) -> Entry:
+def _writable(entry: Entry, class_grading: ClassGrading, due: datetime | None) -> Entry:
     """Return the entry, as a `host-error` if the gradebook's files can't hold it: they must not fail for the class."""
     try:
-        gradebook(marking.results.folder, marking.exercise, [entry], due)
+        gradebook(class_grading.results.folder, class_grading.exercise, [entry], due)
     except Exception as error:
-        return marking.give_up(entry, not_written(error))
+        return class_grading.give_up(entry, not_written(error))
     return entry
 
 

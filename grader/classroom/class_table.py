@@ -8,8 +8,8 @@ from pathlib import Path
 
 from grader.classroom.archive import date_of
 from grader.classroom.formats.format import Upload
-from grader.classroom.handed_in import File, SubmissionsError
 from grader.classroom.names import normal
+from grader.classroom.submissions import File, SubmissionsError
 from grader.classroom.tables import table_rows
 from grader.classroom.times import UNKNOWN, Time, read_time
 from grader.grading.grade import Skipped, Student

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.classroom.local import own_core
-from grader.classroom.request import Graded, NoCluster, host_error
+from grader.classroom.request import GradedSubmission, NoCluster, host_error
 from grader.classroom.results import grade_key
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load
@@ -21,7 +21,7 @@ from grader.grading.grading import Grading, grading_of
 from grader.grading.reference import versions
 from grader.report.feedback_plot import picture
 from grader.sandbox.middleware import require_middleware
-from grader.submission.reading import Submission
+from grader.submission.reader import Submission
 from grader.workers.pool import WorkerPool
 
 if TYPE_CHECKING:
@@ -82,7 +82,9 @@ def describe_worker() -> dict[str, str]:
     return versions()
 
 
-def grade_on_worker(packed: ExerciseFiles, options: Options, key: str, who: str, submission: Submission) -> Graded:
+def grade_on_worker(
+    packed: ExerciseFiles, options: Options, key: str, who: str, submission: Submission
+) -> GradedSubmission:
     """Return one submission's grade, without recordings, and its plot.
 
     `key` is the caller's: if grades would depend on anything different here, the result is a `host-error` that says so.
@@ -91,11 +93,11 @@ def grade_on_worker(packed: ExerciseFiles, options: Options, key: str, who: str,
     runner = bench.grading.runner
     if bench.key != key:
         text = f"a worker of the cluster has other versions than this machine: {versions()}"
-        return Graded(who, host_error(runner, submission, text), None)
+        return GradedSubmission(who, host_error(runner, submission, text), None)
     with own_core() as core:
         runner = replace(runner, options=replace(options, parallel=1, core=core))
         grade = replace(bench.grading, runner=runner).grade(submission)
-    return Graded(who, replace(grade, recordings={}, references={}), picture(grade, runner.exercise))
+    return GradedSubmission(who, replace(grade, recordings={}, references={}), picture(grade, runner.exercise))
 
 
 def _prepared_grading(packed: ExerciseFiles, options: Options) -> PreparedGrading:
@@ -134,7 +136,7 @@ class DaskBackend:
         """See `Backend`."""
         return grade_key(self.grading)
 
-    def mark(self, submissions: Mapping[str, Submission]) -> Iterator[Graded]:
+    def grade(self, submissions: Mapping[str, Submission]) -> Iterator[GradedSubmission]:
         """See `Backend`. A worker that dies costs another attempt; after four deaths it is a fault of ours."""
         from distributed import as_completed
 
@@ -155,7 +157,7 @@ class DaskBackend:
                 else:
                     text = f"the cluster could not grade it: {type(error).__name__}: {error}"
                     grade = host_error(runner, submissions[who], text)
-                    yield Graded(who, grade, None)
+                    yield GradedSubmission(who, grade, None)
         finally:
             self.client.cancel(list(asked))
 

@@ -10,8 +10,8 @@ from datetime import date, datetime, timedelta, timezone, tzinfo
 from pathlib import Path
 from typing import Any
 
-from grader.classroom.handed_in import HandedIn, SubmissionsError
 from grader.classroom.names import normal
+from grader.classroom.submissions import StudentSubmission, SubmissionsError
 from grader.classroom.tables import table_rows
 from grader.classroom.times import later, localized, moment, units_begun, zone_named
 from grader.exercise.exercise import Exercise, ExerciseError
@@ -194,7 +194,7 @@ def _override(row: dict[str, str], place: str, students: set[str], zone: tzinfo 
 
 
 @dataclass(frozen=True)
-class Adjusting:
+class Adjuster:
     """The deadline and the instructor's overrides, applied to entries."""
 
     deadline: Deadline | None = None
@@ -221,7 +221,7 @@ class Adjusting:
         made += [Adjustment("override", one.added, one.reason) for one in theirs if one.added is not None]
         return tuple(made)
 
-    def undated(self, handed_in: Sequence[HandedIn]) -> list[HandedIn]:
+    def undated(self, handed_in: Sequence[StudentSubmission]) -> list[StudentSubmission]:
         """Return the submissions whose lateness would cost points, but is not known."""
         if not self.deadline or not self.deadline.costs:
             return []

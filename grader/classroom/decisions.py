@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from rich.console import Console
 
 from grader.classroom.class_display import counted, say
-from grader.classroom.deadline import Adjusting
-from grader.classroom.handed_in import File, HandedIn, Submissions, Unclear
-from grader.submission.reading import Submission
+from grader.classroom.deadline import Adjuster
+from grader.classroom.submissions import File, StudentSubmission, Submissions, Unclear
+from grader.submission.reader import Submission
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Decision:
 
 
 #: What is unclear, and what to do.
-ASKED: dict[Unclear, tuple[str, str, str]] = {
+QUESTION_TEXTS: dict[Unclear, tuple[str, str, str]] = {
     "name": (
         "{} could be graded, but nothing says whose: the name is not as the others'",
         "entry",
@@ -45,7 +45,7 @@ ASKED: dict[Unclear, tuple[str, str, str]] = {
 
 
 def decisions(
-    collected: Submissions, adjusting: Adjusting, submissions: Mapping[str, Sequence[Submission]]
+    collected: Submissions, adjuster: Adjuster, submissions: Mapping[str, Sequence[Submission]]
 ) -> list[Decision]:
     """Return what is not clear about a class; `submissions` are those of `collected`, read, by student."""
     programs = [f"{who}: {one.question}" for who, tries in submissions.items() for one in tries if one.question]
@@ -55,7 +55,7 @@ def decisions(
         questions[question.unclear].append(str(question))
     found = [
         Decision(what.format(counted(len(texts), of)), tuple(texts), remedy)
-        for texts, (what, of, remedy) in ((texts, ASKED[unclear]) for unclear, texts in questions.items())
+        for texts, (what, of, remedy) in ((texts, QUESTION_TEXTS[unclear]) for unclear, texts in questions.items())
     ]
     found += [
         Decision(
@@ -68,17 +68,17 @@ def decisions(
             tuple(programs),
             "Ask the student which one counts, and keep only that one.",
         ),
-        _undated(collected, adjusting),
+        _undated(collected, adjuster),
     ]
     return [decision for decision in found if decision.about]
 
 
-def _faults(handed_in: Iterable[HandedIn]) -> Iterator[tuple[HandedIn, File]]:
+def _faults(handed_in: Iterable[StudentSubmission]) -> Iterator[tuple[StudentSubmission, File]]:
     return ((one, file) for one in handed_in for file in one.files if file.time.fault)
 
 
-def _undated(collected: Submissions, adjusting: Adjusting) -> Decision:
-    undated = [one for one in adjusting.undated(collected.handed_in) if not one.file.time.fault]
+def _undated(collected: Submissions, adjuster: Adjuster) -> Decision:
+    undated = [one for one in adjuster.undated(collected.handed_in) if not one.file.time.fault]
     late = [one for one in undated if one.file.time.late]
     marked = f", {counted(len(late), 'student')} marked as late" if late else ""
     return Decision(

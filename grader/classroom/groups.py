@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grader.classroom.formats.format import Upload
-from grader.classroom.handed_in import File, SubmissionsError
 from grader.classroom.names import comparable, normal
 from grader.classroom.roster import generic_student, signs
+from grader.classroom.submissions import File, SubmissionsError
 from grader.classroom.tables import table_rows
 from grader.grading.grade import Student
 

@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from grader.classroom.request import Graded, host_error
+from grader.classroom.request import GradedSubmission, host_error
 from grader.classroom.results import grade_key
 from grader.exercise.exercise import ExerciseError
 from grader.grading.grading import Grading
 from grader.grading.scenario_runner import WorkStealing
 from grader.report.feedback_plot import picture
-from grader.submission.reading import Submission
+from grader.submission.reader import Submission
 from groundwork.files import claim_number
 
 #: How many submissions to grade at once per core: grader and program wait for each other.
@@ -45,10 +45,10 @@ class LocalBackend:
         """See `Backend`."""
         return grade_key(self.grading)
 
-    def mark(self, submissions: Mapping[str, Submission]) -> Iterator[Graded]:
+    def grade(self, submissions: Mapping[str, Submission]) -> Iterator[GradedSubmission]:
         """See `Backend`."""
         waiting: queue.SimpleQueue[tuple[str, Submission]] = queue.SimpleQueue()
-        done: queue.SimpleQueue[Graded | BaseException] = queue.SimpleQueue()
+        done: queue.SimpleQueue[GradedSubmission | BaseException] = queue.SimpleQueue()
         for item in submissions.items():
             waiting.put(item)
         given_up, work_stealing = threading.Event(), WorkStealing()
@@ -74,7 +74,7 @@ class LocalBackend:
         self,
         number: int,
         waiting: queue.SimpleQueue[tuple[str, Submission]],
-        done: queue.SimpleQueue[Graded | BaseException],
+        done: queue.SimpleQueue[GradedSubmission | BaseException],
         given_up: threading.Event,
         work_stealing: WorkStealing,
     ) -> None:
@@ -97,15 +97,15 @@ class LocalBackend:
                 return
 
 
-def _graded(who: str, grading: Grading, submission: Submission) -> Graded:
+def _graded(who: str, grading: Grading, submission: Submission) -> GradedSubmission:
     """Grade one submission. A fault in the grader becomes this student's `host-error`; all others are still graded."""
     try:
         grade = grading.grade(submission)
     except ExerciseError:
         raise
     except Exception as error:
-        return Graded(who, host_error(grading.runner, submission, f"{type(error).__name__}: {error}"), None)
-    return Graded(who, grade, picture(grade, grading.runner.exercise))
+        return GradedSubmission(who, host_error(grading.runner, submission, f"{type(error).__name__}: {error}"), None)
+    return GradedSubmission(who, grade, picture(grade, grading.runner.exercise))
 
 
 @contextlib.contextmanager

@@ -16,7 +16,7 @@ from grader.exercise.mistakes import Mistake, mistakes_of
 from grader.grading.grade import Entry, Grade
 from grader.grading.grading import Grading
 from grader.grading.reference import cache_folder, reference_key
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from groundwork.files import write_if_changed
 
 

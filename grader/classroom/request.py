@@ -11,7 +11,7 @@ from typing import Protocol
 from grader.grading.grade import Grade, Options, Outcome
 from grader.grading.reference import versions
 from grader.grading.scenario_runner import ScenarioRunner
-from grader.submission.reading import Submission
+from grader.submission.reader import Submission
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class ClassRequest:
 
 
 @dataclass(frozen=True)
-class Graded:
+class GradedSubmission:
     """One submission's grade, and its plot; `who` is the key under which it was submitted for grading."""
 
     who: str
@@ -63,7 +63,7 @@ class Backend(Protocol):
     def key(self) -> str:
         """A key of everything that a grade depends on, except the submission."""
 
-    def mark(self, submissions: Mapping[str, Submission]) -> Iterator[Graded]:
+    def grade(self, submissions: Mapping[str, Submission]) -> Iterator[GradedSubmission]:
         """Yield the grade of each submission, in the order in which they are done.
 
         A fault of ours or the machine's is a grade with the outcome `host-error`; nothing is raised for a single

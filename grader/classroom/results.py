@@ -16,9 +16,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from grader.classroom.deadline import Adjusting
-from grader.classroom.handed_in import HandedIn, Submissions
-from grader.classroom.request import Backend, Graded
+from grader.classroom.deadline import Adjuster
+from grader.classroom.request import Backend, GradedSubmission
+from grader.classroom.submissions import StudentSubmission, Submissions
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Entry, Grade, Student
 from grader.grading.grading import Grading
@@ -28,7 +28,7 @@ from grader.recording.recording import from_json as recordings_from_json
 from grader.recording.recording import to_json as recordings_to_json
 from grader.report.as_json import STUDENTS, folder_of, from_json, to_json
 from grader.report.feedback import feedback_page
-from grader.submission.reading import Submission
+from grader.submission.reader import Submission
 from groundwork.files import remove_parts, try_lock, write_if_changed
 
 #: In a student's folder: the recordings, as JSON below a line with the key of what they depend on, and the name of the
@@ -74,7 +74,7 @@ class Results:
         except (OSError, ValueError):
             return None
 
-    def stored(self, student: str) -> Stored | None:
+    def stored(self, student: str) -> StoredRun | None:
         """Return what is stored of a student's run; None if there is nothing."""
         try:
             first, recordings = _read_recordings(folder_of(self.folder, student) / RECORDINGS)
@@ -85,7 +85,7 @@ class Results:
             references = _read_recordings(self.folder / Path(reference).name)[1] if reference else {}
         except UNREADABLE:
             references = {}
-        return Stored(key, recordings, references)
+        return StoredRun(key, recordings, references)
 
     def keep_recordings(self, student: str, key: str, grade: Grade) -> None:
         """Keep what was recorded of a student's run, so that changed checks can judge it, and a dispute be settled."""
@@ -161,7 +161,7 @@ UNREADABLE = (OSError, EOFError, zlib.error, ValueError, KeyError, TypeError)
 
 
 @dataclass(frozen=True)
-class Stored:
+class StoredRun:
     """The recordings of a student's run and of the solution's, by scenario; `key` is what they depend on."""
 
     key: str
@@ -229,19 +229,19 @@ Tries = tuple[Submission, ...]
 class ClassPlan:
     """What a run is going to do. `former` are the entries of an earlier run, by student."""
 
-    to_grade: tuple[HandedIn, ...]
+    to_grade: tuple[StudentSubmission, ...]
     unchanged: tuple[Entry, ...]
     former: Mapping[str, Entry]
 
 
 @dataclass
 class ClassGrading:
-    """One class, graded into one folder of results by `markers`."""
+    """One class, graded into one folder of results by `backend`."""
 
     exercise: Exercise
-    markers: Backend
+    backend: Backend
     results: Results
-    adjust: Adjusting
+    adjust: Adjuster
     grading: Grading | None = None
     """Set if recordings are to be stored."""
     entries: dict[str, Entry] = field(default_factory=dict)
@@ -285,10 +285,10 @@ class ClassGrading:
             for file, submission in zip(one.files, submissions[one.student.id], strict=True)
         }
         waiting = {one.student.id: one for one in plan.to_grade}
-        done: dict[str, Graded] = {}
+        done: dict[str, GradedSubmission] = {}
         again: dict[str, Submission] = {}
         for last_try in (False, True):
-            for graded in self.markers.mark(again if last_try else jobs):
+            for graded in self.backend.grade(again if last_try else jobs):
                 if graded.grade.outcome == "host-error" and not last_try:
                     again[graded.who] = jobs[graded.who]
                     continue
@@ -296,7 +296,7 @@ class ClassGrading:
                 yield from self._complete(waiting, done, submissions)
 
     def _complete(
-        self, waiting: dict[str, HandedIn], done: dict[str, Graded], submissions: Mapping[str, Tries]
+        self, waiting: dict[str, StudentSubmission], done: dict[str, GradedSubmission], submissions: Mapping[str, Tries]
     ) -> Iterator[Entry]:
         """Store and yield the entries of students all of whose attempts are graded; let go of what nobody waits for."""
         for one in [one for one in waiting.values() if all(str(file.path) in done for file in one.files)]:
@@ -307,7 +307,7 @@ class ClassGrading:
         for path in done.keys() - needed:
             del done[path]
 
-    def _best(self, handed_in: HandedIn, attempts: list[Graded]) -> Graded:
+    def _best(self, handed_in: StudentSubmission, attempts: list[GradedSubmission]) -> GradedSubmission:
         """Return the attempt with the most points, late or not; after a fault of ours nobody knows which that is."""
         if faults := [graded for graded in attempts if not graded.grade.has_score]:
             return faults[0]
@@ -319,7 +319,7 @@ class ClassGrading:
         name = handed_in.files[best].name
         return replace(attempts[best], grade=replace(attempts[best].grade, submission=name))
 
-    def _kept(self, handed_in: HandedIn, graded: Graded, tries: Tries) -> Entry:
+    def _kept(self, handed_in: StudentSubmission, graded: GradedSubmission, tries: Tries) -> Entry:
         """Store a grade; one whose page or files can't be written becomes a `host-error`; others go on."""
         try:
             return self.keep(handed_in, graded, tries)
@@ -348,7 +348,7 @@ class ClassGrading:
         self.results.forget(entry.student.id)
         return entry
 
-    def keep(self, handed_in: HandedIn, graded: Graded, tries: Tries) -> Entry:
+    def keep(self, handed_in: StudentSubmission, graded: GradedSubmission, tries: Tries) -> Entry:
         """Write a grade with its page into the student's folder."""
         submission = next((one for one in tries if one.digest == graded.grade.digest), tries[0])
         entry = self._entry(handed_in, Entry(handed_in.student, graded.grade.submission, graded.grade))
@@ -362,21 +362,21 @@ class ClassGrading:
         self.entries[entry.student.id] = entry = replace(entry, grade=replace(grade, recordings={}, references={}))
         return entry
 
-    def _still(self, handed_in: HandedIn, kept: Entry, key: str) -> Entry:
+    def _still(self, handed_in: StudentSubmission, kept: Entry, key: str) -> Entry:
         try:
             return self._unchanged(handed_in, kept, key)
         except Exception as error:
             stop_if_no_room(self.results.folder, error)
             return self.give_up(Entry(handed_in.student, handed_in.file.name, kept.grade), not_written(error))
 
-    def _unchanged(self, handed_in: HandedIn, kept: Entry, key: str) -> Entry:
+    def _unchanged(self, handed_in: StudentSubmission, kept: Entry, key: str) -> Entry:
         """Return the entry of a submission that needs no grading: its student and date may still have changed."""
         entry = self._entry(handed_in, kept)
         plot = self.results.plot(entry.student.id)
         self.results.write(entry, key, feedback_page(entry, self.exercise, plot), plot)
         return entry
 
-    def _entry(self, handed_in: HandedIn, of: Entry) -> Entry:
+    def _entry(self, handed_in: StudentSubmission, of: Entry) -> Entry:
         entry = _of_file(of, handed_in)
         entry = replace(entry, adjustments=self.adjust(entry))
         self.entries[entry.student.id] = entry
@@ -384,11 +384,11 @@ class ClassGrading:
 
     def _key(self, tries: Tries) -> str:
         return submission_key(
-            self.markers.key, " ".join(sorted(f"{one.digest} {one.warning} {one.notes}" for one in tries))
+            self.backend.key, " ".join(sorted(f"{one.digest} {one.warning} {one.notes}" for one in tries))
         )
 
 
-def _of_file(of: Entry, handed_in: HandedIn) -> Entry:
+def _of_file(of: Entry, handed_in: StudentSubmission) -> Entry:
     """Return the entry with the student's name and the file's date as they are now.
 
     The grading process may see a file under another name; of several attempts, the entry's own is known by its name.

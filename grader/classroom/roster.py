@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, tzinfo
 from functools import cache
 from pathlib import Path
 
 from grader.classroom.formats.registry import PLATFORMS
-from grader.classroom.handed_in import SubmissionsError
 from grader.classroom.names import comparable, normal, student_id
+from grader.classroom.submissions import SubmissionsError
 from grader.classroom.tables import table_rows
 from grader.classroom.times import UNKNOWN, Time, localized, read_time
 from grader.grading.grade import Student
@@ -116,37 +116,49 @@ def _names(student: Student) -> set[str]:
 def match(rows: Sequence[RosterRow], students: Sequence[Student]) -> dict[str, RosterRow]:
     """Return the row of each student who has one, by the student's id.
 
-    A student without a number or address in common is found by the name, if nobody else has it. Raises
-    `SubmissionsError` if two have it.
+    A student is matched by a number, an address or the id. Otherwise the name decides, if only one student and one row
+    have it. Raises `SubmissionsError` if several have it.
     """
-    found: dict[str, RosterRow] = {}
-    for keys in (_keys, _ids):
-        used = {id(row) for row in found.values()}
-        rows_by_key = {key: row for row in rows if id(row) not in used for key in keys(row.student)}
-        for student in students:
-            row = next((rows_by_key[key] for key in sorted(keys(student)) if key in rows_by_key), None)
-            if row and student.id not in found:
-                found[student.id] = row
-    used = {id(row) for row in found.values()}
-    free = [row for row in rows if id(row) not in used]
-    nameless = [student for student in students if student.id not in found]
-    rows_by_name = _by_name([row.student for row in free])
-    students_by_name = _by_name(nameless)
-    for student in nameless:
-        same = {number for name in _names(student) for number in rows_by_name[name]}
-        others = {number for name in _names(student) for number in students_by_name[name]}
-        if len(same) == 1 and len(others) == 1:
-            found[student.id] = free[same.pop()]
-        elif same:
+    matched = _match_by(_keys, rows, students)
+    matched |= _match_by(_ids, *_unmatched(rows, students, matched))
+    return matched | _match_by_name(*_unmatched(rows, students, matched))
+
+
+def _unmatched(
+    rows: Sequence[RosterRow], students: Sequence[Student], matched: Mapping[str, RosterRow]
+) -> tuple[list[RosterRow], list[Student]]:
+    used = {id(row) for row in matched.values()}
+    return [row for row in rows if id(row) not in used], [one for one in students if one.id not in matched]
+
+
+def _match_by(
+    keys: Callable[[Student], set[str]], rows: Sequence[RosterRow], students: Sequence[Student]
+) -> dict[str, RosterRow]:
+    """Return the row that shares one of its `keys` with a student, by the student's id."""
+    rows_by_key = {key: row for row in rows for key in keys(row.student)}
+    shared = {student.id: sorted(keys(student) & rows_by_key.keys()) for student in students}
+    return {student: rows_by_key[common[0]] for student, common in shared.items() if common}
+
+
+def _match_by_name(rows: Sequence[RosterRow], students: Sequence[Student]) -> dict[str, RosterRow]:
+    rows_by_name = _by_name([row.student for row in rows])
+    students_by_name = _by_name(students)
+    matched: dict[str, RosterRow] = {}
+    for student in students:
+        same_rows = {number for name in _names(student) for number in rows_by_name[name]}
+        namesakes = {number for name in _names(student) for number in students_by_name[name]}
+        if len(same_rows) == 1 and len(namesakes) == 1:
+            matched[student.id] = rows[same_rows.pop()]
+        elif same_rows:
             raise SubmissionsError(
-                f"{student.name or student.id}: several students have this name, and the roster does not say who of "
+                f"{student.name or student.id}: several students have this name, and the roster does not say which of "
                 "them handed this in. Give it a column that the export has, too, such as student, ID or email."
             )
-    return found
+    return matched
 
 
 def _by_name(students: Sequence[Student]) -> dict[str, list[int]]:
-    """Return the numbers of the students by each of their names."""
+    """Return the students' indices by each of their names."""
     by_name: dict[str, list[int]] = defaultdict(list)
     for number, student in enumerate(students):
         for name in _names(student):

@@ -7,7 +7,7 @@ import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from grader.classroom.handed_in import SubmissionsError
+from grader.classroom.submissions import SubmissionsError
 from grader.report.printable import printable
 
 Cell = str | float | None

@@ -23,7 +23,7 @@ from grader.grading.grade import Entry, Options, Student
 from grader.grading.grading import grading_of
 from grader.report.as_json import gradescope_results, no_score
 from grader.sandbox.program import Isolation, SandboxUnavailable
-from grader.submission.reading import Submission, read
+from grader.submission.reader import Submission, read
 from grader.workers.pool import HostFault, WorkerPool
 from groundwork.files import write_if_changed
 

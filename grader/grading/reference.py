@@ -15,7 +15,7 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.starter import MarkerError, starter
 from grader.grading.scenario_runner import ScenarioRunner
 from grader.recording.recording import Recording, from_json, to_json
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from groundwork.files import cached, write_if_changed
 from interface_compiler import activation
 from rmw_lockstep.library import SOURCES, sources

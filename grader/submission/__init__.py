@@ -1,5 +1,5 @@
 """What a student hands in: a file, a notebook's cell or an installed executable."""
 
-from grader.submission.reading import NoSubmission, Submission, read
+from grader.submission.reader import NoSubmission, Submission, read
 
 __all__ = ["NoSubmission", "Submission", "read"]

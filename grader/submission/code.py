@@ -18,10 +18,10 @@ from grader.exercise.exercise import Exercise, ProgramFile
 from grader.exercise.starter import MarkerError, starter
 from grader.submission import packages, python_code
 from grader.submission.archive import Contents, unpacked
-from grader.submission.choosing import Choice, choose, digest_of
 from grader.submission.file_kinds import kind_of, kind_of_content
 from grader.submission.notebook import Notebook, NotebookCell, read_notebook
-from grader.submission.problems import Undecided, Unreadable, merge_conflict
+from grader.submission.problems import AmbiguousProgram, Unreadable, merge_conflict
+from grader.submission.program_choice import Choice, choose, digest_of
 from grader.submission.python_version import newer_syntax
 from grader.submission.several_files import MOST_FILES, files_in, joined, parts
 from grader.submission.unreadable import not_python
@@ -60,7 +60,7 @@ class _Option:
 
 
 @dataclass
-class _Reading:
+class _ReadState:
     """What is known while the files of one submission are read."""
 
     files: Mapping[str, bytes]
@@ -85,7 +85,7 @@ def from_text(text: str) -> Code:
 
 
 def code_of(name: str, content: bytes, exercise: Exercise) -> Code:
-    """Return the program in a file with this name and content. Raises `Unreadable` and `Undecided`."""
+    """Return the program in a file with this name and content. Raises `Unreadable` and `AmbiguousProgram`."""
     kind = kind_of_content(content, kind_of(name))
     if kind == "c++":
         raise Unreadable(NO_CPP)
@@ -138,7 +138,7 @@ def _parts(source: str, exercise: Exercise) -> dict[str, bytes]:
 
 
 def code_of_notebook(notebook: Notebook, exercise: Exercise, name: str = "") -> Code:
-    """Return the program in a notebook. Raises `Unreadable` and `Undecided`."""
+    """Return the program in a notebook. Raises `Unreadable` and `AmbiguousProgram`."""
     handed_out = starters(exercise)
     if exercise.programs and (one := _one_cell(notebook, exercise)):
         return replace(code_of_python(_storable(one), exercise), source=one, python=notebook.python)
@@ -213,7 +213,7 @@ def _package(cell: NotebookCell) -> list[str]:
 
 def code_of_files(contents: Contents, exercise: Exercise, called: str = "") -> Code:
     """Return the program in a folder or an archive; `called` is the folder's name. Raises as `code_of`."""
-    reading = _Reading(contents.files, exercise, called)
+    reading = _ReadState(contents.files, exercise, called)
     handed_out = starters(exercise)
     options = {one.file: _chosen(reading, one, handed_out) for one in targets(exercise)}
     if not exercise.programs:
@@ -226,7 +226,7 @@ def code_of_files(contents: Contents, exercise: Exercise, called: str = "") -> C
     return Code(files, next(iter(options)), joined({k: v for k, v in shown.items() if k.endswith(".py")}), notes)
 
 
-def _of_one(option: _Option, reading: _Reading) -> Code:
+def _of_one(option: _Option, reading: _ReadState) -> Code:
     exercise = reading.exercise
     notes = _notes(option, reading)
     if option.choice:
@@ -243,7 +243,7 @@ def _of_one(option: _Option, reading: _Reading) -> Code:
     return Code(files, main, option.source, (*notes, *newer_syntax(option.source)))
 
 
-def _files_of(option: _Option, reading: _Reading, file: str) -> dict[str, bytes]:
+def _files_of(option: _Option, reading: _ReadState, file: str) -> dict[str, bytes]:
     """Return a program's files; one that is in a package is started by a small file called `file`."""
     if option.choice:
         return {file: option.choice.code.encode(errors="replace")}
@@ -259,7 +259,7 @@ def _files_of(option: _Option, reading: _Reading, file: str) -> dict[str, bytes]
     return files
 
 
-def _chosen(reading: _Reading, target: ProgramFile, handed_out: frozenset[str]) -> _Option:
+def _chosen(reading: _ReadState, target: ProgramFile, handed_out: frozenset[str]) -> _Option:
     """Return the program `target` among the files, by the first rule that any of them fits."""
     options = [_of_python(name, reading) for name in packages.programs(reading.files)]
     begun = [one for one in options if not python_code.is_empty(one.source) and digest_of(one.source) not in handed_out]
@@ -268,7 +268,7 @@ def _chosen(reading: _Reading, target: ProgramFile, handed_out: frozenset[str]) 
     cells = _of_notebooks(reading, target, handed_out)
     its_own = [one for one in options if _is_it(one.source, target)]
     if not (named or its_own or cells) and reading.questions:
-        raise Undecided(reading.questions[0])
+        raise AmbiguousProgram(reading.questions[0])
     for tier in (
         [*named, *cells],
         its_own,
@@ -282,14 +282,14 @@ def _chosen(reading: _Reading, target: ProgramFile, handed_out: frozenset[str]) 
     raise Unreadable(_nothing(reading, target))
 
 
-def _of_python(name: str, reading: _Reading) -> _Option:
+def _of_python(name: str, reading: _ReadState) -> _Option:
     source = reading.files[name].decode("utf-8", errors="replace")
     entries = [entry for entry in packages.entry_points(reading.files) if entry.file == name]
     title = f"{name}, the executable {entries[0].name}" if entries else name
     return _Option(title, source, name, entries[0].function if entries else "")
 
 
-def _of_notebooks(reading: _Reading, target: ProgramFile, handed_out: frozenset[str]) -> list[_Option]:
+def _of_notebooks(reading: _ReadState, target: ProgramFile, handed_out: frozenset[str]) -> list[_Option]:
     found = []
     for name in sorted(reading.files):
         if kind_of(name) != "notebook":
@@ -299,7 +299,7 @@ def _of_notebooks(reading: _Reading, target: ProgramFile, handed_out: frozenset[
             choice = choose(notebook, reading.exercise, target, handed_out)
         except Unreadable as error:
             reading.problems.append(f"{name}: {error}")
-        except Undecided as error:
+        except AmbiguousProgram as error:
             reading.questions.append(f"{name}: {error}")
         else:
             found.append(_Option(name, choice.code, name, choice=choice, python=notebook.python))
@@ -316,7 +316,7 @@ def _is_it(source: str, target: ProgramFile) -> bool:
     return python_code.defines(source, target.class_name) or python_code.creates(source, target.node)
 
 
-def _by_executable(reading: _Reading, options: Sequence[_Option], target: ProgramFile) -> list[_Option]:
+def _by_executable(reading: _ReadState, options: Sequence[_Option], target: ProgramFile) -> list[_Option]:
     """Return the programs that are installed under the exercise's name, or launched as its node."""
     stem = target.file.removesuffix(".py")
     wanted = {stem, target.node} | {
@@ -326,7 +326,7 @@ def _by_executable(reading: _Reading, options: Sequence[_Option], target: Progra
     return [one for one in options if any(entry.file == one.file for entry in entries)]
 
 
-def _decided(options: Sequence[_Option], reading: _Reading, target: ProgramFile) -> _Option:
+def _decided(options: Sequence[_Option], reading: _ReadState, target: ProgramFile) -> _Option:
     checked = {
         digest
         for notebook in reading.notebooks.values()
@@ -350,13 +350,13 @@ def _decided(options: Sequence[_Option], reading: _Reading, target: ProgramFile)
     if len({digest_of(one.source) for one in options}) == 1:
         return min(options, key=lambda one: (one.choice is not None, one.file.count("/"), one.file))
     titles = ", ".join(one.title for one in options[:5])
-    raise Undecided(
+    raise AmbiguousProgram(
         f"{len(options)} programs in it can be {target.file}, and they differ: {titles}. Which one counts? Hand in "
         "only that one."
     )
 
 
-def _notes(option: _Option, reading: _Reading) -> tuple[str, ...]:
+def _notes(option: _Option, reading: _ReadState) -> tuple[str, ...]:
     """Return what to tell of the choice: nothing if there was none."""
     notes = []
     others = [name for name in packages.programs(reading.files) if name != option.file]
@@ -374,7 +374,7 @@ def _notes(option: _Option, reading: _Reading) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _nothing(reading: _Reading, target: ProgramFile) -> str:
+def _nothing(reading: _ReadState, target: ProgramFile) -> str:
     if reading.problems:
         return reading.problems[0]
     if any(kind_of(name) == "c++" for name in reading.files):

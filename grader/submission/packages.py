@@ -37,7 +37,7 @@ class EntryPoint:
 
 
 @dataclass(frozen=True)
-class Launched:
+class LaunchedNode:
     """A node in a launch file: its executable, and the name that it gets there, if any."""
 
     executable: str
@@ -110,9 +110,9 @@ def _of_cmake(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoint]:
                 yield EntryPoint(posixpath.basename(word), file, "")
 
 
-def launched(files: Mapping[str, bytes]) -> list[Launched]:
+def launched(files: Mapping[str, bytes]) -> list[LaunchedNode]:
     """Return the nodes that launch files start: those whose executable is written as text."""
-    found: list[Launched] = []
+    found: list[LaunchedNode] = []
     for name in sorted(files):
         text = files[name].decode("utf-8", errors="replace")
         if re.search(r"launch\.py$", name):
@@ -120,11 +120,11 @@ def launched(files: Mapping[str, bytes]) -> list[Launched]:
         elif re.search(r"launch\.(xml|ya?ml)$|\.launch$", name):
             for node in re.findall(r"<node\b[^>]*>|^\s*-\s*node:.*?(?=^\s*-|\Z)", text, re.DOTALL | re.MULTILINE):
                 values = dict(re.findall(r"""\b(exec|name)\s*[=:]\s*["']?([\w.-]+)""", node))
-                found.append(Launched(values.get("exec", ""), values.get("name", "")))
+                found.append(LaunchedNode(values.get("exec", ""), values.get("name", "")))
     return [one for one in found if one.executable]
 
 
-def _launched_by_python(text: str) -> Iterator[Launched]:
+def _launched_by_python(text: str) -> Iterator[LaunchedNode]:
     tree = python_code.tree_of(text)
     for node in ast.walk(tree) if tree else ():
         if isinstance(node, ast.Call) and getattr(node.func, "id", getattr(node.func, "attr", "")).endswith("Node"):
@@ -133,7 +133,7 @@ def _launched_by_python(text: str) -> Iterator[Launched]:
                 for keyword in node.keywords
                 if isinstance(keyword.value, ast.Constant) and isinstance(keyword.value.value, str)
             }
-            yield Launched(values.get("executable", ""), values.get("name", ""))
+            yield LaunchedNode(values.get("executable", ""), values.get("name", ""))
 
 
 @dataclass(frozen=True)

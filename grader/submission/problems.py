@@ -9,7 +9,7 @@ class Unreadable(Exception):
     """Raised when there is no program in what was handed in; the text tells the student why, and what to do."""
 
 
-class Undecided(Exception):
+class AmbiguousProgram(Exception):
     """Raised when several different programs could be meant and nothing tells which: a question, never a score."""
 
 

@@ -106,8 +106,8 @@ def check_archive(exercises: Mapping[str, bytes]) -> bytes:
     root = Path(spinbook.__file__).parent.parent / "grader"
     for part in _GRADER:
         files |= _part(root / part, f"grader/{part}")
-    # A page has no sandbox: leave out reading.py, which needs one, and the imports of the package itself.
-    del files["grader/submission/reading.py"]
+    # A page has no sandbox: leave out reader.py, which needs one, and the imports of the package itself.
+    del files["grader/submission/reader.py"]
     files["grader/submission/__init__.py"] = b""
     return zipped({**_used_outside_checks(root), **files, **exercises})
 

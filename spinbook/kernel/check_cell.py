@@ -17,10 +17,10 @@ from IPython.display import display
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
-from grader.submission.choosing import digest_of
 from grader.submission.code import Code, as_text, code_of_notebook
 from grader.submission.notebook import RECORD, Notebook, NotebookCell, read_notebook
-from grader.submission.problems import Undecided, Unreadable
+from grader.submission.problems import AmbiguousProgram, Unreadable
+from grader.submission.program_choice import digest_of
 from grader.submission.python_code import definitions
 from spinbook.kernel.cell_output import DisplayLimit
 from spinbook.kernel.process import CellFailed, KeptProcess
@@ -65,7 +65,7 @@ def code_of(exercise: Exercise, session: Session, shell: Any, notebook: Path | N
         with contextlib.suppress(Unreadable):
             code = code_of_notebook(Notebook(cells_as_run(session, shell)), exercise)
             return CheckedCode(code, "the cells as you ran them last, without any change that you made after that")
-    except (Unreadable, Undecided) as error:
+    except (Unreadable, AmbiguousProgram) as error:
         raise CellFailed(str(error)) from None
     raise CellFailed(f"Run the cell that begins with %%node {node} first. Then run this one again.")
 
@@ -117,7 +117,7 @@ def _saved_after(notebook: Path | None, moment: float) -> bool:
 def _saved(exercise: Exercise, notebook: Path | None) -> Code | None:
     try:
         return code_of_notebook(read_notebook(notebook.read_bytes()), exercise) if notebook else None
-    except (OSError, Unreadable, Undecided):
+    except (OSError, Unreadable, AmbiguousProgram):
         return None
 
 

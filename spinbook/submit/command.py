@@ -14,7 +14,7 @@ from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
 from grader.report.terminal import show
 from grader.sandbox.program import SandboxUnavailable
-from grader.submission.reading import Submission
+from grader.submission.reader import Submission
 from grader.workers.pool import HostFault
 from groundwork.problem import Problem
 from spinbook.problem import SpinbookError

@@ -19,7 +19,7 @@ from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
 from grader.grading.reference import versions
 from grader.submission.file_kinds import can_be_read, kind_of
-from grader.submission.reading import NoSubmission, Submission, read
+from grader.submission.reader import NoSubmission, Submission, read
 from grader.submission.upload import pack
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem

@@ -15,7 +15,7 @@ from grader.exercise.loading import load
 from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
 from grader.submission.code import from_text
-from grader.submission.reading import of_code
+from grader.submission.reader import of_code
 from grader.workers.pool import HostFault
 from groundwork.files import write_if_changed
 

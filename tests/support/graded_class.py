@@ -17,7 +17,7 @@ from grader.exercise.mistakes import mistake_of
 from grader.grading import Grade, Options, grading_of
 from grader.grading.grade import Adjustment, Entry, Student
 from grader.submission import Submission
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers import WorkerPool
 
 ROOT = Path(__file__).parents[2]

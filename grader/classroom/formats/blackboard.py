@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 
-from grader.classroom.formats.format import Export, Format, Parts, Understood, Upload, person
+from grader.classroom.formats.format import Export, Format, Interpretation, Parts, Upload, person
 from grader.classroom.times import Time, read_time
 from grader.grading.grade import Student
 
@@ -19,13 +19,13 @@ WHO = re.compile(r"^Name: (?P<name>.*?) \((?P<user>[^()]*)\)\s*$", re.MULTILINE)
 SOURCE = "Blackboard"
 
 
-def read(export: Export) -> Callable[[Parts], Understood]:
+def read(export: Export) -> Callable[[Parts], Interpretation]:
     """Understand names as Blackboard gives them. What all have before the user's name is the assignment's."""
     before = [match["before"] for parts in export.files if (match := NAME.fullmatch(parts[-1]))]
     texts = {match["before"]: export.text(*parts) for parts in export.files if (match := _own(parts))}
     common = _assignment(before)
 
-    def understand(parts: Parts) -> Understood:
+    def understand(parts: Parts) -> Interpretation:
         match = NAME.fullmatch(parts[-1])
         if not match or len(parts) > 1:
             return None

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Mapping
 from datetime import datetime
 
-from grader.classroom.formats.format import OWN, Export, Format, Parts, Understood, Upload, person
+from grader.classroom.formats.format import OWN, Export, Format, Interpretation, Parts, Upload, person
 from grader.classroom.times import Time, localized, month_named, without_zone
 from grader.grading.grade import Student
 
@@ -24,10 +24,10 @@ TIME = re.compile(
 SOURCE = "Brightspace"
 
 
-def read(export: Export) -> Callable[[Parts], Understood]:
+def read(export: Export) -> Callable[[Parts], Interpretation]:
     """Understand names of folders as Brightspace gives them."""
 
-    def understand(parts: Parts) -> Understood:
+    def understand(parts: Parts) -> Interpretation:
         if parts == ("index.html",):
             return OWN
         match = NAME.fullmatch(parts[0])

@@ -14,7 +14,16 @@ from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 
-from grader.classroom.formats.format import Export, ExportTable, Format, Parts, Understood, Upload, last_first, person
+from grader.classroom.formats.format import (
+    Export,
+    ExportTable,
+    Format,
+    Interpretation,
+    Parts,
+    Upload,
+    last_first,
+    person,
+)
 from grader.classroom.tables import Cell, csv_text
 from grader.classroom.times import Time
 from grader.exercise.exercise import Exercise
@@ -28,14 +37,14 @@ NAME = re.compile(
 AGAIN = re.compile(r"(?P<stem>.+)-(?P<number>\d{1,3})(?P<suffix>(?:\.[^.]+)*)")
 
 
-def read(export: Export) -> Callable[[Parts], Understood]:
+def read(export: Export) -> Callable[[Parts], Interpretation]:
     """Understand names as Canvas gives them."""
     first: dict[str, set[str]] = defaultdict(set)
     for parts in export.files:
         if match := NAME.fullmatch(parts[-1]):
             first[_user(match)].add(match["file"] or "")
 
-    def understand(parts: Parts) -> Understood:
+    def understand(parts: Parts) -> Interpretation:
         match = NAME.fullmatch(parts[-1])
         if not match or len(parts) > 1:
             return None

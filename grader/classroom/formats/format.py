@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, tzinfo
 
-from grader.classroom.handed_in import File
 from grader.classroom.names import normal
+from grader.classroom.submissions import File
 from grader.classroom.times import UNKNOWN, Time
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Entry, Student
@@ -33,7 +33,7 @@ class Upload:
 
 
 #: An upload; the reason why a file is not one, if the instructor is to know it; None if a file does not fit.
-Understood = Upload | str | None
+Interpretation = Upload | str | None
 
 #: The platform wrote this itself.
 OWN = ""
@@ -81,7 +81,7 @@ class Format:
 
     name: str
     title: str
-    read: Callable[[Export], Callable[[Parts], Understood] | None]
+    read: Callable[[Export], Callable[[Parts], Interpretation] | None]
     inside: tuple[str, ...] = ()
     beside: tuple[str, ...] = ()
     of_row: Callable[[Mapping[str, str]], Student | None] | None = None

@@ -13,7 +13,7 @@ from typing import Any
 
 import yaml
 
-from grader.classroom.formats.format import OWN, Export, Format, Parts, Understood, Upload, person
+from grader.classroom.formats.format import OWN, Export, Format, Interpretation, Parts, Upload, person
 from grader.classroom.times import read_time
 from grader.grading.grade import Student
 
@@ -21,7 +21,7 @@ METADATA = "submission_metadata.yml"
 FOLDER = re.compile(r"submission_\d+")
 
 
-def read(export: Export) -> Callable[[Parts], Understood] | None:
+def read(export: Export) -> Callable[[Parts], Interpretation] | None:
     """Understand the folders that the export's own list has."""
     try:
         listed = yaml.load(export.text(METADATA), Loader=yaml.BaseLoader)
@@ -31,7 +31,7 @@ def read(export: Export) -> Callable[[Parts], Understood] | None:
         return None
     uploads = {name: _upload(one) for name, one in listed.items() if isinstance(one, dict)}
 
-    def understand(parts: Parts) -> Understood:
+    def understand(parts: Parts) -> Interpretation:
         if parts == (METADATA,):
             return OWN
         upload = uploads.get(parts[0]) if len(parts) > 1 else None

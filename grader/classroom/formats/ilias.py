@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable
 from datetime import datetime
 
-from grader.classroom.formats.format import OWN, Export, Format, Parts, Understood, Upload, person
+from grader.classroom.formats.format import OWN, Export, Format, Interpretation, Parts, Upload, person
 from grader.classroom.times import Time, localized
 
 FOLDER = re.compile(r"(?P<last>[^_]+)_(?P<first>.+)_(?P<login>[^_]+)_(?P<number>\d+)")
@@ -22,14 +22,14 @@ FILE = re.compile(
 SOURCE = "ILIAS"
 
 
-def read(export: Export) -> Callable[[Parts], Understood] | None:
+def read(export: Export) -> Callable[[Parts], Interpretation] | None:
     """Understand names of folders as ILIAS gives them; no two students have one number."""
     folders = {_own(parts)[0] for parts in export.files if _own(parts)}
     numbers = [match["number"] for folder in folders if (match := FOLDER.fullmatch(folder))]
     if not numbers or len(set(numbers)) < len(numbers):
         return None
 
-    def understand(parts: Parts) -> Understood:
+    def understand(parts: Parts) -> Interpretation:
         own = _own(parts)
         match = FOLDER.fullmatch(own[0]) if len(own) > 1 else None
         if not match:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from html import escape
 
-from grader.classroom.formats.format import Export, ExportTable, Format, Parts, Understood, Upload, person
+from grader.classroom.formats.format import Export, ExportTable, Format, Interpretation, Parts, Upload, person
 from grader.classroom.tables import Cell, csv_text, number
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Entry, Student
@@ -23,14 +23,14 @@ NAME = re.compile(r"(?P<name>.+?)(?:_(?P<number>\d+))?_assignsubmission_(?P<kind
 WORKSHEET = ("Identifier", "Full name")
 
 
-def read(export: Export) -> Callable[[Parts], Understood]:
+def read(export: Export) -> Callable[[Parts], Interpretation]:
     """Understand names of folders, or of files, as Moodle gives them."""
     names = {match["name"] for parts in export.files if (match := NAME.fullmatch(parts[0]))}
     teams = {name.partition("-")[0] for name in names}
     # Earlier versions put a team's name before each member's: then all names have one, and some have the same.
     in_teams = all("-" in name for name in names) and 2 * len(teams) <= len(names)
 
-    def understand(parts: Parts) -> Understood:
+    def understand(parts: Parts) -> Interpretation:
         match = NAME.fullmatch(parts[0])
         if not match or (len(parts) == 1 and not match["file"]):
             return None

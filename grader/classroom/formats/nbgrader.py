@@ -13,8 +13,8 @@ from grader.classroom.formats.format import (
     Export,
     ExportTable,
     Format,
+    Interpretation,
     Parts,
-    Understood,
     Upload,
     last_and_first,
     person,
@@ -28,7 +28,7 @@ SUBMITTED = "submitted"
 TIMESTAMP = "timestamp.txt"
 
 
-def read(export: Export) -> Callable[[Parts], Understood] | None:
+def read(export: Export) -> Callable[[Parts], Interpretation] | None:
     """Understand places if the folder is called so, or if it has folders with the exercise's name."""
     assignments = {parts[1] for parts in export.files if len(parts) > 2}
     if export.root != SUBMITTED and export.exercise.name not in assignments:
@@ -37,7 +37,7 @@ def read(export: Export) -> Callable[[Parts], Understood] | None:
     wanted = next(iter(assignments)) if len(assignments) == 1 else export.exercise.name
     times = {student: _time(export, student, wanted) for student in {parts[0] for parts in export.files}}
 
-    def understand(parts: Parts) -> Understood:
+    def understand(parts: Parts) -> Interpretation:
         if len(parts) < 3:
             return None
         if parts[1] != wanted:

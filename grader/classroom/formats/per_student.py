@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from grader.classroom.formats.format import Export, Format, Parts, Understood, Upload, person
+from grader.classroom.formats.format import Export, Format, Interpretation, Parts, Upload, person
 from grader.classroom.names import normal, student_id
 from grader.classroom.times import UNKNOWN
 
@@ -15,10 +15,10 @@ SUFFIX = re.compile(r"(\.py\.txt|\.ipynb\.(json|txt)|\.tar\.\w+|\.[^.]+)$", re.I
 NOT_WORK = (".csv", ".tsv", ".xls", ".xlsx", ".ods", ".md", ".yml", ".yaml", ".toml", ".html")
 
 
-def read(export: Export) -> Callable[[Parts], Understood]:
+def read(export: Export) -> Callable[[Parts], Interpretation]:
     """Understand every name as a student's."""
 
-    def understand(parts: Parts) -> Understood:
+    def understand(parts: Parts) -> Interpretation:
         if len(parts) == 1 and parts[0].lower().endswith(NOT_WORK):
             return "a table, a note or a page, not a submission"
         name = normal(parts[0]) if len(parts) > 1 else without_suffix(parts[0])

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Mapping
 from datetime import timezone
 
-from grader.classroom.formats.format import OWN, Export, Format, Parts, Understood, Upload, person
+from grader.classroom.formats.format import OWN, Export, Format, Interpretation, Parts, Upload, person
 from grader.classroom.times import UNKNOWN, read_time
 from grader.grading.grade import Student
 
@@ -21,7 +21,7 @@ SAKAIS = {"comments.txt", "feedbackText.html", MEMBERS}
 OF_ALL = re.compile(r"grades\.(csv|xls|xlsx)|.*\.html")
 
 
-def read(export: Export) -> Callable[[Parts], Understood] | None:
+def read(export: Export) -> Callable[[Parts], Interpretation] | None:
     """Understand folders that are called as Sakai calls them, or have a list of members."""
     folders = {parts[0] for parts in export.files if len(parts) > 1}
     if not any(FOLDER.fullmatch(folder) or export.text(folder, MEMBERS) for folder in folders):
@@ -34,7 +34,7 @@ def read(export: Export) -> Callable[[Parts], Understood] | None:
         for folder in folders
     }
 
-    def understand(parts: Parts) -> Understood:
+    def understand(parts: Parts) -> Interpretation:
         if len(parts) == 1:
             return OWN if OF_ALL.fullmatch(parts[0]) else None
         if not students[parts[0]]:

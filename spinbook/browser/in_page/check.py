@@ -49,11 +49,11 @@ def check(name: str, source: str) -> str:
 def read(name: str, file: str, content: memoryview) -> str:
     """Return the program in a file, for the editor, as JSON: `source` and `notes`, or `problem` alone."""
     from grader.submission.code import code_of, uses_other_files
-    from grader.submission.problems import Undecided, Unreadable
+    from grader.submission.problems import AmbiguousProgram, Unreadable
 
     try:
         code = code_of(file, bytes(content), load(_unpacked(name)))
-    except (Unreadable, Undecided) as error:
+    except (Unreadable, AmbiguousProgram) as error:
         return json.dumps({"problem": str(error)})
     if uses_other_files(code):
         return json.dumps({"problem": f"{_SEVERAL_FILES} {' '.join(code.notes)}".strip()})

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from grader.classroom.collecting import Wishes, collect
-from grader.classroom.handed_in import Submissions
+from grader.classroom.collector import CollectOptions, collect
+from grader.classroom.submissions import Submissions
 from grader.exercise import load
 
 ROOT = Path(__file__).parents[3]
@@ -32,10 +32,13 @@ def archive(file: Path, files: Mapping[str, str] | list[str]) -> Path:
     return file
 
 
-def collected(source: Path, **wishes: Any) -> Submissions:
+def collected(source: Path, **options: Any) -> Submissions:
     """Return what the class handed in."""
     return collect(
-        source, load(ROOT / "exercises" / EXERCISE), Path(tempfile.mkdtemp(dir=source.parent)), Wishes(**wishes)
+        source,
+        load(ROOT / "exercises" / EXERCISE),
+        Path(tempfile.mkdtemp(dir=source.parent)),
+        CollectOptions(**options),
     )
 
 

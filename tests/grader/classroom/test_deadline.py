@@ -8,7 +8,7 @@ from pathlib import Path
 import plain_grades as plain
 import pytest
 
-from grader.classroom.deadline import Adjusting, Deadline, OverridesError, deadline_of, overrides_in
+from grader.classroom.deadline import Adjuster, Deadline, OverridesError, deadline_of, overrides_in
 from grader.exercise import Exercise, ExerciseError, load
 
 DUE = datetime(2026, 11, 22, 23, 59, tzinfo=timezone.utc)
@@ -36,7 +36,7 @@ def after(**length: float) -> datetime:
 
 def test_without_a_deadline_nothing_is_late(exercise: Exercise) -> None:
     assert deadline_of(exercise) is None
-    assert Adjusting(None)(plain.entry(plain.RIGHT)) == ()
+    assert Adjuster(None)(plain.entry(plain.RIGHT)) == ()
 
 
 @pytest.mark.parametrize(
@@ -89,21 +89,21 @@ def test_what_can_not_be_understood_names_the_file_and_what_to_write(
     assert message in str(error.value)
 
 
-def adjusting(tmp_path: Path, *rows: str) -> Adjusting:
+def adjuster(tmp_path: Path, *rows: str) -> Adjuster:
     file = tmp_path / "overrides.csv"
     file.write_text("student,points,due,reason\n" + "\n".join(rows) + "\n", encoding="utf-8")
-    return Adjusting(Deadline(DUE, percent=10.0), overrides_in(file, {"ada", "ben"}))
+    return Adjuster(Deadline(DUE, percent=10.0), overrides_in(file, {"ada", "ben"}))
 
 
 def test_lateness_is_that_of_the_hand_in_and_reported_with_its_source(tmp_path: Path) -> None:
     late = plain.entry(plain.HALF, submitted=after(days=1, hours=3), submitted_from="timestamp.txt")
-    [found] = adjusting(tmp_path)(late)
+    [found] = adjuster(tmp_path)(late)
     assert (found.kind, found.points) == ("late", -1.2)
     assert found.reason == "handed in 1 day 3 h late, by timestamp.txt: 20 % of 6 points"
 
 
 def test_a_later_due_date_of_one_student_is_kept_with_its_reason(tmp_path: Path) -> None:
-    adjust = adjusting(tmp_path, "ada,,2026-11-24 12:00 +0000,was ill".replace(" +0000", "+00:00"))
+    adjust = adjuster(tmp_path, "ada,,2026-11-24 12:00 +0000,was ill".replace(" +0000", "+00:00"))
     late = plain.entry(plain.RIGHT, submitted=after(days=1), submitted_from="timestamp.txt")
     [found] = adjust(late)
     assert (found.kind, found.points) == ("override", 0.0)
@@ -112,19 +112,19 @@ def test_a_later_due_date_of_one_student_is_kept_with_its_reason(tmp_path: Path)
 
 def test_points_may_be_added_beyond_full_marks(tmp_path: Path) -> None:
     on_time = plain.entry(plain.RIGHT, submitted=DUE)
-    made = adjusting(tmp_path, "ada,+2.5,,found a mistake in the task")(on_time)
+    made = adjuster(tmp_path, "ada,+2.5,,found a mistake in the task")(on_time)
     assert plain.entry(plain.RIGHT, adjustments=made).final == 12.5
 
 
 def test_points_that_are_set_count_late_or_not_also_after_a_fault_of_ours(tmp_path: Path) -> None:
-    adjust = adjusting(tmp_path, "ada,7,,graded by hand")
+    adjust = adjuster(tmp_path, "ada,7,,graded by hand")
     for grade in (plain.HALF, plain.FAULT):
         late = plain.entry(grade, submitted=after(days=3))
         assert plain.entry(grade, adjustments=adjust(late)).final == 7
 
 
 def test_nobody_gets_less_than_nothing(tmp_path: Path) -> None:
-    made = adjusting(tmp_path, "ada,-20,,copied")(plain.entry(plain.HALF, submitted=DUE))
+    made = adjuster(tmp_path, "ada,-20,,copied")(plain.entry(plain.HALF, submitted=DUE))
     assert plain.entry(plain.HALF, adjustments=made).final == 0
 
 
@@ -141,5 +141,5 @@ def test_nobody_gets_less_than_nothing(tmp_path: Path) -> None:
 )
 def test_a_row_with_a_mistake_is_reported_with_its_line(tmp_path: Path, row: str, message: str) -> None:
     with pytest.raises(OverridesError, match=r"overrides.csv:2: ") as error:
-        adjusting(tmp_path, row)
+        adjuster(tmp_path, row)
     assert message in str(error.value)

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from small_class import SmallClass
 
-from grader.classroom.collecting import collect
-from grader.classroom.deadline import Adjusting
+from grader.classroom.collector import collect
+from grader.classroom.deadline import Adjuster
 from grader.classroom.local import LocalBackend
 from grader.classroom.results import ClassGrading, Results
 from grader.exercise import load
@@ -28,11 +28,11 @@ def test_recordings_of_graded_students_do_not_stay_in_memory(
     submissions = {one.student.id: (read(str(one.file.path), exercise),) for one in collected.handed_in}
     with Results(small_class.folder / "results") as results, WorkerPool() as workers:
         grading = grading_of(exercise, Options(), workers)
-        marking = ClassGrading(exercise, LocalBackend(grading, 2), results, Adjusting())
-        plan = marking.plan(collected, submissions, lambda who: True)
+        class_grading = ClassGrading(exercise, LocalBackend(grading, 2), results, Adjuster())
+        plan = class_grading.plan(collected, submissions, lambda who: True)
         before = recordings()
-        graded = list(marking.run(plan, submissions))
-        assert len(graded) == len(marking.entries) == 6
+        graded = list(class_grading.run(plan, submissions))
+        assert len(graded) == len(class_grading.entries) == 6
         assert recordings() == before
 
 

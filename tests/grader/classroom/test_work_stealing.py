@@ -10,7 +10,7 @@ from grader.classroom.local import LocalBackend
 from grader.exercise import load
 from grader.exercise.mistakes import mistake_of
 from grader.grading import Options, grading_of
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers import Worker, WorkerPool
 
 
@@ -35,7 +35,7 @@ def test_whoever_has_no_submission_left_helps_with_the_last_one() -> None:
         assert len(grading.runner.scenarios) >= 4
         for jobs in (1, 4):
             workers.threads.clear()
-            (graded,) = LocalBackend(grading, jobs).mark({"ada": submission})
+            (graded,) = LocalBackend(grading, jobs).grade({"ada": submission})
             assert len(workers.threads) == jobs
             grades.append(graded.grade)
     alone, helped = grades

@@ -17,7 +17,7 @@ from small_class import ROOT, wait_until
 
 from grader.exercise import load
 from grader.grading.grading import grade_submission
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers import HostFault, WorkerPool
 from grader.workers.jobs import ListJob
 from grader.workers.shared import SharedObjects, receive

@@ -15,7 +15,7 @@ from grader.exercise import load, starter
 from grader.exercise.mistakes import mistakes_of
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers import WorkerPool
 
 ROOT = Path(__file__).parents[3]

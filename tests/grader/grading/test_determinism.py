@@ -14,7 +14,7 @@ from grader.grading import Grade, Options, grading_of
 from grader.grading.grading import Grading
 from grader.recording.recording import to_json
 from grader.submission import Submission, read
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers import WorkerPool
 
 ROOT = Path(__file__).parents[3]

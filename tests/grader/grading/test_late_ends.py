@@ -7,7 +7,7 @@ import pytest
 from grader.exercise.mistakes import mistake_of
 from grader.grading import Grade
 from grader.grading.grading import Grading
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 
 PUBLISHER = "        self.publisher = self.create_publisher(JointState, '/joint_velocities', 10)\n"
 SUBSCRIPTION = (

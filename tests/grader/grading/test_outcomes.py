@@ -7,7 +7,7 @@ import pytest
 from grader.exercise import Exercise
 from grader.grading import Grade
 from grader.grading.grading import Grading
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 
 NODE = """
 import rclpy

@@ -11,7 +11,7 @@ from grader.exercise import load, starter
 from grader.exercise.mistakes import Mistake, mistakes_of
 from grader.grading.grading import Grading
 from grader.submission import read
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 
 ROOT = Path(__file__).parents[3]
 SOLUTIONS = ROOT / "solutions" / "joint_velocity"
@@ -24,7 +24,7 @@ USUAL = {
     *("wrong_topic", "wrong_type", "integer_division", "forgets_nanosec", "degrees"),
 }
 
-#: Graded by every `make test`; `make soak` grades all. tests/grader/audit also tests, for all of them
+#: GradedSubmission by every `make test`; `make soak` grades all. tests/grader/audit also tests, for all of them
 #: and in less time, that each mistake loses exactly the checks that it names.
 ALWAYS = {
     *("fixed_dt", "traceback_on_ctrl_c"),

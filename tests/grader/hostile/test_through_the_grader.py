@@ -16,7 +16,7 @@ from grader.grading import Grade, Options, grading_of
 from grader.grading.grading import Grading
 from grader.recording.recording import Ending
 from grader.submission import read
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers import WorkerPool
 
 EXERCISE = Path(__file__).parents[3] / "exercises" / "joint_velocity"

@@ -18,7 +18,7 @@ from grader.grading.grading import Grading
 from grader.report.as_json import as_json
 from grader.report.plot import draw
 from grader.report.terminal import show
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 
 SCHEMA = Path(__file__).parents[3] / "docs" / "grade.schema.json"
 

@@ -21,12 +21,12 @@ from student_work import (
 
 from grader.exercise import Exercise, starter
 from grader.grading.grading import Grading
-from grader.submission.choosing import digest_of
 from grader.submission.code import Code, code_of
 from grader.submission.places import place_of
-from grader.submission.problems import Undecided, Unreadable
+from grader.submission.problems import AmbiguousProgram, Unreadable
+from grader.submission.program_choice import digest_of
 from grader.submission.python_code import missing, starts
-from grader.submission.reading import of_code
+from grader.submission.reader import of_code
 
 
 def code_in(content: bytes, exercise: Exercise) -> Code:
@@ -101,7 +101,9 @@ def test_the_starter_does_not_count_beside_the_students_work(exercise: Exercise)
 
 @pytest.mark.parametrize("cells", [(NODE, OLD), (NODE, OLD, "%check heartbeat"), (NODE, OLD, check_cell("0" * 64))])
 def test_two_versions_and_nothing_that_tells_is_a_question(cells: tuple[object, ...], exercise: Exercise) -> None:
-    with pytest.raises(Undecided, match=r"2 cells of the notebook can be heartbeat\.py, they differ, and no saved"):
+    with pytest.raises(
+        AmbiguousProgram, match=r"2 cells of the notebook can be heartbeat\.py, they differ, and no saved"
+    ):
         code_in(notebook(*cells), exercise)
 
 

@@ -12,11 +12,11 @@ from student_work import IMPORTS, NODE, PROGRAM, cell, notebook, zipped
 from grader.exercise import Exercise
 from grader.grading.grading import Grading
 from grader.submission import NoSubmission, read
-from grader.submission.choosing import digest_of
 from grader.submission.code import NO_CPP
 from grader.submission.file_kinds import can_be_read
+from grader.submission.program_choice import digest_of
 from grader.submission.python_version import newer_name, newer_syntax, running
-from grader.submission.reading import of_content
+from grader.submission.reader import of_content
 
 NAMES = {
     "heartbeat.py": PROGRAM.encode(),

@@ -15,10 +15,10 @@ from student_work import BEAT, CLASS, EXERCISE, GUARD, IMPORTS, INIT, MAIN, OLD,
 
 from grader.exercise import Exercise, starter
 from grader.submission import read
-from grader.submission.choosing import digest_of
 from grader.submission.code import code_of_notebook
 from grader.submission.notebook import RECORD, Notebook
-from grader.submission.reading import of_content
+from grader.submission.program_choice import digest_of
+from grader.submission.reader import of_content
 from spinbook.kernel.check_cell import cells_as_run
 from spinbook.submit.command import submit
 

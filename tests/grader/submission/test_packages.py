@@ -11,9 +11,9 @@ from grader.exercise import Exercise
 from grader.gradescope import run as gradescope
 from grader.grading.grading import Grading
 from grader.submission import read
-from grader.submission.choosing import digest_of
 from grader.submission.code import code_of, uses_other_files
-from grader.submission.reading import Submission, is_one, of_content
+from grader.submission.program_choice import digest_of
+from grader.submission.reader import Submission, is_one, of_content
 
 SETUP = """\
 from setuptools import setup

@@ -9,7 +9,7 @@ import pytest
 
 from grader.exercise import Exercise, load
 from grader.grading import Options, grading_of
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers import WorkerPool
 from spinbook.handout.leaks import authors_code, leaks, secrets
 from spinbook.handout.student_copy import exercise_files

@@ -16,7 +16,7 @@ from grader.exercise.mistakes import Mistake, mistakes_of
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
 from grader.submission import read
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers import WorkerPool
 from spinbook.new.command import new
 from spinbook.new.kind import ExerciseKind

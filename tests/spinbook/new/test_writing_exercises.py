@@ -11,7 +11,7 @@ import pytest
 from grader.checking.proofreader import problems_of
 from grader.exercise import load, starter
 from grader.grading import Options, grading_of
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers import WorkerPool
 from spinbook.new.kind import ExerciseKind
 from spinbook.new.templates import KINDS

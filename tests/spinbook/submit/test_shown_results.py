@@ -11,7 +11,7 @@ from grader.exercise import load, starter
 from grader.exercise.mistakes import mistake_of
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers import WorkerPool
 from spinbook.submit.self_check_view import as_html, as_text
 from submit.conftest import PUBLIC, ROOT, solution

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from grader.exercise import Exercise, load
 from grader.submission import read
 from grader.submission.problems import Unreadable
-from grader.submission.reading import of_upload
+from grader.submission.reader import of_upload
 from grader.submission.upload import RECORD, pack, unpack
 
 CODE = b"class JointVelocity:\n    pass\n"

@@ -9,7 +9,7 @@ import pytest
 from grader.exercise import load
 from grader.grading import Options, grading, grading_of
 from grader.sandbox import Isolation, SandboxUnavailable
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers import WorkerPool
 from spinbook.submit.self_check_view import as_html, as_text
 from submit.conftest import ROOT, solution

@@ -12,7 +12,7 @@ from grader.exercise.mistakes import mistakes_of
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
 from grader.submission import read
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers import WorkerPool
 
 COURSE = Path(__file__).parents[1]

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from rich.console import Console
 from rich.text import Text
 
-from grader.classroom.handed_in import HandedIn, Submissions
-from grader.classroom.request import Graded
+from grader.classroom.request import GradedSubmission
 from grader.classroom.results import ClassGrading, Tries, recordings_key
+from grader.classroom.submissions import StudentSubmission, Submissions
 from grader.grading.grade import Grade
 from grader.grading.grading import Grading
 from grader.report.feedback_plot import picture
@@ -18,16 +18,16 @@ from grader.report.printable import printable
 
 
 @dataclass(frozen=True)
-class Rejudged:
+class NewGrade:
     """A student's new grade, and in words what is different."""
 
-    handed_in: HandedIn
-    graded: Graded
+    handed_in: StudentSubmission
+    graded: GradedSubmission
     changed: str
 
 
 def rejudge(
-    marking: ClassGrading,
+    class_grading: ClassGrading,
     grading: Grading,
     collected: Submissions,
     submissions: Mapping[str, Tries],
@@ -42,26 +42,28 @@ def rejudge(
     found, missing = [], []
     for one in collected.handed_in:
         who = one.student.id
-        kept = marking.results.entry(who)
+        kept = class_grading.results.entry(who)
         keys = {recordings_key(grading, submission): submission for submission in submissions[who]}
-        stored = marking.results.stored(who)
+        stored = class_grading.results.stored(who)
         if kept is None or stored is None or stored.key not in keys:
             missing.append(who)
             continue
         grade = replace(grading.judge(keys[stored.key], stored.recordings), submission=kept[0].file)
-        graded = Graded(who, replace(grade, seconds=kept[0].grade.seconds), picture(grade, marking.exercise))
-        found.append(Rejudged(one, graded, difference(kept[0].grade, grade)))
+        graded = GradedSubmission(
+            who, replace(grade, seconds=kept[0].grade.seconds), picture(grade, class_grading.exercise)
+        )
+        found.append(NewGrade(one, graded, difference(kept[0].grade, grade)))
     _report(console, found, missing)
     changed = sum(bool(one.changed) for one in found)
     replaced = bool(changed) and may_replace(changed)
     for new in found:
         if replaced or not new.changed:
-            marking.keep(new.handed_in, new.graded, submissions[new.graded.who])
+            class_grading.keep(new.handed_in, new.graded, submissions[new.graded.who])
     if changed and not replaced:
         console.print("Nothing was replaced.")
 
 
-def _report(console: Console, found: list[Rejudged], missing: list[str]) -> None:
+def _report(console: Console, found: list[NewGrade], missing: list[str]) -> None:
     for one in found:
         if one.changed:
             console.print(Text(printable(f"{one.graded.who}: {one.changed}")), soft_wrap=True)

@@ -40,7 +40,7 @@ if __name__ == "__main__":
 
 
 @dataclass(frozen=True)
-class Assembled:
+class AssembledProgram:
     """A program, and the numbers of the cells that it is made of."""
 
     code: str
@@ -59,7 +59,7 @@ class _Options:
 
 def assemble(
     cell: NotebookCell, cells: Sequence[NotebookCell], exercise: Exercise, others: Collection[int] = ()
-) -> Assembled:
+) -> AssembledProgram:
     """Return the program of this cell, with what it needs of the others. `others` are cells that must not be used."""
     options = _options(cell)
     pieces = {cell.number: _split(cell, cells)}
@@ -78,7 +78,7 @@ def assemble(
         code = before + _marked(cell.number, 1, text)
     if not python_code.starts(code):
         code += _start(options)
-    return Assembled(code, tuple(sorted({*taken, *used, *(one.number for one in more)})))
+    return AssembledProgram(code, tuple(sorted({*taken, *used, *(one.number for one in more)})))
 
 
 def _options(cell: NotebookCell) -> _Options:

@@ -8,7 +8,7 @@ from datetime import tzinfo
 
 from grader.classroom.formats.format import Export, Format, Parts, Upload
 from grader.classroom.formats.registry import FORMATS, PLAIN, PLATFORMS
-from grader.classroom.handed_in import File, SubmissionsError
+from grader.classroom.submissions import File, SubmissionsError
 from grader.exercise.exercise import Exercise
 from grader.submission.file_kinds import kind_of
 
@@ -25,7 +25,7 @@ def can_be_graded(name: str) -> bool:
 
 
 @dataclass(frozen=True)
-class Recognised:
+class Recognition:
     """A class's files as one format understands them, below the folder `inside`.
 
     `misfits` are files that it does not understand, each with the file or folder of the class that it is in; `others`
@@ -63,7 +63,7 @@ class Recogniser:
     exercise: Exercise
     zone: tzinfo | None
 
-    def recognise(self, name: str = "") -> Recognised:
+    def recognise(self, name: str = "") -> Recognition:
         """Return the files as the format `name` understands them, or the one that fits nearly all of them.
 
         Raises `SubmissionsError` if a format fits many of them but not nearly all, or if none fits `name`.
@@ -83,18 +83,18 @@ class Recogniser:
                 raise SubmissionsError(_unclear(one))
         return self._plain()
 
-    def _tried(self, form: Format) -> Iterator[Recognised]:
+    def _tried(self, form: Format) -> Iterator[Recognition]:
         for inside in self._levels(form):
             understood = self._read(form, inside)
             if understood:
                 yield understood
 
-    def _plain(self) -> Recognised:
+    def _plain(self) -> Recognition:
         understood = self._read(PLAIN, self._class_folder())
         assert understood
         return understood
 
-    def _read(self, form: Format, inside: Parts) -> Recognised | None:
+    def _read(self, form: Format, inside: Parts) -> Recognition | None:
         skip = len(inside)
         below = {parts[skip:]: file for parts, file in self.files.items() if parts[:skip] == inside}
         root = inside[-1] if inside else self.root
@@ -107,7 +107,7 @@ class Recogniser:
         misfits += [(parts[skip - 1], file) for parts, file in outside if parts[skip - 1] not in form.beside]
         others = tuple(file for parts, file in outside if parts[skip - 1] in form.beside)
         understood = tuple((file, place) for _, file, place in places if place is not None)
-        return Recognised(form, inside, understood, tuple(misfits), others)
+        return Recognition(form, inside, understood, tuple(misfits), others)
 
     def _levels(self, form: Format) -> Iterator[Parts]:
         """Yield the folders that may be the class's: a lone folder around everything, and those that `form` names."""
@@ -137,7 +137,7 @@ class Recogniser:
         return deepest if len(with_work) > 1 and not is_package else ()
 
 
-def _unclear(one: Recognised) -> str:
+def _unclear(one: Recognition) -> str:
     others = "".join(f"\n  {name}" for name in sorted(one.odd))
     return (
         f"{len(one.fits)} submissions have names as in {one.form.title}, and {len(one.odd)} do not:{others}\n"

@@ -39,7 +39,7 @@ class File:
 
 
 @dataclass(frozen=True)
-class HandedIn:
+class StudentSubmission:
     """One student's one submission. `others` are the student's other attempts if the best of them is to count."""
 
     student: Student
@@ -85,7 +85,7 @@ class Submissions:
     """
 
     kind: str
-    handed_in: tuple[HandedIn, ...]
+    handed_in: tuple[StudentSubmission, ...]
     skipped: tuple[Skipped, ...]
     questions: tuple[Question, ...]
     missing: tuple[Student, ...] = ()

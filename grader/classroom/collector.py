@@ -15,10 +15,10 @@ from grader.classroom.class_table import by_row
 from grader.classroom.formats.format import Upload
 from grader.classroom.formats.per_student import without_suffix
 from grader.classroom.groups import Attempt, Group, Unit, in_groups
-from grader.classroom.handed_in import File, HandedIn, Question, Submissions, SubmissionsError
 from grader.classroom.names import normal, unique_ids
-from grader.classroom.recognising import Recognised, Recogniser, can_be_graded
+from grader.classroom.recogniser import Recogniser, Recognition, can_be_graded
 from grader.classroom.roster import RosterRow, match, signs, with_row
+from grader.classroom.submissions import File, Question, StudentSubmission, Submissions, SubmissionsError
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Skipped, Student
 
@@ -26,7 +26,7 @@ KINDS = "not one of .py, .ipynb, .zip"
 
 
 @dataclass(frozen=True)
-class Wishes:
+class CollectOptions:
     """What the instructor says about a class: see the options of `spinbook grade`.
 
     `attempts` is "last", "first" or "best"; without it, several attempts are a question. `zone` is the time zone of
@@ -40,28 +40,28 @@ class Wishes:
     groups: tuple[Group, ...] = ()
 
 
-def collect(source: Path, exercise: Exercise, unpack_into: Path, wishes: Wishes | None = None) -> Submissions:
+def collect(source: Path, exercise: Exercise, unpack_into: Path, options: CollectOptions | None = None) -> Submissions:
     """Return what the class submitted, from a folder, a zip or a CSV file; the file names decide how to read it.
 
     A zip's files are written into the folder `unpack_into`, which has to be empty. Raises `SubmissionsError` when
     there is nothing at all to grade, or when it is not clear how to read it.
     """
-    wishes = wishes or Wishes()
+    options = options or CollectOptions()
     if not source.exists():
         raise SubmissionsError(f"{source}: there is no such file or folder.")
     if source.suffix.lower() == ".csv":
-        uploads, skipped = by_row(source, wishes.zone)
-        found = Found(f"the files that {source.name} names", uploads, skipped, together=False)
+        uploads, skipped = by_row(source, options.zone)
+        found = ClassFiles(f"the files that {source.name} names", uploads, skipped, together=False)
     else:
-        found = _found(source, exercise, unpack_into, wishes)
+        found = _found(source, exercise, unpack_into, options)
     if not any(can_be_graded(file.name) or file.path.is_dir() for file, _ in found.uploads):
         text = "".join(f"\n  {skip.file}: {skip.why}" for skip in found.skipped[:10])
         raise SubmissionsError(f"There is no submission in it.{text}")
-    return Collector(unpack_into, wishes, found.together).submissions(found)
+    return Collector(unpack_into, options, found.together).submissions(found)
 
 
 @dataclass(frozen=True)
-class Found:
+class ClassFiles:
     """The files of a class whose owners are known, and the others; see `Submissions`.
 
     `together` says that the files of an attempt are one submission, such as a package.
@@ -75,33 +75,33 @@ class Found:
     together: bool = True
 
 
-def _found(source: Path, exercise: Exercise, unpack_into: Path, wishes: Wishes) -> Found:
+def _found(source: Path, exercise: Exercise, unpack_into: Path, options: CollectOptions) -> ClassFiles:
     everything = list(walk(source) if source.is_dir() else unpacked(source, unpack_into))
     files = {tuple(one.name.split("/")): one for one in everything if isinstance(one, File)}
     left_out = [one for one in everything if isinstance(one, Skipped)]
     if not files:
-        return Found("", (), left_out)
+        return ClassFiles("", (), left_out)
     root = source.resolve().name.removesuffix(".zip")
-    recognised = Recogniser(files, root, exercise, wishes.zone).recognise(wishes.format)
-    folder = f", in {'/'.join(recognised.inside)}/" if recognised.inside else ""
-    uploads = [(file, place) for file, place in recognised.understood if isinstance(place, Upload)]
-    others = [Skipped(file.name, place) for file, place in recognised.understood if isinstance(place, str) and place]
-    others += [Skipped(file.name, f"not in {'/'.join(recognised.inside)}/") for file in recognised.others]
-    why = f"its name is not one of {recognised.form.title}"
-    others += [Skipped(file.name, why) for _, file in recognised.misfits if not can_be_graded(file.name)]
-    return Found(
-        recognised.form.title + folder,
+    recognition = Recogniser(files, root, exercise, options.zone).recognise(options.format)
+    folder = f", in {'/'.join(recognition.inside)}/" if recognition.inside else ""
+    uploads = [(file, place) for file, place in recognition.understood if isinstance(place, Upload)]
+    others = [Skipped(file.name, place) for file, place in recognition.understood if isinstance(place, str) and place]
+    others += [Skipped(file.name, f"not in {'/'.join(recognition.inside)}/") for file in recognition.others]
+    why = f"its name is not one of {recognition.form.title}"
+    others += [Skipped(file.name, why) for _, file in recognition.misfits if not can_be_graded(file.name)]
+    return ClassFiles(
+        recognition.form.title + folder,
         uploads,
         [*left_out, *others],
-        _odd(recognised, why),
-        recognised.form.dates,
+        _odd(recognition, why),
+        recognition.form.dates,
     )
 
 
-def _odd(recognised: Recognised, why: str) -> list[Question]:
+def _odd(recognition: Recognition, why: str) -> list[Question]:
     """Return what could be graded, but is not called as on the platform, each as from a student of that name."""
     files: dict[str, list[str]] = defaultdict(list)
-    for top, file in recognised.misfits:
+    for top, file in recognition.misfits:
         if can_be_graded(file.name):
             files[top].append(file.name)
     return [Question(Student(without_suffix(top)), tuple(names), "name", why) for top, names in files.items()]
@@ -112,25 +112,25 @@ class Collector:
     """From files whose owners are known to one submission per student."""
 
     folder: Path
-    wishes: Wishes
+    options: CollectOptions
     together: bool
 
-    def submissions(self, found: Found) -> Submissions:
+    def submissions(self, found: ClassFiles) -> Submissions:
         """Return one submission per student; what is not clear becomes a question, never a guess."""
-        units = in_groups(_units(found.uploads), self.wishes.groups)
+        units = in_groups(_units(found.uploads), self.options.groups)
         extras: list[Skipped] = []
-        theirs: dict[str, list[HandedIn | Question]] = defaultdict(list)
+        theirs: dict[str, list[StudentSubmission | Question]] = defaultdict(list)
         for number, unit in enumerate(units):
             for one in self._chosen(unit, number, extras):
                 theirs[normal(one.student.id)].append(one)
         chosen = [_only(several) for several in theirs.values()]
         chosen += [question for question in found.odd if normal(question.student.id) not in theirs]
-        rows = match(self.wishes.roster, [one.student for one in chosen])
+        rows = match(self.options.roster, [one.student for one in chosen])
         missing = self._missing([one.student for one in chosen], rows)
         missing = [student for student in missing if normal(student.id) not in theirs]
         ids = unique_ids([*(one.student.id for one in chosen), *(student.id for student in missing)])
         named = [_named(one, rows.get(one.student.id), ids) for one in chosen]
-        handed_in = sorted((one for one in named if isinstance(one, HandedIn)), key=lambda one: one.student.id)
+        handed_in = sorted((one for one in named if isinstance(one, StudentSubmission)), key=lambda one: one.student.id)
         questions = sorted((one for one in named if isinstance(one, Question)), key=lambda one: one.student.id)
         return Submissions(
             found.kind,
@@ -142,15 +142,15 @@ class Collector:
             found.dates,
         )
 
-    def _chosen(self, unit: Unit, number: int, extras: list[Skipped]) -> list[HandedIn | Question]:
+    def _chosen(self, unit: Unit, number: int, extras: list[Skipped]) -> list[StudentSubmission | Question]:
         """Return the submission of each of the unit's students; of several attempts those that the policy names."""
         attempts = [unit.attempts[key] for key in sorted(unit.attempts)]
-        if len(attempts) > 1 and not self.wishes.attempts:
+        if len(attempts) > 1 and not self.options.attempts:
             names = tuple(attempt[0][0].name for attempt in attempts)
             return [Question(student, names, "attempts") for student in unit.students]
-        if self.wishes.attempts == "first":
+        if self.options.attempts == "first":
             attempts = attempts[:1]
-        elif self.wishes.attempts == "last":
+        elif self.options.attempts == "last":
             attempts = attempts[-1:]
         files = []
         for nth, attempt in enumerate(reversed(attempts)):
@@ -160,7 +160,7 @@ class Collector:
             if file.fault:
                 return [Question(student, (file.name,), "damaged", file.fault) for student in unit.students]
             files.append(file)
-        return [HandedIn(student, files[0], tuple(files[1:])) for student in unit.students]
+        return [StudentSubmission(student, files[0], tuple(files[1:])) for student in unit.students]
 
     def _submission(self, attempt: Attempt, name: str, extras: list[Skipped]) -> File | None:
         """Return one attempt's file, or the folder of its files; None if it is not clear which one counts."""
@@ -192,19 +192,19 @@ class Collector:
     def _missing(self, students: Sequence[Student], rows: dict[str, RosterRow]) -> list[Student]:
         """Return everybody of the roster and of the groups from whom there is nothing."""
         there = {id(row) for row in rows.values()}
-        missing = [row.student for row in self.wishes.roster if id(row) not in there]
+        missing = [row.student for row in self.options.roster if id(row) not in there]
         known = {
             sign
             for student in (*students, *missing, *(row.student for row in rows.values()))
             for sign in signs(student)
         }
-        members = [member for group in self.wishes.groups for member in group.members]
+        members = [member for group in self.options.groups for member in group.members]
         missing += [member for member in members if not signs(member) & known]
         return missing
 
-    def _strangers(self, chosen: Sequence[HandedIn | Question], rows: dict[str, RosterRow]) -> list[str]:
+    def _strangers(self, chosen: Sequence[StudentSubmission | Question], rows: dict[str, RosterRow]) -> list[str]:
         strangers = [one.student.id for one in chosen if one.student.id not in rows]
-        return [f"not on the roster: {', '.join(strangers)}"] if self.wishes.roster and strangers else []
+        return [f"not on the roster: {', '.join(strangers)}"] if self.options.roster and strangers else []
 
 
 def _units(uploads: Sequence[tuple[File, Upload]]) -> list[Unit]:
@@ -221,7 +221,7 @@ def _units(uploads: Sequence[tuple[File, Upload]]) -> list[Unit]:
     return units
 
 
-def _only(several: list[HandedIn | Question]) -> HandedIn | Question:
+def _only(several: list[StudentSubmission | Question]) -> StudentSubmission | Question:
     """Return a student's submission; alone and in a group, it is a question which one counts."""
     if len(several) == 1:
         return several[0]
@@ -229,19 +229,21 @@ def _only(several: list[HandedIn | Question]) -> HandedIn | Question:
     return Question(several[0].student, tuple(name for some in names for name in some))
 
 
-def _named(one: HandedIn | Question, row: RosterRow | None, ids: dict[str, str]) -> HandedIn | Question:
+def _named(
+    one: StudentSubmission | Question, row: RosterRow | None, ids: dict[str, str]
+) -> StudentSubmission | Question:
     student = replace(with_row(one.student, row), id=ids[normal(one.student.id)])
-    if isinstance(one, HandedIn) and row and row.time.at:
-        return HandedIn(student, replace(one.file, time=row.time), one.others)
+    if isinstance(one, StudentSubmission) and row and row.time.at:
+        return StudentSubmission(student, replace(one.file, time=row.time), one.others)
     return replace(one, student=student)
 
 
-def _not_gradable(handed_in: Sequence[HandedIn]) -> list[str]:
+def _not_gradable(handed_in: Sequence[StudentSubmission]) -> list[str]:
     files = [one.file.name for one in handed_in if not can_be_graded(one.file.name) and not one.file.path.is_dir()]
     return [f"handed in, but {KINDS}: {', '.join(files)}"] if files else []
 
 
-def _notes(handed_in: Sequence[HandedIn]) -> list[str]:
+def _notes(handed_in: Sequence[StudentSubmission]) -> list[str]:
     """Return how ambiguous times were read, and of how many students."""
     count: dict[str, int] = defaultdict(int)
     for one in handed_in:

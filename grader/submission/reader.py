@@ -12,7 +12,7 @@ from grader.sandbox.program import ProgramSpec
 from grader.submission.archive import Contents, content_of, folder_contents
 from grader.submission.code import Code, code_of, code_of_files, code_of_python
 from grader.submission.file_kinds import MOST_BYTES_OF, can_be_read, kind_of, kind_of_content
-from grader.submission.problems import Undecided, Unreadable
+from grader.submission.problems import AmbiguousProgram, Unreadable
 from grader.submission.python_version import newer_than_this
 from grader.submission.upload import RECORD, Upload, unpack
 
@@ -127,7 +127,7 @@ def of_content(name: str, content: bytes, exercise: Exercise) -> Submission:
         return of_upload(name, content, exercise)
     try:
         return of_code(name, code_of(name, content, exercise), exercise, _digest(content))
-    except (Unreadable, Undecided) as error:
+    except (Unreadable, AmbiguousProgram) as error:
         return _without_program(name, _digest(content), exercise, error)
 
 
@@ -149,7 +149,7 @@ def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:
     warning = _warning(upload, exercise)
     try:
         read = of_code(name, _code(upload, exercise), exercise, _digest(content))
-    except (Unreadable, Undecided) as error:
+    except (Unreadable, AmbiguousProgram) as error:
         return replace(_without_program(name, _digest(content), exercise, error), warning=warning)
     versions = upload.record.get("versions")
     python = versions.get("python", "") if isinstance(versions, dict) else ""
@@ -190,7 +190,7 @@ def _folder(given: str, path: Path, exercise: Exercise) -> Submission:
     try:
         code = code_of_files(contents, exercise, path.resolve().name)
         return of_code(given, code, exercise, total.hexdigest())
-    except (Unreadable, Undecided) as error:
+    except (Unreadable, AmbiguousProgram) as error:
         return _without_program(given, total.hexdigest(), exercise, error)
 
 
@@ -202,9 +202,9 @@ def of_code(name: str, code: Code, exercise: Exercise, digest: str = "") -> Subm
     return Submission(name, digest, exercise.file_name, code.source, program, notes=code.notes, newer_python=newer)
 
 
-def _without_program(name: str, digest: str, exercise: Exercise, why: Unreadable | Undecided) -> Submission:
+def _without_program(name: str, digest: str, exercise: Exercise, why: Unreadable | AmbiguousProgram) -> Submission:
     nothing = Submission(name, digest, exercise.file_name, "", None)
-    if isinstance(why, Undecided):
+    if isinstance(why, AmbiguousProgram):
         return replace(nothing, question=str(why))
     return replace(nothing, problem=str(why))
 

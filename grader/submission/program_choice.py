@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 from grader.exercise.exercise import Exercise, ProgramFile
 from grader.submission import python_code
-from grader.submission.assembling import Assembled, assemble
+from grader.submission.assembled_program import AssembledProgram, assemble
 from grader.submission.notebook import Notebook, NotebookCell
 from grader.submission.places import without_marks
-from grader.submission.problems import Undecided, Unreadable
+from grader.submission.problems import AmbiguousProgram, Unreadable
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ def digest_of(code: str) -> str:
 def choose(notebook: Notebook, exercise: Exercise, target: ProgramFile, starters: frozenset[str]) -> Choice:
     """Return the program `target` in a notebook. `starters` are digests of what was handed out.
 
-    Raises `Unreadable` if no cell can be it, and `Undecided` if several can.
+    Raises `Unreadable` if no cell can be it, and `AmbiguousProgram` if several can.
     """
     candidates = _candidates(notebook.cells, exercise, target)
     begun = [one for one in candidates if not python_code.is_empty(one.code)]
@@ -69,18 +69,18 @@ def _candidates(cells: Sequence[NotebookCell], exercise: Exercise, target: Progr
 
 
 def _decided(
-    programs: Sequence[tuple[NotebookCell, Assembled]],
+    programs: Sequence[tuple[NotebookCell, AssembledProgram]],
     notebook: Notebook,
     exercise: Exercise,
     target: ProgramFile,
     starters: frozenset[str],
-) -> tuple[tuple[NotebookCell, Assembled], str]:
+) -> tuple[tuple[NotebookCell, AssembledProgram], str]:
     """Return the cell that counts with its program, and why."""
     if len({digest_of(program.code) for _, program in programs}) == 1:
         return programs[-1], ""
     if checked := _checked(programs, notebook, exercise, target):
         return checked, "it is the one that %check judged last"
-    rules: tuple[tuple[str, Callable[[NotebookCell, Assembled], bool]], ...] = (
+    rules: tuple[tuple[str, Callable[[NotebookCell, AssembledProgram], bool]], ...] = (
         ("the others are still the starter", lambda cell, program: digest_of(program.code) not in starters),
         (f"only it has the program {target.node}", lambda cell, program: _is_it(program.code, target)),
         ("it is the whole of which the others are parts", lambda cell, program: not _is_inside(cell, programs)),
@@ -92,7 +92,7 @@ def _decided(
         if len({digest_of(program.code) for _, program in programs}) == 1:
             return programs[-1], why
     titles = ", ".join(cell.title for cell, _ in programs)
-    raise Undecided(
+    raise AmbiguousProgram(
         f"{len(programs)} cells of the notebook can be {target.file}, they differ, and no saved %check says which one "
         f"counts: {titles}. Delete or empty the others, or run %check and save the notebook."
     )
@@ -102,13 +102,16 @@ def _is_it(code: str, target: ProgramFile) -> bool:
     return python_code.defines(code, target.class_name) or python_code.creates(code, target.node)
 
 
-def _is_inside(cell: NotebookCell, programs: Sequence[tuple[NotebookCell, Assembled]]) -> bool:
+def _is_inside(cell: NotebookCell, programs: Sequence[tuple[NotebookCell, AssembledProgram]]) -> bool:
     return any(cell.number in program.cells for other, program in programs if other != cell)
 
 
 def _checked(
-    programs: Sequence[tuple[NotebookCell, Assembled]], notebook: Notebook, exercise: Exercise, target: ProgramFile
-) -> tuple[NotebookCell, Assembled] | None:
+    programs: Sequence[tuple[NotebookCell, AssembledProgram]],
+    notebook: Notebook,
+    exercise: Exercise,
+    target: ProgramFile,
+) -> tuple[NotebookCell, AssembledProgram] | None:
     """Return what `%check` judged last, by the record in its saved output; None if it does not say so."""
     stem = target.file.removesuffix(".py")
     checks = [one for one in notebook.cells if one.checked and {exercise.name, stem} & one.checked.keys()]
@@ -126,7 +129,7 @@ def _checked(
     return max(ran, key=lambda one: one[0].ran or 0) if ran else None
 
 
-def _notes(cell: NotebookCell, program: Assembled, candidates: Sequence[NotebookCell], why: str) -> list[str]:
+def _notes(cell: NotebookCell, program: AssembledProgram, candidates: Sequence[NotebookCell], why: str) -> list[str]:
     notes = []
     others = [one for one in candidates if one.number not in program.cells and one.code.strip() != cell.code.strip()]
     if others:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from classes import archive, collected, files, folder
 
-from grader.classroom.handed_in import SubmissionsError
+from grader.classroom.submissions import SubmissionsError
 
 LURES = [
     "x_7_assignsubmission_file_node.py",

@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 from grader.classroom.archive import MOST_FILES
-from grader.classroom.collecting import Wishes, collect
-from grader.classroom.handed_in import Submissions, SubmissionsError
+from grader.classroom.collector import CollectOptions, collect
+from grader.classroom.submissions import Submissions, SubmissionsError
 from grader.exercise import load
 from grader.submission import read
 
@@ -35,10 +35,10 @@ def zipped(file: Path, *names: str) -> Path:
     return file
 
 
-def taken(source: Path, tmp_path: Path, **wishes: Any) -> Submissions:
+def taken(source: Path, tmp_path: Path, **options: Any) -> Submissions:
     unpacked = tmp_path / "unpacked"
     unpacked.mkdir(exist_ok=True)
-    return collect(source, load(ROOT / "exercises" / EXERCISE), unpacked, Wishes(**wishes))
+    return collect(source, load(ROOT / "exercises" / EXERCISE), unpacked, CollectOptions(**options))
 
 
 def files(collected: Submissions) -> dict[str, str]:
