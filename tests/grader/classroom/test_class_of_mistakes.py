@@ -19,7 +19,7 @@ from grader.classroom.misconceptions import Signature, failures_of, mistakes_in
 from grader.exercise import load
 from grader.exercise.mistakes import mistakes_of
 from grader.grading import Grade, Options, grading_of
-from grader.submission.reading import of_source
+from grader.submission.reader import of_source
 from grader.workers import WorkerPool
 
 ROOT = Path(__file__).parents[3]
