@@ -123,7 +123,7 @@ def _run_by(files: Mapping[str, bytes], name: str) -> Iterator[str]:
             waiting += value.values()
             if value.get("is") == "Companion":
                 yield value["text"]
-            elif value.get("is") == "Code" and (code := files.get(name.replace("public.json", value["file"]))):
+            elif value.get("is") == "AuthorCode" and (code := files.get(name.replace("public.json", value["file"]))):
                 yield code.decode()
         elif isinstance(value, list):
             waiting += value

@@ -69,8 +69,8 @@ def test_students_stand_under_the_mistakes_that_they_make(graded: tuple[SmallCla
     groups = re.findall(r"<summary><b>(\d+)</b> students?: (.*?)</summary>(.*?)</details>", page, re.DOTALL)
     found = {what: re.findall(r'href="students/(\w+)/feedback.html"', names) for _, what, names in groups}
     assert found == {
-        "Limits the speed forwards, but not backwards.": ["carl", "emil"],
-        "Never checks whether the speed is a number.": ["dora", "emil"],
+        "It limits the speed forwards, but not backwards.": ["carl", "emil"],
+        "It never checks whether the speed is a number.": ["dora", "emil"],
     }
 
 
@@ -122,7 +122,7 @@ def test_a_fault_of_ours_is_tried_again_listed_apart_and_never_scored(done: Smal
     backwards.must_match("data")"""
     hidden.write_text(right.replace('    backwards.must_match("data")', breaks), encoding="utf-8")
     forwards = (done.submissions / "carl.py").read_text(encoding="utf-8")
-    done.hand_in("carl", forwards.replace("min(1.0, message.data)", "min(1.0, message.data * 1000)"))
+    done.hand_in("carl", forwards.replace("min(LIMIT, message.data)", "min(LIMIT, message.data * 1000)"))
     (done.submissions / "emil.py").unlink()
     code, printed = done.grade()
     assert code == 3, printed
