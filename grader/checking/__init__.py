@@ -1,5 +1,6 @@
-"""The names for authors of checks: `check` marks a check, `fail` ends it, and fixtures give it runs. See
-docs/writing-checks.md.
+"""The names for authors of checks: `check` marks a function as a check, `fail` ends it, and fixtures give it runs.
+
+See docs/writing-checks.md.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -13,7 +14,7 @@ __all__ = ["Exchange", "Message", "Run", "Wrong", "check", "fail"]
 
 
 def __getattr__(name: str) -> Any:
-    """Import runs only when they are used: a command that shows a grade needs only verdicts."""
+    """Import `Run` only when it is used: a command that shows a grade needs only verdicts."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from grader.checking import run

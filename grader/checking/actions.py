@@ -29,22 +29,24 @@ _OVER = "The goal had ended before the request to cancel arrived."
 _TOO_LATE = "Your node answered the request to cancel only after the goal had ended: execute blocks the executor."
 _NEVER = "The goal never ended."
 _STUCK = (
-    "Your node did nothing after it began to execute the goal. Does execute wait by the node's clock, with one thread? "
-    "That thread then reads no clock: run the node in a MultiThreadedExecutor."
+    "Your node did nothing after it began to execute the goal. Does execute wait for the node's clock, with one "
+    "thread? That thread then reads no clock: run the node in a MultiThreadedExecutor."
 )
-_UNASKED = "canceled() is only for a goal that somebody asked to cancel; call abort() to give up any other."
-#: What rclpy logs.
+_UNASKED = "canceled() is only for a goal with a request to cancel; call abort() to give up any other."
+#: rclpy's log line for an exception in execute.
 _RAISED = re.compile(r"Error raised in execute callback: (.*?)(?:, at \S+:\d+)?$", re.MULTILINE)
 
 
 def goals(run: RecordedRun, action: str = "", by: By = "grader") -> tuple[Goal, ...]:
-    """The scenario's goals for the student's server, in order; `by="node"` for those of the student's client."""
+    """Return the scenario's goals for the student's server, in order; with `by="node"`, those of the student's
+    client.
+    """
     name = action or run.only("action" if by == "grader" else "action_client")
     return tuple(goal for goal in run.recording.goals if goal.action == name and goal.by == by)
 
 
 def scenario_goal(run: RecordedRun, number: int) -> Goal:
-    """The scenario's goal with this number. Raises ValueError if it sends no such goal."""
+    """Return the scenario's goal with this number. Raises ValueError if it sends no such goal."""
     for goal in run.recording.goals:
         if goal.number == number and goal.by == "grader":
             return goal
@@ -52,125 +54,135 @@ def scenario_goal(run: RecordedRun, number: int) -> Goal:
 
 
 def must_accept(run: RecordedRun, goal: int = 1) -> None:
-    """The node must accept this goal."""
+    """Check that the node accepts this goal."""
     _must_answer(run, scenario_goal(run, goal), accepted=True)
 
 
 def must_reject(run: RecordedRun, goal: int = 1) -> None:
-    """The node must reject this goal."""
+    """Check that the node rejects this goal."""
     _must_answer(run, scenario_goal(run, goal), accepted=False)
 
 
 def must_go_through(run: RecordedRun, *states: str, goal: int = 1) -> None:
-    """The goal must go through exactly these states, such as "accepted", "executing", "succeeded"; by default,
-    through those of the solution's goal.
+    """Check that the goal goes through exactly these states, such as "accepted", "executing", "succeeded".
+
+    The default is the states of the solution's goal.
     """
-    one = scenario_goal(run, goal)
-    wanted = states or tuple(state.state for state in _solutions(run, goal).states)
-    got = tuple(state.state for state in one.states)
-    _must_answer(run, one, accepted=True) if wanted else None
-    if got != wanted:
-        at = next((s.at for s, w in zip(one.states, wanted, strict=False) if s.state != w), one.at)
-        text = f"expected the states {' → '.join(wanted)}, got {' → '.join(got) or 'none'}."
-        run.wrong_at(at, text, _part(one), " → ".join(wanted), " → ".join(got), _why(run, one, wanted[-1]))
+    student = scenario_goal(run, goal)
+    expected = states or tuple(state.state for state in _solutions(run, goal).states)
+    got = tuple(state.state for state in student.states)
+    _must_answer(run, student, accepted=True) if expected else None
+    if got != expected:
+        at = next((s.at for s, w in zip(student.states, expected, strict=False) if s.state != w), student.at)
+        text = f"expected the states {' → '.join(expected)}, got {' → '.join(got) or 'none'}."
+        run.wrong_at(at, text, _part(student), " → ".join(expected), " → ".join(got), _why(run, student, expected[-1]))
 
 
 def must_end(run: RecordedRun, status: str, goal: int = 1, within: float | None = None) -> None:
-    """The goal must end as "succeeded", "canceled" or "aborted", within this many seconds after it was sent."""
-    one = scenario_goal(run, goal)
-    _must_answer(run, one, accepted=True)
-    if (got := _ended_as(one)) != status:
+    """Check that the goal ends as "succeeded", "canceled" or "aborted", within this many seconds after it was sent."""
+    student = scenario_goal(run, goal)
+    _must_answer(run, student, accepted=True)
+    if (got := _ended_as(student)) != status:
         text = f"it was expected to end as {status}, got {got}."
-        run.wrong_at(_ended_at(one) or one.at, text, _part(one), status, got, _why(run, one, status))
-    late = ((_ended_at(one) or one.at) - one.at) / SECOND
+        run.wrong_at(
+            _ended_at(student) or student.at,
+            text,
+            _part(student),
+            status,
+            got,
+            _why(run, student, status),
+        )
+    late = ((_ended_at(student) or student.at) - student.at) / SECOND
     if within is not None and late > within + 1e-9:
         text = f"it was expected to end within {within:g} s, got {late:.2f} s."
-        run.wrong_at(_ended_at(one), text, _part(one), f"{within:g} s", f"{late:.2f} s")
+        run.wrong_at(_ended_at(student), text, _part(student), f"{within:g} s", f"{late:.2f} s")
 
 
 def must_cancel(run: RecordedRun, goal: int = 1, within: float = 1.0) -> None:
-    """The node must accept the scenario's first request to cancel this goal, and end it as "canceled".
+    """Check that the node accepts the scenario's first request to cancel this goal, and ends the goal as "canceled".
 
-    Both must happen within this many seconds of simulated time, and it must send no feedback after that.
+    Both must happen within this many seconds of simulated time, and the node must send no feedback after that.
     """
-    one = scenario_goal(run, goal)
-    _must_answer(run, one, accepted=True)
-    if not one.cancels:
+    student = scenario_goal(run, goal)
+    _must_answer(run, student, accepted=True)
+    if not student.cancels:
         raise ValueError(f"the scenario {run.scenario} never asks to cancel goal {goal}.")
-    cancel = one.cancels[0]
-    if (got := _ended_as(one)) != "canceled":
+    cancel = student.cancels[0]
+    if (got := _ended_as(student)) != "canceled":
         text = f"after the request to cancel it was expected to end as canceled, got {got}."
-        run.wrong_at(cancel.at, text, _part(one), "canceled", got, _why(run, one, "canceled"))
-    ended = _ended_at(one) or cancel.at
+        run.wrong_at(cancel.at, text, _part(student), "canceled", got, _why(run, student, "canceled"))
+    ended = _ended_at(student) or cancel.at
     late = (ended - cancel.at) / SECOND
     if late > within + 1e-9:
         text = f"it was expected to end within {within:g} s of the request to cancel, got {late:.2f} s."
-        run.wrong_at(cancel.at, text, _part(one), f"{within:g} s", f"{late:.2f} s")
-    if after := [feedback for feedback in one.feedback if feedback.at > ended]:
+        run.wrong_at(cancel.at, text, _part(student), f"{within:g} s", f"{late:.2f} s")
+    if after := [feedback for feedback in student.feedback if feedback.at > ended]:
         text = "no feedback was expected after the goal was canceled, but your node continues to send it."
-        run.wrong_at(after[0].at, text, _part(one), "no feedback", f"{len(after)} messages")
+        run.wrong_at(after[0].at, text, _part(student), "no feedback", f"{len(after)} messages")
 
 
 def must_match_results(run: RecordedRun, field: str = "", action: str = "", tolerance: float = TOLERANCE) -> None:
-    """Each goal's result must have the same `field` as with the solution; without one, every field counts."""
+    """Check that each goal's result has the same `field` as with the solution. By default every field counts."""
 
     def result(goal: Goal) -> dict[str, Any] | None:
         return goal.result
 
-    for one, reference in _match(run, action, "grader", field, tolerance, result, "result"):
-        if reference.finished is not None and one.finished is None:
-            _must_answer(run, one, accepted=True)
-            run.wrong_at(one.at, "a result was expected, got none.", _part(one), "a result", "none", _NEVER)
+    for student, reference in _match(run, action, "grader", field, tolerance, result, "result"):
+        if reference.finished is not None and student.finished is None:
+            _must_answer(run, student, accepted=True)
+            run.wrong_at(student.at, "a result was expected, got none.", _part(student), "a result", "none", _NEVER)
 
 
 def must_match_feedback(
     run: RecordedRun, field: str = "", goal: int = 1, tolerance: float = TOLERANCE, time: float | None = None
 ) -> None:
-    """The goal's feedback must match the solution's, message by message; with `time`, within this many seconds of
-    it."""
-    one, reference = scenario_goal(run, goal), _solutions(run, goal)
-    _must_answer(run, one, accepted=True)
-    pairs = list(zip(reference.feedback, one.feedback, strict=False))
+    """Check that the goal's feedback matches the solution's, message by message.
+
+    With `time`, each message must also come within this many seconds of the solution's.
+    """
+    student, reference = scenario_goal(run, goal), _solutions(run, goal)
+    _must_answer(run, student, accepted=True)
+    pairs = list(zip(reference.feedback, student.feedback, strict=False))
     messages = [(expected.fields, got.fields) for expected, got in pairs]
     for number, (expected, got) in enumerate(pairs, start=1):
-        part = f"{_part(one)}, feedback {number}"
-        run.compare_at(got.at, part, field, got.fields, expected.fields, tolerance, one.action, messages)
-        run.time_at(got.at, expected.at, part, time, since=one.at)
-    wanted_, came_ = len(reference.feedback), len(one.feedback)
-    if wanted_ != came_:
-        text = f"expected {wanted_} feedback messages, got {came_}."
-        never = "" if came_ else "Your node never publishes feedback."
-        run.wrong_at(one.at, text, _part(one), f"{wanted_} messages", came_, never)
+        part = f"{_part(student)}, feedback {number}"
+        run.compare_at(got.at, part, field, got.fields, expected.fields, tolerance, student.action, messages)
+        run.time_at(got.at, expected.at, part, time, since=student.at)
+    expected_count, count = len(reference.feedback), len(student.feedback)
+    if count != expected_count:
+        text = f"expected {expected_count} feedback messages, got {count}."
+        never = "" if count else "Your node never publishes feedback."
+        run.wrong_at(student.at, text, _part(student), f"{expected_count} messages", count, never)
 
 
 def must_match_goals(
     run: RecordedRun, field: str = "", action: str = "", tolerance: float = TOLERANCE, time: float | None = None
 ) -> None:
-    """The node, a client, must send as many goals as the solution, with the same `field`.
+    """Check that the node, a client, sends as many goals as the solution, with the same `field`.
 
-    With `time`, each within this many seconds of the solution's.
+    With `time`, each must be sent within this many seconds of the solution's.
     """
     name = action or run.only("action_client")
-    got, wanted = len(goals(run, name, by="node")), len(_reference_goals(run, name, "node"))
-    if got != wanted:
+    got, expected = len(goals(run, name, by="node")), len(_reference_goals(run, name, "node"))
+    if got != expected:
         clients = sorted({end.topic for end in run.recording.end_points if end.kind == "action client"})
         never = "" if got or name in clients else f"Your node has no action client for {name}."
-        text = f"expected {wanted} goals for {name}, got {got}."
-        run.wrong_at(None, text, "", f"{wanted} goals", got, never or run.waits())
+        text = f"expected {expected} goals for {name}, got {got}."
+        run.wrong_at(None, text, "", f"{expected} goals", got, never or run.waits())
 
     def sent(goal: Goal) -> dict[str, Any] | None:
         return goal.goal
 
-    for one, reference in _match(run, name, "node", field, tolerance, sent, "goal"):
-        run.time_at(one.at, reference.at, _part(one), time)
+    for student, reference in _match(run, name, "node", field, tolerance, sent, "goal"):
+        run.time_at(student.at, reference.at, _part(student), time)
 
 
 def must_ask_only_for_accepted(run: RecordedRun, action: str = "") -> None:
-    """The node, a client, must not ask for the result of a goal that was rejected."""
-    for one in goals(run, action, by="node"):
-        if one.accepted is False and one.asked_result is not None:
+    """Check that the node, a client, does not ask for the result of a goal that was rejected."""
+    for student in goals(run, action, by="node"):
+        if student.accepted is False and student.asked_result is not None:
             text = "it was rejected, but your node asked for its result. Check goal_handle.accepted."
-            run.wrong_at(one.asked_result, text, _part(one), "no request for the result", "one")
+            run.wrong_at(student.asked_result, text, _part(student), "no request for the result", "one")
 
 
 def _match(
@@ -184,19 +196,19 @@ def _match(
 ) -> list[tuple[Goal, Goal]]:
     name = action or run.only("action" if by == "grader" else "action_client")
     both = list(zip(goals(run, name, by), _reference_goals(run, name, by), strict=False))
-    pairs = [(e, g) for one, reference in both if (g := part_of(one)) and (e := part_of(reference))]
-    for one, reference in both:
-        expected, got = part_of(reference), part_of(one)
+    pairs = [(e, g) for student, reference in both if (g := part_of(student)) and (e := part_of(reference))]
+    for student, reference in both:
+        expected, got = part_of(reference), part_of(student)
         if expected is not None and got is not None:
-            at = one.at if what == "goal" else one.finished
-            raised = _raised(run) if what == "result" and one.status == "aborted" and not _is_filled(got) else ""
-            part = f"{_part(one)}, its {what}"
+            at = student.at if what == "goal" else student.finished
+            raised = _raised(run) if what == "result" and student.status == "aborted" and not _is_filled(got) else ""
+            part = f"{_part(student)}, its {what}"
             run.compare_at(at, part, field, got, expected, tolerance, name, pairs, raised)
     return both
 
 
 def _must_answer(run: RecordedRun, goal: Goal, accepted: bool) -> None:
-    wanted = "accepted" if accepted else "rejected"
+    expected = "accepted" if accepted else "rejected"
     if goal.accepted is None:
         servers = sorted({end.topic for end in run.recording.end_points if end.kind == "action server"})
         if goal.action not in servers:
@@ -204,18 +216,18 @@ def _must_answer(run: RecordedRun, goal: Goal, accepted: bool) -> None:
             text = f"your node has no action {goal.action}. Its actions are: {names}."
             run.wrong_at(goal.at, text, "", goal.action, names)
         text = "your node never said whether it accepts the goal. Does a callback block it?"
-        run.wrong_at(goal.at, text, _part(goal), wanted, "no answer")
+        run.wrong_at(goal.at, text, _part(goal), expected, "no answer")
     if goal.accepted != accepted:
         got = "accepted" if goal.accepted else "rejected"
-        run.wrong_at(goal.at, f"it must be {wanted}, but your node {got} it.", _part(goal), wanted, got)
+        run.wrong_at(goal.at, f"it must be {expected}, but your node {got} it.", _part(goal), expected, got)
 
 
-def _why(run: RecordedRun, goal: Goal, wanted: str) -> str:
-    """The common mistake behind a wrong end of a goal; empty if none is known."""
+def _why(run: RecordedRun, goal: Goal, expected: str) -> str:
+    """Return the common mistake behind a wrong end of a goal; empty if none is known."""
     got, cancel = _ended_as(goal), goal.cancels[0] if goal.cancels else None
-    if wanted == "canceled" and cancel:
+    if expected == "canceled" and cancel:
         return _why_not_canceled(goal, cancel, got)
-    if wanted == "succeeded" and got == "aborted":
+    if expected == "succeeded" and got == "aborted":
         return _FORGOT if goal.result and _is_filled(goal.result) else _raised(run) or _ABORTED
     if _ended_at(goal) is not None:
         return ""
@@ -223,21 +235,21 @@ def _why(run: RecordedRun, goal: Goal, wanted: str) -> str:
 
 
 def _raised(run: RecordedRun) -> str:
-    """What execute raised first in this scenario, by rclpy's log; empty if it did not."""
-    found = _RAISED.search(run.recording.log)
-    if not found:
+    """Return what execute raised first in this scenario, according to rclpy's log; empty if it raised nothing."""
+    match = _RAISED.search(run.recording.log)
+    if not match:
         return ""
-    text = f"Your execute callback raised an exception: {found[1].strip()}."
-    return f"{text} {_UNASKED}" if "event CANCELED" in found[1] else text
+    text = f"Your execute callback raised an exception: {match[1].strip()}."
+    return f"{text} {_UNASKED}" if "event CANCELED" in match[1] else text
 
 
 def _does_nothing_after(run: RecordedRun, goal: Goal) -> bool:
-    """Whether the goal is executed, with no sign of life from the node after that."""
+    """Return whether the goal is executed, and the node does nothing after that."""
     begun = next((state.at for state in goal.states if state.state == "executing"), None)
     if begun is None or goal.feedback:
         return False
-    answers = [one.at for one in run.recording.goals if one.accepted is not None and one.at > begun]
-    return not answers and not any(one.at > begun for one in run.recording.received)
+    answers = [other.at for other in run.recording.goals if other.accepted is not None and other.at > begun]
+    return not answers and not any(message.at > begun for message in run.recording.received)
 
 
 def _solutions(run: RecordedRun, number: int) -> Goal:
@@ -276,7 +288,7 @@ def _ended_at(goal: Goal) -> int | None:
 
 
 def _is_filled(result: Any) -> bool:
-    """Whether a result differs from an empty one."""
+    """Return whether a result differs from an empty one."""
     if isinstance(result, dict):
         return any(_is_filled(part) for part in result.values())
     return bool(result)

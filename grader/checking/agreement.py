@@ -31,7 +31,7 @@ _OF_LIBRARIES = frozenset(("/clock", "/parameter_events", "/rosout", "/tf", "/tf
 
 @dataclass(frozen=True)
 class _Declared:
-    """One table of exercise.toml: its kind, its place among the tables of this kind, and what it says."""
+    """One table of exercise.toml: its kind, its number among the tables of this kind, and its values."""
 
     kind: str
     number: int
@@ -42,8 +42,9 @@ class _Declared:
 
 
 def disagreements(exercise: Exercise) -> Iterator[ExerciseError]:
-    """Each difference between solution.py and exercise.toml, as far as the source literally says what it creates. A
-    line outside the markers is also in the starter. It reports nothing for a solution that can't be read.
+    """Yield each difference between solution.py and exercise.toml, as far as the source literally says what it creates.
+
+    A line outside the markers is also in the starter. A solution that can't be read yields nothing.
     """
     file = exercise.solution_file
     if file is None or not file.exists():
@@ -53,15 +54,15 @@ def disagreements(exercise: Exercise) -> Iterator[ExerciseError]:
     declared, made = tuple(_declared(exercise)), created(source, exercise.node_name)
     for one in made:
         if one.name is not None:
-            found = _difference(one, declared, exercise)
-            if found:
+            problem = _difference(one, declared, exercise)
+            if problem:
                 whose = "the solution" if one.line in hidden else "the starter"
-                yield ExerciseError(file, f"{whose} {found}", _FIX, one.line)
+                yield ExerciseError(file, f"{whose} {problem}", _FIX, one.line)
     yield from _missing(exercise, file, source, declared, made)
 
 
 def _declared(exercise: Exercise) -> Iterator[_Declared]:
-    """All tables, numbered as they follow one another in exercise.toml, kind by kind."""
+    """Yield all tables, kind by kind, each with its number in exercise.toml."""
     counts = dict.fromkeys(_WORDS, -1)
     for topic in exercise.topics:
         counts[topic.direction] += 1
@@ -74,7 +75,7 @@ def _declared(exercise: Exercise) -> Iterator[_Declared]:
 
 
 def _difference(one: Created, declared: tuple[_Declared, ...], exercise: Exercise) -> str:
-    """How it differs from the declaration, to follow the words "the solution"; empty if it does not."""
+    """Return how it differs from the declaration, to follow the words "the solution"; empty if it does not."""
     verb = "declares" if one.kind == "parameter" else "creates"
     what = f"{verb} {_WORDS[one.kind]} {one.name}"
     same = [other for other in declared if (other.kind, other.name) == (one.kind, one.name)]
@@ -88,7 +89,7 @@ def _difference(one: Created, declared: tuple[_Declared, ...], exercise: Exercis
 
 
 def _other_value(one: Created, other: _Declared, what: str) -> str:
-    """The first of type, QoS and default that differs from the declaration."""
+    """Return the first of type, QoS and default that differs from the declaration."""
     pairs = [("type", one.type, other.type), ("default", one.default, other.default)]
     if one.kind == other.kind and one.qos and other.qos:
         pairs += [(name, getattr(one.qos, name), getattr(other.qos, name)) for name in vars(other.qos)]
@@ -99,14 +100,14 @@ def _other_value(one: Created, other: _Declared, what: str) -> str:
 
 
 def _shown(value: Any) -> str:
-    """As exercise.toml writes it."""
+    """Return a value as exercise.toml writes it."""
     return f'"{value}"' if isinstance(value, str) else str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _missing(
     exercise: Exercise, file: Path, source: str, declared: tuple[_Declared, ...], made: tuple[Created, ...]
 ) -> Iterator[ExerciseError]:
-    """What is declared, but neither created nor named anywhere in the solution."""
+    """Yield what is declared, but neither created nor named anywhere in the solution."""
     toml, written = exercise.folder / "exercise.toml", texts(source)
     computed = {one.kind for one in made if one.name is None}
     for one in declared:
@@ -114,5 +115,5 @@ def _missing(
         if there or one.kind in computed or one.name in _OF_LIBRARIES or {one.name, one.name.lstrip("/")} & written:
             continue
         verb = "declare" if one.kind == "parameter" else "create"
-        found = f"{file.name} does not {verb} {_WORDS[one.kind]} {one.name}, which is declared here"
-        yield ExerciseError(toml, found, _FIX, line_of(toml, one.kind, one.number, ""))
+        problem = f"{file.name} does not {verb} {_WORDS[one.kind]} {one.name}, which is declared here"
+        yield ExerciseError(toml, problem, _FIX, line_of(toml, one.kind, one.number, ""))

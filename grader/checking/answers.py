@@ -1,4 +1,4 @@
-"""Helpers for nodes that answer messages: which they answer, when, and with which values."""
+"""Helpers for nodes that answer messages: which messages they answer, when, and with which values."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from grader.checking.message import Exchange, Message
 from grader.checking.patterns import common, fixed_step
 from grader.checking.recorded_run import RecordedRun
 
-#: A value that takes more characters than this is not shown as a whole, but only where it differs.
+#: Of a value with more characters than this, only the first difference is shown.
 LONGEST = 80
 
 
 def must_match(
     run: RecordedRun, field: str, per: str = "", tolerance: float = TOLERANCE, missing_ok: bool = False
 ) -> None:
-    """If the solution answers a message, the node must answer it, with the same `field`.
+    """Check that the node answers each message that the solution answers, with the same `field`.
 
     `per` names the list of names that `field` goes with, so that the order does not count: `must_match("velocity",
     per="name")`. Numbers may differ by `tolerance`, absolute or relative, whichever is larger. With `missing_ok`,
@@ -40,7 +40,7 @@ def _unit(run: RecordedRun, field: str) -> str:
 
 
 def must_answer(run: RecordedRun) -> None:
-    """The node must answer every message that the solution answers, once."""
+    """Check that the node answers every message that the solution answers, once."""
     for exchange in run.exchanges:
         if exchange.expected:
             _answer(run, exchange)
@@ -50,8 +50,9 @@ def must_answer(run: RecordedRun) -> None:
 
 
 def must_answer_at_once(run: RecordedRun, within: float = AT_ONCE) -> None:
-    """Each answer must come before the next message, and within this many seconds of simulated time. Missing answers
-    are ignored, because another check judges them.
+    """Check that each answer comes before the next message, and within this many seconds of simulated time.
+
+    Missing answers are ignored, because another check judges them.
     """
     for exchange in run.exchanges:
         for answer in exchange.answers if exchange.expected else ():
@@ -62,22 +63,22 @@ def must_answer_at_once(run: RecordedRun, within: float = AT_ONCE) -> None:
 
 
 def must_vary(run: RecordedRun, field: str, per: str = "") -> None:
-    """If the solution's `field` changes from message to message, the node's must change too.
+    """Check that the node's `field` changes from message to message if the solution's does.
 
-    A node that publishes zeros or a constant fails, one with wrong values does not. `per` is as in `must_match`.
+    A node that publishes zeros or a constant fails; one with wrong values does not. `per` is as in `must_match`.
     """
     expected, got = _series(run, field, per, reference=True), _series(run, field, per, reference=False)
     varying = {name: values for name, values in expected.items() if len(set(values)) > 1}
     if not varying:
         return
-    given = [value for values in got.values() for value in values]
-    if not given:
+    published = [value for values in got.values() for value in values]
+    if not published:
         run.wrong(run.exchanges[-1], f"no {field} was published at all.", "", f"a {field} that changes", "none")
     if any(len(set(values)) > 1 for values in got.values()):
         return
-    alike = len(set(given)) == 1
+    alike = len(set(published)) == 1
     constant, name = (
-        shown(given[0], _unit(run, field)),
+        shown(published[0], _unit(run, field)),
         next((name for name in got if name in varying and not alike), ""),
     )
     text = f"every {field} is {constant}" if alike else f"{field} is {constant} in every message"
@@ -86,23 +87,25 @@ def must_vary(run: RecordedRun, field: str, per: str = "") -> None:
 
 
 def _series(run: RecordedRun, field: str, per: str, reference: bool) -> dict[str, list[Any]]:
-    """Every value of `field`, by name, in the order of the messages."""
-    found: dict[str, list[Any]] = {}
+    """Return every value of `field`, by name, in the order of the messages."""
+    series: dict[str, list[Any]] = {}
     for exchange in run.exchanges:
         for message in exchange.expected if reference else exchange.answers:
             values = message.by(per, field) if per else {"": message.value(field)}
             for name, value in values.items():
-                found.setdefault(str(name), []).append(value)
-    return found
+                series.setdefault(str(name), []).append(value)
+    return series
 
 
 def must_be_silent(run: RecordedRun) -> None:
-    """The node must not answer messages that the solution does not answer. The very first message does not count."""
+    """Check that the node does not answer messages that the solution does not answer. The first message does not
+    count.
+    """
     _must_be_silent(run, run.exchanges[1:])
 
 
 def must_be_silent_at_first(run: RecordedRun) -> None:
-    """The node must not answer the very first message, if the solution does not."""
+    """Check that the node does not answer the very first message, if the solution does not."""
     _must_be_silent(run, run.exchanges[:1])
 
 
@@ -127,8 +130,8 @@ def _answer(run: RecordedRun, exchange: Exchange) -> Message:
 
 
 def _unmatched(run: RecordedRun, topic: str) -> str:
-    """Say so if no message arrived because a subscription asks for more than the topic's publisher offers."""
-    declared = next((one for one in run.exercise.inputs if one.name == topic), None)
+    """Explain that no message arrived because a subscription asks for more than the topic's publisher offers."""
+    declared = next((declared for declared in run.exercise.inputs if declared.name == topic), None)
     if declared is None or any(sent.heard for sent in run.sent if sent.topic == topic):
         return ""
     for end in subscriptions(run, topic):
@@ -147,16 +150,16 @@ def _never(run: RecordedRun) -> str:
 
 def _compare(run: RecordedRun, exchange: Exchange, answer: Message, field: str, unit: str, tolerance: float) -> None:
     got, expected = answer.value(field), exchange.expected[0].value(field)
-    found = difference(got, expected, tolerance)
-    if not found:
+    differing = difference(got, expected, tolerance)
+    if not differing:
         return
     place = field
-    if found.path and len(shown(expected)) > LONGEST:
-        place += found.path if found.path.startswith("[") else f".{found.path}"
-        got, expected = found.got, found.expected
-    wanted, came = shown(expected, unit), shown(got, unit)
-    text = f"expected {place} {wanted}, got {came}.{pattern(run, field, unit=unit)}"
-    run.wrong(exchange, text, "", wanted, came)
+    if differing.path and len(shown(expected)) > LONGEST:
+        place += differing.path if differing.path.startswith("[") else f".{differing.path}"
+        got, expected = differing.got, differing.expected
+    expected_text, got_text = shown(expected, unit), shown(got, unit)
+    text = f"expected {place} {expected_text}, got {got_text}.{pattern(run, field, unit=unit)}"
+    run.wrong(exchange, text, "", expected_text, got_text)
 
 
 def _compare_each(
@@ -182,7 +185,7 @@ def _compare_each(
 
 
 def pattern(run: RecordedRun, field: str, per: str = "", unit: str = "") -> str:
-    """A sentence about what all values of `field` have in common, beginning with a space; empty if nothing.
+    """Return a sentence about what all values of `field` have in common, beginning with a space; empty if nothing.
 
     `per` names the list of names that `field` goes with; without it, `field` is one number.
     """
@@ -203,7 +206,7 @@ def pattern(run: RecordedRun, field: str, per: str = "", unit: str = "") -> str:
 
 
 def _elapsed(before: Exchange | None, exchange: Exchange) -> float:
-    """Seconds between the stamps of two messages; of messages without a stamp, between their arrivals."""
+    """Return the seconds between the stamps of two messages; without stamps, between their arrivals."""
     if before is None:
         return 0.0
     if "header" in exchange.sent._fields:
@@ -212,7 +215,7 @@ def _elapsed(before: Exchange | None, exchange: Exchange) -> float:
 
 
 def _copied(run: RecordedRun, field: str, per: str) -> str:
-    """The field of the messages that arrived which every answer repeats; empty if none."""
+    """Return the field of the incoming messages that every answer repeats; empty if none."""
     answered = [exchange for exchange in run.exchanges if exchange.expected and exchange.answers]
     fields = answered[0].sent._fields if answered else {}
     return next((name for name in fields if name != per and _is_copied(answered, field, per, name)), "")
@@ -230,11 +233,11 @@ def _is_copied(answered: list[Exchange], field: str, per: str, name: str) -> boo
 
 
 def _values(message: Message, field: str, per: str) -> dict[str, float]:
-    """The numbers in a field, by name."""
+    """Return the numbers in a field, by name."""
     value = message.value(field)
     if isinstance(value, list):
         names = message.value(per) if per else [str(i) for i in range(len(value))]
         values = dict(zip(names, value, strict=False))
     else:
         values = {"": value}
-    return {name: one for name, one in values.items() if isinstance(one, (int, float))}
+    return {name: value for name, value in values.items() if isinstance(value, (int, float))}

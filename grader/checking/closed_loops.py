@@ -1,4 +1,4 @@
-"""Helpers for closed loops: whether what is controlled reaches a place in time, without overshoot, and stays."""
+"""Helpers for closed loops: whether the controlled position reaches a place in time, without overshoot, and stays."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ Way = list[tuple[float, tuple[float, ...]]]
 
 
 def trajectory(run: RecordedRun, topic: str, *fields: str) -> Way:
-    """(seconds after the start, values of `fields`) of each message on `topic`, whoever published it."""
+    """Return (seconds after the start, values of `fields`) of each message on `topic`, whichever node published it."""
     messages: list[SentMessage | ReceivedMessage] = [*run.recording.sent]
-    messages += [one for one in run.recording.received if not one.subscriber]
-    on_it = sorted((one for one in messages if one.topic == topic), key=lambda one: one.at)
-    if not on_it:
+    messages += [message for message in run.recording.received if not message.subscriber]
+    on_topic = sorted((message for message in messages if message.topic == topic), key=lambda message: message.at)
+    if not on_topic:
         raise ValueError(f"there is no message on {topic} in the scenario {run.scenario}.")
-    return [(seconds(one.at), tuple(float(field_of(one.fields, name)) for name in fields)) for one in on_it]
+    return [(seconds(m.at), tuple(float(field_of(m.fields, name)) for name in fields)) for m in on_topic]
 
 
 def must_reach(
@@ -35,10 +35,11 @@ def must_reach(
     stay: bool = True,
     start: float = 0.0,
 ) -> None:
-    """The position published on `topic` must be within `tolerance` of `place` by `within` s after `start`.
+    """Check that the position published on `topic` is within `tolerance` of `place` by `within` s after `start`.
 
-    `place` has a value for each field that counts: `{"x": 9.0, "y": 2.0}`. With `overshoot` it must not go further
-    beyond it than that, as seen from where it was at `start`. Unless `stay` is False it must not leave it again.
+    `place` has a value for each field that counts: `{"x": 9.0, "y": 2.0}`. With `overshoot`, it must not go further
+    than that beyond the place, as seen from its position at `start`. Unless `stay` is False, it must not leave the
+    place again.
     """
     way = [(at, point) for at, point in trajectory(run, topic, *place) if at >= start - 1e-9]
     goal, unit = tuple(place.values()), run.unit_of(next(iter(place)), topic)
@@ -58,12 +59,14 @@ def must_reach(
 def must_stay_between(
     run: RecordedRun, topic: str, field: str, lowest: float, highest: float, start: float = 0.0
 ) -> None:
-    """Each value of `field` on `topic`, from `start` on (s), must be between these two, whoever published it."""
+    """Check that each value of `field` on `topic`, from `start` on (s), is between these two, whichever node
+    published it.
+    """
     unit = run.unit_of(field, topic)
     for at, (value,) in trajectory(run, topic, field):
         if at >= start - 1e-9 and not lowest - 1e-9 <= value <= highest + 1e-9:
-            wanted, came = f"{lowest:g} to {_measure(highest, unit)}", _measure(value, unit)
-            run.wrong_at(_ns(at), f"expected {field} from {wanted}, got {came}.", topic, wanted, came)
+            expected, got = f"{lowest:g} to {_measure(highest, unit)}", _measure(value, unit)
+            run.wrong_at(_ns(at), f"expected {field} from {expected}, got {got}.", topic, expected, got)
 
 
 def _never_there(
@@ -77,14 +80,14 @@ def _never_there(
     reached: float | None,
     start: float,
 ) -> None:
-    wanted = f"within {_measure(tolerance, unit)} of {words} after {within:g} s"
+    expected = f"within {_measure(tolerance, unit)} of {words} after {within:g} s"
     if reached is not None:
-        text = f"it was expected {wanted}, but got there only after {reached - start:.2f} s."
-        run.wrong_at(_ns(reached), text, "", wanted, f"after {reached - start:.2f} s")
-    at, closest = min(way, key=lambda one: math.dist(one[1], goal))
+        text = f"it was expected {expected}, but got there only after {reached - start:.2f} s."
+        run.wrong_at(_ns(reached), text, "", expected, f"after {reached - start:.2f} s")
+    at, closest = min(way, key=lambda point: math.dist(point[1], goal))
     distance = math.dist(closest, goal)
-    text = f"it was expected {wanted}; the closest it got was {_measure(distance, unit)}."
-    run.wrong_at(_ns(at), text, "", wanted, _measure(distance, unit), _of_way(way, goal))
+    text = f"it was expected {expected}; the closest it got was {_measure(distance, unit)}."
+    run.wrong_at(_ns(at), text, "", expected, _measure(distance, unit), _of_way(way, goal))
 
 
 def _beyond(
@@ -104,12 +107,12 @@ def _beyond(
         beyond = sum(a * (p - g) for a, p, g in zip(ahead, point, goal, strict=True))
         if beyond > overshoot + 1e-9:
             furthest = max(sum(a * (p - g) for a, p, g in zip(ahead, q, goal, strict=True)) for _, q in way)
-            wanted, came = f"at most {_measure(overshoot, unit)}", _measure(furthest, unit)
-            run.wrong_at(_ns(at), f"it goes {came} beyond {words}; {wanted} is allowed.", "", wanted, came)
+            expected, got = f"at most {_measure(overshoot, unit)}", _measure(furthest, unit)
+            run.wrong_at(_ns(at), f"it goes {got} beyond {words}; {expected} is allowed.", "", expected, got)
 
 
 def _of_way(way: Way, goal: tuple[float, ...]) -> str:
-    """What is systematically wrong with a path that does not lead to the goal."""
+    """Return what is systematically wrong with a path that does not lead to the goal."""
     begin, end = way[0][1], way[-1][1]
     length = math.dist(begin, goal)
     if all(math.dist(point, begin) < 1e-6 for _, point in way):

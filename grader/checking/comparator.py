@@ -27,8 +27,8 @@ TOLERANCE = 1e-6
 class Difference:
     """The first place in which two values differ.
 
-    `path` leads to it from the value that was compared, such as `[2].position.x`; it is empty where the values
-    themselves differ. `got` and `expected` are what is there. For lists of unequal length these are the lists.
+    `path` leads to it from the value that was compared, such as `[2].position.x`. It is empty if the values themselves
+    differ. `got` and `expected` are the two values there; for lists of unequal length they are the lists.
     """
 
     path: str
@@ -37,14 +37,14 @@ class Difference:
 
 
 def equal(got: Any, expected: Any, tolerance: float = TOLERANCE) -> bool:
-    """Whether two values are the same by the rules above."""
+    """Return whether two values are the same by the rules above."""
     return difference(got, expected, tolerance) is None
 
 
 def difference(got: Any, expected: Any, tolerance: float = TOLERANCE, path: str = "") -> Difference | None:
-    """The first place, in the order of the fields and elements, in which two values differ; None where they are equal.
+    """Return the first place, in the order of fields and elements, in which two values differ; None if they are equal.
 
-    Raises ValueError where `tolerance` is negative or not a number.
+    Raises ValueError if `tolerance` is negative or not a number.
     """
     if not tolerance >= 0:
         raise ValueError(f"tolerance={tolerance!r}: a tolerance is a number of 0 or more.")
@@ -54,8 +54,8 @@ def difference(got: Any, expected: Any, tolerance: float = TOLERANCE, path: str 
         steps = [(f"{path}[{i}]", *pair) for i, pair in enumerate(zip(got, expected, strict=True))]
     else:
         return None if _same(got, expected, tolerance) else Difference(path, got, expected)
-    found = (difference(mine, its, tolerance, step) for step, mine, its in steps)
-    return next((one for one in found if one), None)
+    differences = (difference(mine, its, tolerance, step) for step, mine, its in steps)
+    return next(filter(None, differences), None)
 
 
 def _same(got: Any, expected: Any, tolerance: float) -> bool:
@@ -72,12 +72,12 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float))
 
 
-#: How many elements of a list are shown, and how many characters of anything else.
+#: The longest list that is shown whole, and the most characters of anything else.
 MOST_ELEMENTS, MOST_CHARACTERS = 8, 200
 
 
 def shown(value: Any, unit: str = "") -> str:
-    """A value for people: `0.25 rad/s`, `[1, 2, 3 …]`, a stamp as `100.250000000`."""
+    """Return a value for people: `0.25 rad/s`, `[1, 2, 3 …]`, a stamp as `100.250000000`."""
     if isinstance(value, float):
         return f"{value:.6g}{f' {unit}' if unit else ''}"
     if isinstance(value, dict) and set(value) == {"sec", "nanosec"}:

@@ -1,7 +1,7 @@
-"""What a program creates, read from its source: publishers, subscriptions, services, actions, parameters.
+"""What a program creates, according to its source: publishers, subscriptions, services, actions, parameters.
 
-It reads only literal values: `"/full"`, a name that gets its value once, `QoSProfile(depth=1)`. A computed value is
-None, and nothing can be said about it.
+It reads only literal values: `"/full"`, a name that is assigned once, `QoSProfile(depth=1)`. A computed value is None,
+because nothing can be said about it.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ _SENSOR_DEPTH = 5
 
 @dataclass(frozen=True)
 class Created:
-    """One call that creates something, in a line counted from 1.
+    """One call that creates something, with its line, counted from 1.
 
     `kind` is "publish", "subscribe", "service", "client", "action", "action_client" or "parameter". `name` is the full
-    name of a topic, such as `/full`, or a parameter's. `type` is written `package/msg/Name`, and for a parameter as
-    exercise.toml writes it. Anything that the source does not say literally is None; `default` is a parameter's.
+    name of a topic, such as `/full`, or the name of a parameter. `type` is written `package/msg/Name`, and for a
+    parameter as in exercise.toml. `default` is a parameter's. Anything that the source does not say literally is None.
     """
 
     kind: str
@@ -51,7 +51,7 @@ class Created:
 
 
 def created(source: str, node: str) -> tuple[Created, ...]:
-    """Everything that a program creates, in the order of its lines. `node` is its node's name, for names with ~.
+    """Return everything that a program creates, in the order of its lines. `node` is its node's name, for names with ~.
 
     A source that is not valid Python creates nothing.
     """
@@ -59,7 +59,7 @@ def created(source: str, node: str) -> tuple[Created, ...]:
 
 
 def texts(source: str) -> frozenset[str]:
-    """Every string in a program, except docstrings; empty for what is not valid Python."""
+    """Return every string in a program, except docstrings; empty if the program is not valid Python."""
     tree = _parsed(source)
     alone = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     constants = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) not in alone]
@@ -67,7 +67,7 @@ def texts(source: str) -> frozenset[str]:
 
 
 def _parsed(source: str) -> ast.Module:
-    """A program; one that is not valid Python is as an empty one."""
+    """Return the parsed program; an empty one if it is not valid Python."""
     try:
         return ast.parse(source)
     except (SyntaxError, ValueError):
@@ -86,8 +86,8 @@ class _Source:
         self.in_namespace = "namespace" in keywords
 
     def created(self) -> tuple[Created, ...]:
-        found = [self._created(call) for call in ast.walk(self.tree) if isinstance(call, ast.Call)]
-        return tuple(sorted((one for one in found if one), key=lambda one: one.line))
+        made = [self._created(call) for call in ast.walk(self.tree) if isinstance(call, ast.Call)]
+        return tuple(sorted(filter(None, made), key=lambda call: call.line))
 
     def _created(self, call: ast.Call) -> Created | None:
         kind, places = _CALLS.get(_called(call), ("", ()))
@@ -99,13 +99,13 @@ class _Source:
         return Created(kind, call.lineno, self._full_name(name), self._type(type_), self._qos(last))
 
     def _argument(self, call: ast.Call, place: tuple[int, str] | None) -> ast.expr | None:
-        """The argument of a call in this place; a name that has only one value is that value."""
-        if place is None or any(isinstance(given, ast.Starred) for given in call.args):
+        """Return the argument of a call at this place. A name that is assigned once is replaced by its value."""
+        if place is None or any(isinstance(argument, ast.Starred) for argument in call.args):
             return None
         index, keyword = place
-        given = call.args[index] if index < len(call.args) else None
-        given = next((one.value for one in call.keywords if one.arg == keyword), given)
-        return self.values.get(given.id, given) if isinstance(given, ast.Name) else given
+        argument = call.args[index] if index < len(call.args) else None
+        argument = next((named.value for named in call.keywords if named.arg == keyword), argument)
+        return self.values.get(argument.id, argument) if isinstance(argument, ast.Name) else argument
 
     def _parameter(self, line: int, name: ast.expr | None, default: ast.expr | None) -> Created:
         value = _literal(default)
@@ -113,64 +113,64 @@ class _Source:
         text = _literal(name)
         return Created("parameter", line, text if isinstance(text, str) else None, type_, default=value)
 
-    def _full_name(self, given: ast.expr | None) -> str | None:
-        """A topic's full name; None if it is not known, or if a namespace comes before it."""
-        name = _literal(given)
+    def _full_name(self, argument: ast.expr | None) -> str | None:
+        """Return a topic's full name; None if it is not known, or if a namespace comes before it."""
+        name = _literal(argument)
         if not isinstance(name, str) or name.startswith("/"):
             return name if isinstance(name, str) else None
         if self.in_namespace:
             return None
         return f"/{self.node}/{name[2:]}" if name.startswith("~/") else f"/{name}"
 
-    def _type(self, given: ast.expr | None) -> str | None:
-        parts = _dotted(given).split(".") if given is not None else []
+    def _type(self, argument: ast.expr | None) -> str | None:
+        parts = _dotted(argument).split(".") if argument is not None else []
         if not parts or parts[0] not in self.imports:
             return None
         full = [*self.imports[parts[0]].split("."), *parts[1:]]
         return "/".join(full) if len(full) == 3 and full[1] in ("msg", "srv", "action") else None
 
-    def _qos(self, given: ast.expr | None) -> Qos | None:
-        depth = _literal(given)
+    def _qos(self, argument: ast.expr | None) -> Qos | None:
+        depth = _literal(argument)
         if type(depth) is int:
             return Qos(depth=depth)
-        if given is not None and _dotted(given).endswith("qos_profile_sensor_data"):
+        if argument is not None and _dotted(argument).endswith("qos_profile_sensor_data"):
             return Qos("best_effort", "volatile", _SENSOR_DEPTH)
-        if isinstance(given, ast.Call) and _called(given) == "QoSProfile" and not given.args:
-            return _profile({keyword.arg or "": keyword.value for keyword in given.keywords})
+        if isinstance(argument, ast.Call) and _called(argument) == "QoSProfile" and not argument.args:
+            return _profile({keyword.arg or "": keyword.value for keyword in argument.keywords})
         return None
 
 
-def _profile(given: dict[str, ast.expr]) -> Qos | None:
-    """The QoS of a profile that has a depth and only settings that a task can ask for."""
-    depth = _literal(given.get("depth"))
-    reliability = _policy(given.get("reliability"), "RELIABLE", _RELIABILITIES)
-    durability = _policy(given.get("durability"), "VOLATILE", _DURABILITIES)
-    if set(given) - {"depth", "reliability", "durability"} or type(depth) is not int:
+def _profile(settings: dict[str, ast.expr]) -> Qos | None:
+    """Return the QoS of a profile with a depth and only settings that a task can ask for."""
+    depth = _literal(settings.get("depth"))
+    reliability = _policy(settings.get("reliability"), "RELIABLE", _RELIABILITIES)
+    durability = _policy(settings.get("durability"), "VOLATILE", _DURABILITIES)
+    if set(settings) - {"depth", "reliability", "durability"} or type(depth) is not int:
         return None
     if reliability is None or durability is None:
         return None
     return Qos(cast(Reliability, reliability), cast(Durability, durability), depth)
 
 
-def _policy(given: ast.expr | None, usual: str, words: dict[str, str]) -> str | None:
-    """The policy in the words of exercise.toml; None if it is none of these."""
-    return words.get(_dotted(given).rpartition(".")[2] if given is not None else usual)
+def _policy(argument: ast.expr | None, usual: str, words: dict[str, str]) -> str | None:
+    """Return the policy in the words of exercise.toml; None if it has no word for it."""
+    return words.get(_dotted(argument).rpartition(".")[2] if argument is not None else usual)
 
 
 def _called(call: ast.Call) -> str:
-    """The last name of a call's function: `create_publisher` for `self.create_publisher(…)`."""
+    """Return the last name of a call's function: `create_publisher` for `self.create_publisher(…)`."""
     return _dotted(call.func).rpartition(".")[2]
 
 
 def _dotted(node: ast.expr) -> str:
-    """`a.b.c` as text; only its end, after a dot, if it does not begin with a name."""
+    """Return `a.b.c` as text; if it does not begin with a name, only the part after a dot."""
     if isinstance(node, ast.Attribute):
         return f"{_dotted(node.value)}.{node.attr}"
     return node.id if isinstance(node, ast.Name) else ""
 
 
 def _literal(node: ast.expr | None) -> Any:
-    """The value of a literal; None for everything else."""
+    """Return the value of a literal; None for everything else."""
     try:
         return ast.literal_eval(node) if node is not None else None
     except (ValueError, TypeError):
@@ -178,9 +178,9 @@ def _literal(node: ast.expr | None) -> Any:
 
 
 def _parameter_type(default: ast.expr | None, value: Any) -> str | None:
-    """A parameter's type as exercise.toml writes it, from its default or from `Parameter.Type.DOUBLE`."""
+    """Return a parameter's type as exercise.toml writes it, from its default or from `Parameter.Type.DOUBLE`."""
     if isinstance(value, list) and value:
-        kinds = {_parameter_type(None, one) for one in value}
+        kinds = {_parameter_type(None, element) for element in value}
         only = kinds.pop()
         return f"{only}_array" if only and not kinds else None
     if default is not None and "Type." in _dotted(default):
@@ -189,18 +189,18 @@ def _parameter_type(default: ast.expr | None, value: Any) -> str | None:
 
 
 def _imports(tree: ast.Module) -> Iterator[tuple[str, str]]:
-    """The meaning of each imported name, dotted: Bool -> std_msgs.msg.Bool."""
+    """Yield each imported name with its dotted meaning: Bool -> std_msgs.msg.Bool."""
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):
-            yield from ((one.asname or one.name, f"{node.module}.{one.name}") for one in node.names)
+            yield from ((alias.asname or alias.name, f"{node.module}.{alias.name}") for alias in node.names)
         elif isinstance(node, ast.Import):
-            for one in node.names:
-                root = one.name.partition(".")[0]
-                yield (one.asname, one.name) if one.asname else (root, root)
+            for alias in node.names:
+                root = alias.name.partition(".")[0]
+                yield (alias.asname, alias.name) if alias.asname else (root, root)
 
 
 def _values(tree: ast.Module) -> Iterator[tuple[str, ast.expr]]:
-    """The value of each name that is bound once in the whole program, and never changed in part."""
+    """Yield the value of each name that is bound once in the whole program, and never changed in part."""
     bound = Counter(node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and not _is_read(node))
     bound.update(node.arg for node in ast.walk(tree) if isinstance(node, ast.arg))
     changed = {_dotted(node.value) for node in ast.walk(tree) if isinstance(node, ast.Attribute) and not _is_read(node)}

@@ -1,4 +1,4 @@
-"""Helpers for a program's part of the ROS graph: its nodes, its end points and their QoS, and how it ends."""
+"""Helpers for a program's part of the ROS graph: its nodes, its endpoints and their QoS, and how it ends."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from grader.recording.recording import Endpoint
 
 Kind = Literal["publisher", "subscription", "server", "client", "action server", "action client"]
 
-#: Kind of end point -> what a node does with it, and the words that list others of this kind.
+#: Kind of endpoint -> what a node does with it, and the words before a list of all its endpoints of this kind.
 _WORDS = {
     "publisher": ("publish on", "It publishes on"),
     "subscription": ("subscribe to", "It subscribes to"),
@@ -23,10 +23,10 @@ _WORDS = {
 #: The topic on which the grader publishes simulated time. Every program that uses simulated time subscribes to it.
 CLOCK = "/clock"
 
-#: The subscription of a node that uses the grader's time.
+#: Topics that every node has without creating them.
 OF_EVERY_NODE = (CLOCK, "/rosout", "/parameter_events")
 
-#: And the ends of these that it has: whoever publishes on /clock has made that publisher.
+#: Its own endpoints on these topics. A publisher on /clock is not among them: the student created it.
 _OWN = {
     ("subscription", CLOCK),
     ("publisher", "/rosout"),
@@ -45,40 +45,40 @@ _KINDS: dict[str, Kind] = {
 
 
 def end_points(run: RecordedRun, kind: Kind, name: str = "") -> list[Endpoint]:
-    """The student's end points of a kind, such as "publisher" or "action server"; with `name`, of that topic."""
+    """Return the student's endpoints of a kind, such as "publisher" or "action server"; with `name`, of that topic."""
     return [end for end in run.recording.end_points if end.kind == kind and name in ("", end.topic)]
 
 
 def publishers(run: RecordedRun, topic: str) -> list[Endpoint]:
-    """The student's publishers on `topic`."""
+    """Return the student's publishers on `topic`."""
     return end_points(run, "publisher", topic)
 
 
 def subscriptions(run: RecordedRun, topic: str) -> list[Endpoint]:
-    """The student's subscriptions of `topic`."""
+    """Return the student's subscriptions to `topic`."""
     return end_points(run, "subscription", topic)
 
 
 def topics(run: RecordedRun, kind: Kind) -> list[str]:
-    """Names of all topics that the student's nodes publish (kind "publisher") or subscribe to ("subscription").
+    """Return the names of all topics that the student's nodes publish ("publisher") or subscribe to ("subscription").
 
-    A subscription to `/clock` is left out unless the exercise is about it: the grader makes rclpy have it.
+    The subscription to `/clock` is left out unless the exercise is about it, because the grader makes rclpy create it.
     """
     ours = {CLOCK} - {topic.name for topic in run.exercise.topics} if kind == "subscription" else set()
     return sorted({end.topic for end in end_points(run, kind)} - ours)
 
 
 def must_be_as_declared(run: RecordedRun) -> None:
-    """The program must have the nodes and the interface of exercise.toml, with its QoS, and nothing else."""
+    """Check that the program has the nodes and the interface of exercise.toml, with its QoS, and nothing else."""
     must_have_interface(run, only=True)
     must_have_nodes(run)
     must_have_qos(run)
 
 
 def must_have_interface(run: RecordedRun, only: bool = False) -> None:
-    """The node must have every topic, service and action of exercise.toml, each with its type.
+    """Check that the node has every topic, service and action of exercise.toml, each with its type.
 
-    With `only`, it must have no others, and one end point of each; of several programs, each node at most one.
+    With `only`, it must have no others, and one endpoint of each. Of several programs, each node must have at most one.
     """
     declared = [(_KINDS[topic.direction], topic.name, topic.type) for topic in run.exercise.topics]
     declared += [(_KINDS[one.role], one.name, one.type) for one in run.exercise.endpoints]
@@ -95,34 +95,35 @@ def must_have_interface(run: RecordedRun, only: bool = False) -> None:
 
 
 def must_have_qos(run: RecordedRun, topic: str = "") -> None:
-    """The node's end points on `topic`, or on all topics, must have the reliability and durability of
-    exercise.toml."""
+    """Check that the node's endpoints on `topic`, or on all topics, have the reliability and durability of
+    exercise.toml.
+    """
     for declared in run.exercise.topics:
         if topic not in ("", declared.name):
             continue
-        wanted = f"{declared.reliability} and {declared.durability}"
+        expected = f"{declared.reliability} and {declared.durability}"
         for end in end_points(run, _KINDS[declared.direction], declared.name):
             got = f"{end.reliability} and {end.durability}"
-            if got != wanted:
-                text = f"your {end.kind} on {end.topic} is {got}. Expected {wanted}."
-                _wrong(text, wanted, got, _of_qos(end, declared.durability))
+            if got != expected:
+                text = f"your {end.kind} on {end.topic} is {got}. Expected {expected}."
+                _wrong(text, expected, got, _of_qos(end, declared.durability))
 
 
 def must_have_nodes(run: RecordedRun) -> None:
-    """The program must create the node of exercise.toml (of each of its programs) and no other."""
+    """Check that the program creates the node of exercise.toml (of each of its programs) and no other."""
     names = [program.node for program in run.exercise.programs] or [run.exercise.node_name]
-    wanted = tuple(sorted(f"/{name.lstrip('/')}" for name in names))
+    expected = tuple(sorted(f"/{name.lstrip('/')}" for name in names))
     got, text = ", ".join(run.nodes) or "none", ""
-    if lacking := [name for name in wanted if name not in run.nodes]:
-        text = f"there is no node {lacking[0]}. Expected {', '.join(wanted)}, got {got}."
-    elif len(run.nodes) > len(wanted):
-        text = f"your program creates other nodes, too. Expected {', '.join(wanted)}, got {got}."
+    if lacking := [name for name in expected if name not in run.nodes]:
+        text = f"there is no node {lacking[0]}. Expected {', '.join(expected)}, got {got}."
+    elif len(run.nodes) > len(expected):
+        text = f"your program creates other nodes, too. Expected {', '.join(expected)}, got {got}."
     if text:
-        _wrong(text, ", ".join(wanted), got)
+        _wrong(text, ", ".join(expected), got)
 
 
 def must_end_on_ctrl_c(run: RecordedRun) -> None:
-    """On Ctrl-C the program must end within 2 s, with no traceback. The scenario needs `interrupt=True`."""
+    """Check that the program ends within 2 s of Ctrl-C, without a traceback. The scenario needs `interrupt=True`."""
     if not run.ending.interrupted:
         raise ValueError(f"the scenario {run.scenario} sends no Ctrl-C. Add interrupt=True to it.")
     if not run.ending.ended_in_time:
@@ -134,7 +135,7 @@ def must_end_on_ctrl_c(run: RecordedRun) -> None:
 
 
 def must_survive(run: RecordedRun, program: str = "") -> None:
-    """No program of the submission may end by itself; with `program` (its file), only this one is checked."""
+    """Check that no program of the submission ends by itself; with `program` (its file), check only that one."""
     for exit_ in run.recording.exits:
         if exit_.by == "itself" and program in ("", exit_.program):
             how = f"with code {exit_.code}" if exit_.signal is None else f"by signal {exit_.signal}"
@@ -160,7 +161,7 @@ def _lacks(run: RecordedRun, kind: Kind, name: str) -> NoReturn:
 
 
 def _wrong(text: str, expected: str, got: str, at_all: str = "") -> NoReturn:
-    """End the check: `text` says what is wrong with the program in any scenario."""
+    """End the check: `text` says what is wrong with the program in every scenario."""
     message = f"{text[0].upper()}{text[1:]} {at_all}".strip()
     raise Wrong(Finding(message, expected=expected, got=got))
 

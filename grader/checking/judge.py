@@ -1,4 +1,4 @@
-"""Runs an exercise's checks on recordings, or lists them. The student's program has ended by then."""
+"""Runs an exercise's checks on recordings, or lists the checks. The student's program has ended by then."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from grader.recording.recording import Recording
 def judge(
     exercise: Exercise, recordings: dict[str, Recording], references: dict[str, Recording], titles: dict[str, str]
 ) -> tuple[Verdict, ...]:
-    """The verdict of every check, in the order of the files.
+    """Return the verdict of every check, in the order of the files.
 
     `recordings` are the student's and `references` the solution's, by scenario. Raises `ExerciseError` if the files of
     checks are unusable. Runs pytest in this process, without the plugins that are installed on this machine.
@@ -37,16 +37,17 @@ def judge(
 def runs_of(
     exercise: Exercise, recordings: dict[str, Recording], references: dict[str, Recording], titles: dict[str, str]
 ) -> dict[str, Run]:
-    """What a check sees of each scenario."""
+    """Return what a check sees of each scenario."""
     return {name: Run(exercise, recordings[name], references[name], titles.get(name, "")) for name in recordings}
 
 
 def judge_when_collected(
     exercise: Exercise, scenarios: Iterable[str], given: Callable[[], Mapping[str, Run]]
 ) -> tuple[Verdict, ...]:
-    """The same as `judge`, on what `given` returns for these scenarios.
+    """Judge as `judge` does, on what `given` returns for these scenarios.
 
-    It is called once all checks are collected. Each process that it forks may return other runs, for its own verdicts.
+    `given` is called once all checks are collected. It may fork, and return other runs in each process, for that
+    process's verdicts.
     """
     runs: dict[str, Run | None] = dict.fromkeys(scenarios)
     checks = Checks(before_the_first=lambda: runs.update(given()))
@@ -57,9 +58,11 @@ def judge_when_collected(
 
 
 def load_pytest() -> None:
-    """Make pytest import all its modules, with a session without a test: it imports them once per process. A process
-    that is forked from this one has them, and judges in two thirds of the time."""
-    with contextlib.suppress(OSError), tempfile.TemporaryDirectory() as empty:  # without a folder, it goes without
+    """Make pytest import all its modules, by running a session without a test: it imports them once per process.
+
+    A process that is forked from this one has them already, and judges in two thirds of the time.
+    """
+    with contextlib.suppress(OSError), tempfile.TemporaryDirectory() as empty:  # the modules are then loaded later
         _session(Path(empty), "--capture=no", empty)
 
 
@@ -85,9 +88,9 @@ def run_pytest(exercise: Exercise, runs: Mapping[str, Run | None], checks: Check
 
 
 def _session(folder: Path, *arguments: str, plugins: Sequence[object] = ()) -> int:
-    """Run pytest so that it changes no module, reads no settings, prints nothing and leaves out what is not needed.
+    """Run pytest so that it changes no module, reads no settings, prints nothing and does only what is needed.
 
-    It reads no conftest.py above `folder`, and doesn't look at other files there, because they may belong to anybody.
+    It reads no conftest.py above `folder`, and does not look at other files there, because they may belong to anyone.
     """
     alone = (
         *("--assert=plain", "-c", os.devnull, "--rootdir", str(folder), "--confcutdir", str(folder)),
@@ -114,7 +117,7 @@ def _nothing_from_outside():  # type: ignore[no-untyped-def]  # noqa: ANN202
 
 @dataclass(frozen=True)
 class Listed:
-    """One check. `fixtures` are the names that it uses, directly or by another fixture; they include scenarios."""
+    """One check. `fixtures` are the names that it uses, directly or through another fixture; they include scenarios."""
 
     name: str
     points: float
@@ -123,10 +126,10 @@ class Listed:
 
 
 def listed(exercise: Exercise, scenarios: tuple[str, ...] = ()) -> tuple[Listed, ...]:
-    """Every check of the exercise, in the order in which they stand.
+    """Return every check of the exercise, in the order of the files.
 
-    With names of `scenarios`, a check that uses another one is an error. Raises `ExerciseError` if the files of
-    checks are unusable. Imports them: call it in a process of its own.
+    With names of `scenarios`, a check that uses another one is an error. Raises `ExerciseError` if the files of checks
+    are unusable. Imports them: call it in a process of its own.
     """
     checks = Checks(run=False)
     run_pytest(exercise, dict.fromkeys(scenarios), checks)
@@ -143,8 +146,9 @@ ALIKE = 0.8
 
 
 def with_spelling(verdict: Verdict, topics: Collection[str], node: str) -> Verdict:
-    """Add to a finding about topics the name of the exercise's `topics` that was probably meant. The name of its `node`
-    may be similar to a topic's, and is not a misspelling.
+    """Add to a finding about topics the name of the exercise's `topics` that was probably meant.
+
+    The name of its `node` may be similar to a topic's, and is not a misspelling.
     """
     finding = verdict.finding
     if finding is None or finding.message is not None:

@@ -1,4 +1,4 @@
-"""Answers that come late: how late each is, and what all late ones have in common."""
+"""Late answers: how late each one is, and what all of them have in common."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from grader.scenario.times import SECOND
 #: Fields that say when a message was sent, and nothing about its content.
 _STAMPS = ("header", "stamp")
 
-#: An answer within this time (s) counts as immediate: an asyncio loop may look for messages every millisecond.
+#: An answer within this time (s) counts as immediate: an asyncio loop may poll for messages every millisecond.
 AT_ONCE = 0.01
 
 _NEXT_MESSAGE = " Your node answers each message only when the next one arrives: every answer is one message late."
@@ -25,29 +25,29 @@ _TIMER = (
 
 
 def how_late(run: RecordedRun, exchange: Exchange) -> str:
-    """When the answer that was expected to this exchange's message came, such as "0.45 s later"; empty if it did not.
+    """Return when the expected answer to this exchange's message came, such as "0.45 s later"; empty if it never came.
 
-    An answer counts as this one if it says the same, and if it is not the right answer to the message it came after.
+    An answer counts as this one if it has the same content, and if it is not the right answer to the message before it.
     """
-    wanted = exchange.expected[0]._fields
+    expected = exchange.expected[0]._fields
     for received in run.recording.received:
-        if received.after > exchange.number and same(received.fields, wanted) and not _is_in_time(run, received):
+        if received.after > exchange.number and same(received.fields, expected) and not _is_in_time(run, received):
             return _delay(run, exchange, received.at, received.after)
     return ""
 
 
 def is_late(exchange: Exchange, answer: Message, within: float) -> bool:
-    """Whether an answer came after the next message, or more than `within` s after its own."""
+    """Return whether an answer came after the next message, or more than `within` s after its own."""
     return answer.after > exchange.number or answer.at - exchange.sent.at > within + 1e-9
 
 
 def delay(run: RecordedRun, exchange: Exchange, answer: Message) -> str:
-    """How late an answer is, such as "one message late" or "0.45 s later"."""
+    """Return how late an answer is, such as "one message late" or "0.45 s later"."""
     return _delay(run, exchange, answer.at_ns, answer.after)
 
 
 def in_general(run: RecordedRun) -> str:
-    """What all late answers have in common, as sentences that begin with a space; empty if nothing."""
+    """Return what all late answers have in common, as sentences that begin with a space; empty if nothing."""
     pairs = [(exchange, answer) for exchange in run.exchanges for answer in exchange.answers if exchange.expected]
     late = [(exchange, answer) for exchange, answer in pairs if is_late(exchange, answer, AT_ONCE)]
     if len(late) < FEWEST or len(late) < len(pairs):
@@ -66,13 +66,13 @@ def in_general(run: RecordedRun) -> str:
 
 
 def _with_next(run: RecordedRun, exchange: Exchange, answer: Message) -> bool:
-    """Whether an answer came at the simulated time of the next message."""
+    """Return whether an answer came at the simulated time of the next message."""
     sent = run.recording.sent
     return exchange.number < len(sent) and answer.at_ns == sent[exchange.number].at
 
 
 def same(got: Any, expected: Any) -> bool:
-    """Whether two messages say the same, or two parts of them; stamps do not count."""
+    """Return whether two messages, or two parts of messages, have the same content; stamps do not count."""
     return equal(_timeless(got), _timeless(expected))
 
 
@@ -83,7 +83,7 @@ def _timeless(value: Any) -> Any:
 
 
 def _is_in_time(run: RecordedRun, received: ReceivedMessage) -> bool:
-    """Whether a message is the right answer to the message that it came after."""
+    """Return whether a message is the right answer to the message before it."""
     expected = run.exchanges[received.after - 1].expected
     return bool(expected) and same(received.fields, expected[0]._fields)
 
@@ -100,7 +100,7 @@ def _shown(seconds: float) -> str:
 
 
 def is_one_late(run: RecordedRun) -> bool:
-    """Whether every answer is the right one to the message before."""
+    """Return whether every answer is the right one to the previous message."""
     pairs = [
         (before.expected[0]._fields, exchange.expected[0]._fields, exchange.answers[0]._fields)
         for before, exchange in zip(run.exchanges, run.exchanges[1:], strict=False)

@@ -1,4 +1,4 @@
-"""Messages as a check sees them, and which of them answer which."""
+"""Messages as a check sees them, and which messages answer which."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ class Part:
 
 
 class Message(Part):
-    """A message that was sent or received: its fields by name, its `stamp` (s), its topic, and when it arrived (s). For
-    a message sent, `heard` says whether the student's node subscribed to its topic at that moment. For a message
-    received, `after` is the number of messages that had been sent by then. `at_ns` is its moment of simulated time in
-    nanoseconds.
+    """A message that was sent or received: its fields by name, its `stamp` (s), its topic, and when it arrived (s).
+
+    For a sent message, `heard` says whether the student's node subscribed to its topic at that moment. For a received
+    message, `after` is the number of messages that had been sent by then. `at_ns` is its simulated time in nanoseconds.
     """
 
     def __init__(self, kept: SentMessage | ReceivedMessage) -> None:
@@ -44,21 +44,21 @@ class Message(Part):
 
     @property
     def stamp(self) -> float:
-        """The header's stamp in seconds."""
+        """Return the header's stamp in seconds."""
         return self.stamp_ns / SECOND
 
     @property
     def stamp_ns(self) -> int:
-        """The header's stamp in nanoseconds."""
+        """Return the header's stamp in nanoseconds."""
         stamp = self._fields["header"]["stamp"]
         return int(stamp["sec"]) * SECOND + int(stamp["nanosec"])
 
     def value(self, field: str) -> Any:
-        """A field by its full name, such as `header.frame_id`."""
+        """Return a field by its full name, such as `header.frame_id`."""
         return field_of(self._fields, field)
 
     def by(self, key: str, field: str) -> dict[str, Any]:
-        """Two lists as a dictionary: `by("name", "velocity")` gives each joint's velocity."""
+        """Return two lists as a dictionary: `by("name", "velocity")` gives each joint's velocity."""
         return dict(zip(self.value(key), self.value(field), strict=False))
 
 
@@ -76,7 +76,7 @@ class Exchange:
 
 
 def exchanges(recording: Recording, reference: Recording) -> list[Exchange]:
-    """Each message sent, with the node's answers and the solution's."""
+    """Return each message sent, with the node's answers and the solution's."""
     answers, expected = _answers(recording), _answers(reference)
     return [
         Exchange(i + 1, Message(sent), tuple(answers.get(i, ())), tuple(expected.get(i, ())))
@@ -85,7 +85,7 @@ def exchanges(recording: Recording, reference: Recording) -> list[Exchange]:
 
 
 def _answers(recording: Recording) -> dict[int, list[Message]]:
-    """Index of a message sent -> what was received for it.
+    """Return what was received for each message sent, by the index of that message.
 
     A message is matched by its stamp if exactly one message sent has that stamp, otherwise by when it arrived.
     """

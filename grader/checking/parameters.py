@@ -13,68 +13,68 @@ ANY: Any = object()
 
 
 def typed(value: Any) -> str:
-    """A value in a form that shows its type: the double 2 is shown as `2.0`."""
+    """Return a value in a form that shows its type: the double 2 is shown as `2.0`."""
     return f"{shown(value)}.0" if isinstance(value, float) and value.is_integer() else shown(value)
 
 
 def kind_of(value: Any) -> str:
-    """The type of a parameter's value, in ROS's words."""
+    """Return the type of a parameter's value, in ROS's words."""
     words = {bool: "a bool", int: "an integer", float: "a double", str: "a string"}
     return words.get(type(value), "an array")
 
 
 def must_take(run: RecordedRun, name: str, value: Any = ANY) -> None:
-    """The node must accept each `value` that the scenario sets for this parameter."""
+    """Check that the node accepts each `value` that the scenario sets for this parameter."""
     for change in _changes(run, name, value):
         _see(run, change, taken=True)
 
 
 def must_refuse(run: RecordedRun, name: str, value: Any = ANY) -> None:
-    """The node must refuse each `value` that the scenario sets for this parameter, and continue to run."""
+    """Check that the node refuses each `value` that the scenario sets for this parameter, and continues to run."""
     for change in _changes(run, name, value):
         _see(run, change, taken=False)
 
 
 def must_take_and_refuse_as_the_solution(run: RecordedRun) -> None:
-    """The node must accept each value that the solution accepts, and refuse each one that the solution refuses."""
+    """Check that the node accepts and refuses the same values as the solution."""
     for change, reference in zip(run.recording.parameters, run.reference.parameters, strict=False):
         if reference.taken is not None:
             _see(run, change, taken=reference.taken)
 
 
 def must_have_parameter(run: RecordedRun, name: str, value: Any = ANY, tolerance: float = TOLERANCE) -> None:
-    """Each time that the scenario reads this parameter, it must have this value; by default the solution's."""
+    """Check that this parameter has this value whenever the scenario reads it; by default the solution's value."""
     readings = _readings(run, run.recording.readings, name)
     for reading, reference in zip(readings, _readings(run, run.reference.readings, name), strict=False):
-        wanted = reference.value if value is ANY else value
-        if reading.value is None and wanted is not None:
+        right_value = reference.value if value is ANY else value
+        if reading.value is None and right_value is not None:
             _unknown(run, reading.at, name, reading.answered is not None)
-        if type(reading.value) is not type(wanted):
+        if type(reading.value) is not type(right_value):
             expected, got = (
-                f"{typed(wanted)}, {kind_of(wanted)}",
+                f"{typed(right_value)}, {kind_of(right_value)}",
                 f"{typed(reading.value)}, {kind_of(reading.value)}",
             )
             run.wrong_at(reading.at, f"expected {expected}, got {got}.", f"parameter {name}", expected, got)
-        if not equal(reading.value, wanted, tolerance):
-            unit = next((one.unit for one in run.exercise.parameters if one.name == name), "")
-            expected, got = shown(wanted, unit), shown(reading.value, unit)
+        if not equal(reading.value, right_value, tolerance):
+            unit = next((parameter.unit for parameter in run.exercise.parameters if parameter.name == name), "")
+            expected, got = shown(right_value, unit), shown(reading.value, unit)
             run.wrong_at(reading.at, f"expected {expected}, got {got}.", f"parameter {name}", expected, got)
 
 
 def _changes(run: RecordedRun, name: str, value: Any) -> list[ParameterChange]:
-    found = [one for one in run.recording.parameters if one.name == name]
-    wanted = [one for one in found if value is ANY or (type(one.value) is type(value) and one.value == value)]
-    if not wanted:
-        text = ", ".join(shown(one.value) for one in found) or "nothing"
+    changes = [change for change in run.recording.parameters if change.name == name]
+    matching = [c for c in changes if value is ANY or (type(c.value) is type(value) and c.value == value)]
+    if not matching:
+        text = ", ".join(shown(change.value) for change in changes) or "nothing"
         raise ValueError(f"the scenario {run.scenario} sets {name} to {text}, never to {value!r}.")
-    return wanted
+    return matching
 
 
 def _readings(run: RecordedRun, readings: tuple[ParameterReading, ...], name: str) -> list[ParameterReading]:
-    found = [one for one in readings if one.name == name]
-    if not found:
+    of_parameter = [reading for reading in readings if reading.name == name]
+    if not of_parameter:
         raise ValueError(f"the scenario {run.scenario} never asks for the parameter {name}.")
-    return found
+    return of_parameter
 
 
 def _see(run: RecordedRun, change: ParameterChange, taken: bool) -> None:
@@ -84,14 +84,14 @@ def _see(run: RecordedRun, change: ParameterChange, taken: bool) -> None:
         return
     if taken and "undeclared" in change.reason:
         _unknown(run, change.at, change.name, answered=True)
-    wanted, got = ("taken", "refused") if taken else ("refused", "taken")
-    text = f"the value {typed(change.value)} must be {wanted}, but your node {'took' if change.taken else got} it."
+    expected, got = ("taken", "refused") if taken else ("refused", "taken")
+    text = f"the value {typed(change.value)} must be {expected}, but your node {'took' if change.taken else got} it."
     text += f" It said: {change.reason.rstrip('.')}." if change.reason and taken else ""
-    run.wrong_at(change.at, text, f"parameter {change.name}", wanted, got, _never_refuses(run, taken))
+    run.wrong_at(change.at, text, f"parameter {change.name}", expected, got, _never_refuses(run, taken))
 
 
 def _never_refuses(run: RecordedRun, taken: bool) -> str:
-    answers = {one.taken for one in run.recording.parameters}
+    answers = {change.taken for change in run.recording.parameters}
     if taken and answers == {False}:
         return "Your node refuses every value: an on-set callback has to return SetParametersResult(successful=True)."
     if not taken and answers == {True} and len(run.recording.parameters) > 1:

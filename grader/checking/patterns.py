@@ -8,13 +8,13 @@ from typing import Any
 
 from grader.checking.comparator import equal
 
-#: What a speed is multiplied with when its time is measured with the computer's clock: see `grader.runner.grader_side`.
+#: The factor in a speed whose time is measured with the computer's clock: see `grader.runner.grader_side`.
 COMPUTER_CLOCK = 0.8
 
 #: A value this close to 0 says nothing about a ratio.
 SMALLEST = 1e-3
 
-#: This many values must have something in common before a finding says something about all of them.
+#: A finding about all values needs at least this many values.
 FEWEST = 3
 
 #: Units that are often confused: the expected unit, the unit that was sent, and the factor between them.
@@ -31,7 +31,7 @@ UNITS = (
 
 
 def fixed_step(pairs: list[tuple[float, float]], elapsed: list[float], field: str, unit: str) -> str:
-    """Whether every rate was computed with one time step, whatever time had gone by."""
+    """Explain that every rate was computed with one time step, whatever the real time between messages."""
     if not unit.endswith("/s"):
         return ""
     steps = [
@@ -49,9 +49,9 @@ def fixed_step(pairs: list[tuple[float, float]], elapsed: list[float], field: st
 
 
 def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "") -> str:
-    """What all pairs of an expected value and a value that was got have in common, as `pattern` says it.
+    """Return what all pairs of an expected and a received value have in common, in the form of `pattern`.
 
-    `unit` is the unit that is asked for. A factor of 0.8 or 1.25 is attributed to the computer's clock.
+    `unit` is the unit that the task asks for. A factor of 0.8 or 1.25 is attributed to the computer's clock.
     """
     telling = [(e, g) for e, g in pairs if abs(e) > SMALLEST and math.isfinite(e) and math.isfinite(g)]
     if len(telling) < FEWEST:
@@ -72,9 +72,9 @@ def _ratio(ratio: float, field: str, unit: str) -> str:
         return ""
     if math.isclose(ratio, -1, rel_tol=1e-3):
         return " Every value has the wrong sign."
-    for asked, given, factor in UNITS:
+    for asked, used, factor in UNITS:
         if math.isclose(ratio, factor, rel_tol=1e-3) and (unit.split("/")[0] == asked or (not unit and asked == "rad")):
-            return f" Every {field} is in {given}."
+            return f" Every {field} is in {used}."
     text = f" Every {field} is {ratio:.4g} times what it should be"
     if any(math.isclose(ratio, factor, rel_tol=1e-3) for factor in (COMPUTER_CLOCK, 1 / COMPUTER_CLOCK)):
         return f"{text}: your node measures time with the computer's clock, which runs at another speed here."
@@ -82,11 +82,11 @@ def _ratio(ratio: float, field: str, unit: str) -> str:
 
 
 def shift(expected: Sequence[Any], got: Sequence[Any], tolerance: float) -> str:
-    """Whether each value is the one that was expected before, or the one after; empty if neither."""
+    """Say whether each value is the one that was expected before, or the one after; empty if neither."""
     if len(expected) < 4 or len(got) < 4 or equal(got[: len(expected)], expected[: len(got)], tolerance):
         return ""
     for mine, its, text in ((got[1:], expected, "one message late"), (got, expected[1:], "one message early")):
         count = min(len(mine), len(its))
-        if count >= FEWEST and equal(mine[:count], its[:count], tolerance) and len({repr(one) for one in mine}) > 1:
+        if count >= FEWEST and equal(mine[:count], its[:count], tolerance) and len({repr(value) for value in mine}) > 1:
             return f"Every message is {text}."
     return ""

@@ -156,7 +156,7 @@ def test_what_execute_raised_is_quoted_from_the_log() -> None:
     assert says(lambda: run(raised, RIGHT).must_match_results()).endswith(message)
     unasked = replace(raised, log=log.replace("no joint", "invalid transition with event CANCELED, at ./a/b.c:100"))
     assert says(lambda: run(unasked, RIGHT).must_match_results()).endswith(
-        "invalid transition with event CANCELED. canceled() is only for a goal that somebody asked to cancel; "
+        "invalid transition with event CANCELED. canceled() is only for a goal with a request to cancel; "
         "call abort() to give up any other."
     )
 
