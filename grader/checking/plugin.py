@@ -19,7 +19,7 @@ from grader.exercise.exercise import ExerciseError
 
 
 def fixtures_of(runs: Mapping[str, Run | None]) -> ModuleType:
-    """A module with one fixture for each scenario, by its name, which gives what `runs` has when a check asks."""
+    """Return a module with one fixture per scenario, by its name, which returns what `runs` has when a check asks."""
     module = ModuleType("scenarios")
     for name in runs:
         setattr(module, name, pytest.fixture(name=name)(_giving(runs, name)))
@@ -38,10 +38,10 @@ def _giving(runs: Mapping[str, Run | None], name: str) -> Any:
 
 
 class ReportsWithoutTracebacks:
-    """Makes pytest's reports without the text of tracebacks, with the source around each line: nobody reads them."""
+    """Makes pytest's reports without tracebacks and the source around each line: they are never shown."""
 
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> pytest.TestReport:
-        """Report only the outcome; pytest's own implementation is then not called."""
+        """Report only the outcome. pytest's own implementation is then not called."""
         outcome: Literal["passed", "failed", "skipped"] = "passed"
         if call.excinfo:
             outcome = "skipped" if isinstance(call.excinfo.value, pytest.skip.Exception) else "failed"
@@ -51,11 +51,13 @@ class ReportsWithoutTracebacks:
 
 @contextlib.contextmanager
 def _temporary_folder() -> Iterator[None]:
-    """Give `tmp_path` a folder for these checks alone. pytest's own is for all that this user tests: it removes there
-    what others have left, which may take a minute, and what they still want to look at.
+    """Give `tmp_path` a folder for these checks alone.
+
+    pytest's own folder is shared by all tests of this user. pytest would remove what other sessions have left there,
+    which may take a minute and may still be needed.
     """
     with contextlib.ExitStack() as stack:
-        with contextlib.suppress(OSError):  # a full disk matters to the checks that use it, to no other
+        with contextlib.suppress(OSError):  # a full disk matters only to the checks that use the folder
             made = tempfile.TemporaryDirectory(prefix="spinbook-checks-", ignore_cleanup_errors=True)
             patch = stack.enter_context(pytest.MonkeyPatch.context())
             patch.setenv("PYTEST_DEBUG_TEMPROOT", stack.enter_context(made))
@@ -63,9 +65,10 @@ def _temporary_folder() -> Iterator[None]:
 
 
 class Checks:
-    """Collects an exercise's checks and keeps their verdicts. If `run` is False, none is run and each counts as
-    blocked. `before_the_first` is called between collecting and running them. `fixtures` are the names that each check
-    uses, directly or by another fixture.
+    """Collects an exercise's checks and keeps their verdicts.
+
+    If `run` is False, none is run and each counts as blocked. `before_the_first` is called between collecting and
+    running them. `fixtures` are the names that each check uses, directly or through another fixture.
     """
 
     def __init__(self, run: bool = True, before_the_first: Callable[[], None] = lambda: None) -> None:
@@ -95,40 +98,42 @@ class Checks:
         line = inspect.unwrap(function).__code__.co_firstlineno if function else None
         mark = check_options(function)
         if not mark:
-            found, fix = f"{item.name} is not a check", "Put @check(points=…, hint=…) above it."
+            problem, fix = f"{item.name} is not a check", "Put @check(points=…, hint=…) above it."
         elif item.name in self._marks:
-            found, fix = f"there are two checks called {item.name}", "Give each a name of its own."
+            problem, fix = f"there are two checks called {item.name}", "Give each a name of its own."
         elif not inspect.getdoc(function):
-            found, fix = f"{item.name} has no docstring", "Its docstring is the title that the student reads."
+            problem, fix = f"{item.name} has no docstring", "Its docstring is the title that the student reads."
         elif isinstance(mark.points, bool) or not isinstance(mark.points, (int, float)) or not mark.points >= 0:
-            found, fix = f"{item.name} gives {mark.points!r} points", "Give points of 0 or more, such as points=5."
+            problem, fix = f"{item.name} gives {mark.points!r} points", "Give points of 0 or more, such as points=5."
         elif missing := self._unknown_scenario(item):
-            found = f"{item.name} asks for the scenario {missing}, which scenarios.py does not have"
+            problem = f"{item.name} asks for the scenario {missing}, which scenarios.py does not have"
             fix = f"Its scenarios are: {', '.join(self.scenarios)}."
         elif unknown := [name for name in mark.depends if name not in self._marks]:
-            found = f"{item.name} depends on {unknown[0]}, but no check above it has that name"
+            problem = f"{item.name} depends on {unknown[0]}, but no check above it has that name"
             fix = "A check can depend only on checks above it. Public checks come before hidden ones."
         else:
             return mark
-        raise ExerciseError(item.path, found, fix, line)
+        raise ExerciseError(item.path, problem, fix, line)
 
     def _unknown_scenario(self, item: Any) -> str:
-        """The first argument of a check that is neither a scenario nor another fixture; empty if there is none."""
+        """Return the first argument of a check that is neither a scenario nor another fixture; empty if there is
+        none.
+        """
         info = item._fixtureinfo
         known = {*info.name2fixturedefs, "request", *self.scenarios}
         return next((name for name in info.names_closure if name not in known), "") if self.scenarios else ""
 
     def pytest_exception_interact(self, node: Any, call: pytest.CallInfo[Any], report: object) -> None:
-        """The author must fix a file of checks that can't be imported."""
+        """Report a file of checks that can't be imported: the author must fix it."""
         if isinstance(report, pytest.CollectReport) and call.excinfo and not self.problem:
             error = call.excinfo.value.__cause__ or call.excinfo.value
             text = (str(error).strip().splitlines() or [""])[0]
-            found = f"it can't be read: {type(error).__name__}: {text}"
-            self.problem = ExerciseError(node.path, found, "It must import.", _line(error, node.path))
+            problem = f"it can't be read: {type(error).__name__}: {text}"
+            self.problem = ExerciseError(node.path, problem, "It must import.", _line(error, node.path))
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, object, object]:
-        """Say that the checks are collected, if they can be run; pytest's own implementation runs them."""
+        """Call `before_the_first` if the checks can be run. pytest's own implementation then runs them."""
         if session.items and not session.testsfailed:
             self._before_the_first()
         with _temporary_folder():  # only now: this may be a fork of the process that collected them
@@ -136,7 +141,7 @@ class Checks:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
-        """Leave out what can't be judged."""
+        """Skip what can't be judged."""
         if not self._run:
             pytest.skip("only listed")
         blocking = self._blocking(item.name)
@@ -144,12 +149,12 @@ class Checks:
             pytest.skip("blocked by " + ", ".join(blocking))
 
     def _blocking(self, name: str) -> tuple[str, ...]:
-        """The checks that must pass first and failed, without those that are blocked themselves."""
-        found: dict[str, None] = {}
+        """Return the checks that must pass first and failed, without those that are blocked themselves."""
+        blocking: dict[str, None] = {}
         for other in self._marks[name].depends:
             if self.verdicts[other].status != "passed":
-                found.update(dict.fromkeys(self.verdicts[other].blocked_by or (other,)))
-        return tuple(found)
+                blocking.update(dict.fromkeys(self.verdicts[other].blocked_by or (other,)))
+        return tuple(blocking)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Any:
@@ -183,7 +188,7 @@ def _describe(error: BaseException, file: Path) -> str:
 
 
 def _line(error: BaseException, file: Path) -> int | None:
-    """The last line of `file` that led to the error."""
+    """Return the last line of `file` that led to the error."""
     if isinstance(error, SyntaxError) and error.filename == str(file):
         return error.lineno
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(file)]

@@ -1,6 +1,6 @@
 """Proofreads an exercise for its author: finds everything that is wrong in its files, before anything runs.
 
-`problems_of` does so in a process of its own, as scenarios.py and the files of checks are imported for it.
+`problems_of` does this in a process of its own, because it imports scenarios.py and the files of checks.
 """
 
 from __future__ import annotations
@@ -28,23 +28,24 @@ TIME_LIMIT_S = 60
 
 
 def problems_of(folder: Path) -> tuple[Problem, ...]:
-    """Everything that is wrong in the files of the exercise in `folder`, as far as can be seen without running a
-    node."""
+    """Return everything that is wrong in the files of the exercise in `folder`, as far as it shows without running
+    a node.
+    """
     command = [sys.executable, "-m", "grader.checking.proofreader", str(folder)]
     try:
         run = run_program(command, TIME_LIMIT_S)
         entries = json.loads(run.stdout.splitlines()[-1])
     except subprocess.TimeoutExpired:
-        found = f"reading its Python files takes more than {TIME_LIMIT_S} s"
-        return (Problem(folder, None, found, "They must only define."),)
+        problem = f"reading its Python files takes more than {TIME_LIMIT_S} s"
+        return (Problem(folder, None, problem, "They must only define."),)
     except (ValueError, IndexError):
         last = (run.stderr.strip().splitlines() or ["no message"])[-1]
         return (Problem(folder, None, f"its Python files can't be read: {last}", "They must only define."),)
-    return tuple(Problem(Path(file), line, found, fix) for file, line, found, fix in entries)
+    return tuple(Problem(Path(file), line, problem, fix) for file, line, problem, fix in entries)
 
 
 def faults(folder: Path) -> Iterator[ExerciseError]:
-    """The same, in this process."""
+    """Yield the same, in this process."""
     try:
         exercise = load(folder)
     except ExerciseError as error:
@@ -70,18 +71,20 @@ def faults(folder: Path) -> Iterator[ExerciseError]:
 
 
 def same_name_twice(file: Path) -> Iterator[ExerciseError]:
-    """Checks with the same name in a file: Python silently keeps only the last."""
+    """Yield checks with the same name in a file: Python silently keeps only the last one."""
     first: dict[str, int] = {}
     for node in _parsed(file).body:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name.startswith("test"):
             if node.name in first:
-                found = f"there are two checks called {node.name}; the other is in line {first[node.name]}"
-                yield ExerciseError(file, found, "Give each its own name: Python keeps only the last one.", node.lineno)
+                problem = f"there are two checks called {node.name}; the other is in line {first[node.name]}"
+                yield ExerciseError(
+                    file, problem, "Give each its own name: Python keeps only the last one.", node.lineno
+                )
             first.setdefault(node.name, node.lineno)
 
 
 def rules_that_the_task_lacks(task: str, check_files: Iterable[Path]) -> Iterator[ExerciseError]:
-    """Checks whose `rule` is not a sentence of `task`, the text of task.md."""
+    """Yield checks whose `rule` is not a sentence of `task`, the text of task.md."""
     for file in check_files:
         for line, rule in _rules(file):
             yield from rule_that_the_task_lacks(task, rule, file, line)
@@ -90,14 +93,14 @@ def rules_that_the_task_lacks(task: str, check_files: Iterable[Path]) -> Iterato
 def rule_that_the_task_lacks(
     task: str, rule: str, file: Path, line: int, subject: str = "a check"
 ) -> Iterator[ExerciseError]:
-    """The error for a check in this line of `file` whose `rule` is not a sentence of `task`; none if it is."""
+    """Yield the error for a check in this line of `file` if its `rule` is not a sentence of `task`."""
     if _without_marks(rule) not in _without_marks(task):
-        found = f"{subject} is based on a sentence that is not in task.md: “{rule}”"
-        yield ExerciseError(file, found, "Write the sentence in task.md, or quote a sentence that is there.", line)
+        problem = f"{subject} is based on a sentence that is not in task.md: “{rule}”"
+        yield ExerciseError(file, problem, "Write the sentence in task.md, or quote a sentence that is there.", line)
 
 
 def _without_marks(text: str) -> str:
-    """A text of task.md or of a rule without Markdown markup, with whitespace reduced to single spaces."""
+    """Return a text of task.md or of a rule without Markdown markup, with whitespace reduced to single spaces."""
     return " ".join(re.sub(r"[*`]", "", text).split())
 
 
@@ -108,7 +111,7 @@ def _rules(file: Path) -> Iterator[tuple[int, str]]:
 
 
 def _parsed(file: Path) -> ast.Module:
-    """A file of checks; one that can't be read counts as empty, because that fault is reported elsewhere."""
+    """Return a parsed file of checks; an empty one if it can't be read, because that fault is reported elsewhere."""
     try:
         return ast.parse(file.read_text(encoding="utf-8"))
     except (SyntaxError, ValueError, OSError):
@@ -116,19 +119,21 @@ def _parsed(file: Path) -> ast.Module:
 
 
 def points_that_do_not_add_up(exercise: Exercise, points: list[tuple[bool, float]]) -> Iterator[ExerciseError]:
-    """`points` is for each check whether it is hidden, and what it gives."""
-    public, hidden = (sum(given for is_hidden, given in points if is_hidden is which) for which in (False, True))
+    """Yield the error if `points` do not have the declared sum. It says of each check whether it is hidden, and its
+    points.
+    """
+    public, hidden = (sum(number for is_hidden, number in points if is_hidden is which) for which in (False, True))
     if exercise.public_only or abs(public + hidden - exercise.points) <= 1e-9:
         return
     parts = f"checks.py {public:g}, hidden_checks.py {hidden:g}"
-    found = f"the checks give {public + hidden:g} points together ({parts}), but points = {exercise.points:g}"
+    problem = f"the checks give {public + hidden:g} points together ({parts}), but points = {exercise.points:g}"
     file = exercise.folder / "exercise.toml"
     line = line_with(file, r"\s*points\s*=")
-    yield ExerciseError(file, found, "Make the two agree.", line)
+    yield ExerciseError(file, problem, "Make the two agree.", line)
 
 
 def line_with(file: Path, pattern: str) -> int | None:
-    """The first line of a file that matches, counted from 1; None if none does or the file can't be read."""
+    """Return the first line of a file that matches, counted from 1; None if none does or the file can't be read."""
     try:
         lines = file.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError):
@@ -161,13 +166,13 @@ def _of_mistakes(exercise: Exercise, checks: tuple[Listed, ...]) -> Iterator[Exe
             yield from rule_that_the_task_lacks(exercise.task, mistake.breaks, mistake.file, mistake.line, mistake.name)
         for name in mistake.caught_by:
             if name not in known:
-                found = f"{mistake.name} is to be caught by {name}, and there is no such check"
-                yield ExerciseError(mistake.file, found, "Name a check of this exercise, or remove it.", mistake.line)
+                problem = f"{mistake.name} is to be caught by {name}, and there is no such check"
+                yield ExerciseError(mistake.file, problem, "Name a check of this exercise, or remove it.", mistake.line)
         if not mistake.caught_by:
-            found, fix = f"{mistake.name} names no check that must catch it", "Write “Caught by:” and the checks."
-            yield ExerciseError(mistake.file, found, fix, mistake.line)
+            problem, fix = f"{mistake.name} names no check that must catch it", "Write “Caught by:” and the checks."
+            yield ExerciseError(mistake.file, problem, fix, mistake.line)
 
 
 if __name__ == "__main__":
     problems = [error.problem for error in faults(Path(sys.argv[1]))]
-    print(json.dumps([(str(one.file), one.line, one.problem, one.fix) for one in problems]))
+    print(json.dumps([(str(p.file), p.line, p.problem, p.fix) for p in problems]))

@@ -19,9 +19,9 @@ from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import NoSuchField, field_of, steps_of
 
 _WAITS = (
-    "Your node sent {what} to {name} at {at:.2f} s, and did nothing from then on. Does a callback wait for the answer, "
-    "with call(), await or spin_until_future_complete()? No other callback runs meanwhile, not even the one that takes "
-    "the answer. Don't wait: give the future a callback with add_done_callback()."
+    "Your node sent {request} to {name} at {at:.2f} s, and did nothing from then on. Does a callback wait for the "
+    "answer, with call(), await or spin_until_future_complete()? No other callback runs meanwhile, not even the one "
+    "that takes the answer. Don't wait: give the future a callback with add_done_callback()."
 )
 
 #: A node counts as stuck if it does nothing for this long (s) after its last request while the solution does something.
@@ -32,7 +32,7 @@ _SLEEPS = "Does your node wait by the computer's clock, such as with time.sleep?
 
 @dataclass(frozen=True, eq=False)
 class RecordedRun:
-    """One scenario: the student's recording and the solution's. `title` tells students which scenario it is."""
+    """One scenario: the student's recording and the solution's. `title` describes the scenario to students."""
 
     exercise: Exercise
     recording: Recording
@@ -41,37 +41,38 @@ class RecordedRun:
 
     @property
     def scenario(self) -> str:
-        """The scenario's name."""
+        """Return the scenario's name."""
         return self.recording.scenario
 
     @property
     def nodes(self) -> tuple[str, ...]:
-        """Full names of the student's nodes."""
+        """Return the full names of the student's nodes."""
         return self.recording.nodes
 
     @property
     def ending(self) -> Ending:
-        """How the run ended."""
+        """Return how the run ended."""
         return self.recording.ending
 
     @cached_property
     def sent(self) -> list[Message]:
-        """Every message sent to the node."""
+        """Return every message sent to the node."""
         return [Message(sent) for sent in self.recording.sent]
 
     @cached_property
     def received(self) -> list[Message]:
-        """Every message that the node published on the exercise's topics."""
+        """Return every message that the node published on the exercise's topics."""
         return [Message(received) for received in self.recording.received if not received.subscriber]
 
     @cached_property
     def exchanges(self) -> list[Exchange]:
-        """Each message sent, with the node's answers and the solution's."""
+        """Return each message sent, with the node's answers and the solution's."""
         return exchanges(self.recording, self.reference)
 
     def wrong(self, exchange: Exchange, text: str, part: str = "", expected: object = "", got: object = "") -> NoReturn:
-        """End the check: `text` says what is wrong with the answers to this exchange's message. `part` is the wrong
-        part of the message, such as the joint; reports show `expected` and `got` separately.
+        """End the check: `text` says what is wrong with the answers to this exchange's message.
+
+        `part` is the wrong part of the message, such as the joint. Reports show `expected` and `got` separately.
         """
         where = f"Message {exchange.number} of {len(self.sent)} ({exchange.sent.at:.2f} s after the start"
         where += f"; {self.title})" if self.title else ")"
@@ -83,7 +84,7 @@ class RecordedRun:
     ) -> NoReturn:
         """End the check: `text` says what is wrong at `at`, in ns of simulated time, or in the whole scenario.
 
-        `part` is what is wrong, such as a service or a goal; `at_all` says what is wrong systematically.
+        `part` is what is wrong, such as a service or a goal. `at_all` says what is wrong systematically.
         """
         seconds = None if at is None else (at - START) / SECOND
         where = "" if seconds is None else "Before the start" if seconds < 0 else f"At {seconds:.2f} s"
@@ -108,18 +109,25 @@ class RecordedRun:
     ) -> None:
         """End the check unless `field` (or, if it is empty, every field) is the same in both messages.
 
-        `name` is the topic, service or action. `pairs` are all (expected, got) messages of this kind, for what they
-        have in common; where that is nothing, the finding ends with `otherwise`.
+        `name` is the topic, service or action. `pairs` are all (expected, got) messages of this kind; the finding says
+        what they have in common. If that is nothing, it ends with `otherwise`.
         """
-        found = difference(field_of(got, field), field_of(expected, field), tolerance, field)
-        if not found:
+        differing = difference(field_of(got, field), field_of(expected, field), tolerance, field)
+        if not differing:
             return
-        unit = self.unit_of(str(next(iter(steps_of(found.path)), "")), name)
-        wanted, came = shown(found.expected, unit), shown(found.got, unit)
-        numbers = [(_number(e, found.path), _number(g, found.path)) for e, g in pairs]
+        unit = self.unit_of(str(next(iter(steps_of(differing.path)), "")), name)
+        expected_text, got_text = shown(differing.expected, unit), shown(differing.got, unit)
+        numbers = [(_number(e, differing.path), _number(g, differing.path)) for e, g in pairs]
         known = [(e, g) for e, g in numbers if e is not None and g is not None]
-        general = common(known, found.path, unit)
-        self.wrong_at(at, f"expected {found.path} {wanted}, got {came}.", part, wanted, came, general or otherwise)
+        general = common(known, differing.path, unit)
+        self.wrong_at(
+            at,
+            f"expected {differing.path} {expected_text}, got {got_text}.",
+            part,
+            expected_text,
+            got_text,
+            general or otherwise,
+        )
 
     def time_at(self, at: int, expected: int, part: str, time: float | None, since: int = START) -> None:
         """End the check if something happened more than `time` s before or after it was expected.
@@ -127,27 +135,27 @@ class RecordedRun:
         `since` is when the node began to wait for it.
         """
         if time is not None and abs(at - expected) > time * SECOND + 1:
-            wanted, came = f"{seconds(expected):.2f} s", f"{seconds(at):.2f} s"
+            expected_text, got_text = f"{seconds(expected):.2f} s", f"{seconds(at):.2f} s"
             by_computer = expected > since and math.isclose(
                 (at - since) / (expected - since), COMPUTER_CLOCK, rel_tol=0.03
             )
-            text = f"it was expected at {wanted}, got it at {came}."
-            self.wrong_at(at, text, part, wanted, came, _SLEEPS if by_computer else "")
+            text = f"it was expected at {expected_text}, but happened at {got_text}."
+            self.wrong_at(at, text, part, expected_text, got_text, _SLEEPS if by_computer else "")
 
     def waits(self) -> str:
-        """What to tell a student whose node sent a request or a goal, and then did nothing to the end; else empty."""
+        """Return advice for a student whose node sent a request or a goal and then did nothing; empty otherwise."""
         asked = max(_requests(self.recording), default=None)
         if asked is None:
             return ""
-        last = max([asked[0], *(one.at for one in self.recording.received)])
-        later = [one.at for one in self.reference.received] + [at for at, _, _ in _requests(self.reference)]
+        last = max([asked[0], *(message.at for message in self.recording.received)])
+        later = [message.at for message in self.reference.received] + [at for at, _, _ in _requests(self.reference)]
         if last > asked[0] or max(later, default=0) - last < _STUCK * SECOND:
             return ""
-        at, name, what = asked
-        return _WAITS.format(what=what, name=name, at=seconds(at))
+        at, name, request = asked
+        return _WAITS.format(request=request, name=name, at=seconds(at))
 
     def unit_of(self, field: str, name: str = "") -> str:
-        """The unit of a field by exercise.toml: of the topic, service or action `name`, or of any."""
+        """Return the unit of a field in exercise.toml: of the topic, service or action `name`, or of any."""
         declared: list[Topic | ServiceOrAction] = [
             *self.exercise.outputs,
             *self.exercise.endpoints,
@@ -158,37 +166,37 @@ class RecordedRun:
     def messages_on(
         self, topic: str = "", reference: bool = False, subscriber: str = ""
     ) -> tuple[ReceivedMessage, ...]:
-        """What the student's node, or the solution, published on `topic`; without one, on the only output.
+        """Return what the student's node, or the solution, published on `topic`; by default on the only output.
 
-        With `subscriber`, only what that subscriber of the scenario got.
+        With `subscriber`, return only what that subscriber of the scenario got.
         """
         recording, name = self.reference if reference else self.recording, topic or self.output.name
-        return tuple(one for one in recording.received if one.topic == name and one.subscriber == subscriber)
+        return tuple(m for m in recording.received if m.topic == name and m.subscriber == subscriber)
 
     @property
     def output(self) -> Topic:
-        """The only topic that the exercise's node publishes. Raises ValueError if there are several."""
+        """Return the only topic that the exercise's node publishes. Raises ValueError if there are several."""
         if len(self.exercise.outputs) != 1:
             names = ", ".join(topic.name for topic in self.exercise.outputs) or "none"
             raise ValueError(f"name the topic: the topics that exercise.toml has under [[publish]] are: {names}.")
         return self.exercise.outputs[0]
 
     def only(self, role: Role) -> str:
-        """The only service or action of a kind. Raises ValueError if there are several."""
-        names = [one.name for one in self.exercise.endpoints if one.role == role]
+        """Return the only service or action of a kind. Raises ValueError if there are several."""
+        names = [endpoint.name for endpoint in self.exercise.endpoints if endpoint.role == role]
         if len(names) != 1:
             raise ValueError(f"name the {role}: exercise.toml has {', '.join(names) or 'none'} under [[{role}]].")
         return names[0]
 
 
 def _requests(recording: Recording) -> list[tuple[int, str, str]]:
-    """When the node sent a request or a goal, to whom, and which of the two."""
+    """Return when the node sent a request or a goal, to which service or action, and which of the two."""
     calls = [(call.at, call.service, "a request") for call in recording.calls if call.by == "node"]
     return calls + [(goal.at, goal.action, "a goal") for goal in recording.goals if goal.by == "node"]
 
 
 def seconds(at: int) -> float:
-    """A moment of simulated time (ns) as seconds after the start."""
+    """Return a moment of simulated time (ns) as seconds after the start."""
     return (at - START) / SECOND
 
 

@@ -1,4 +1,4 @@
-"""What a check gets of one scenario: the recording, and every helper as a method.
+"""What a check gets for one scenario: the recording, and every helper as a method.
 
 A helper is a function of a `RecordedRun`, in the module of its subject. One line here makes it a method.
 """
@@ -22,9 +22,9 @@ class Run(RecordedRun):
         return iter(self.exchanges)
 
     def on(self, topic: str) -> Run:
-        """The same run with only the messages on `topic`, for a node that publishes on several topics."""
+        """Return the same run with only the messages on `topic`, for a node that publishes on several topics."""
         student, solution = (
-            replace(recording, received=tuple(one for one in recording.received if one.topic == topic))
+            replace(recording, received=tuple(message for message in recording.received if message.topic == topic))
             for recording in (self.recording, self.reference)
         )
         return replace(self, recording=student, reference=solution)

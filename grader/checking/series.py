@@ -13,19 +13,19 @@ from grader.recording.recording import ReceivedMessage
 from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import field_of
 
-#: A stamp that is larger than this (s) can't be simulated time, which begins at 100 s.
+#: A larger stamp (s) can't be simulated time, which begins at 100 s.
 COMPUTER_STAMP = 1_000_000
 
 
 def must_publish(run: RecordedRun, topic: str = "", count: int | None = None) -> None:
-    """The node must publish on `topic`: `count` messages, or at least one."""
+    """Check that the node publishes on `topic`: `count` messages, or at least one."""
     name = topic or run.output.name
     got = len(run.messages_on(name))
-    wanted = f"{count} messages" if count is not None else "at least one message"
+    expected = f"{count} messages" if count is not None else "at least one message"
     if not got and count != 0:
-        _never(run, name, wanted)
+        _never(run, name, expected)
     if count is not None and got != count:
-        run.wrong_at(None, f"expected {wanted} on {name}, got {got}.", "", wanted, got)
+        run.wrong_at(None, f"expected {expected} on {name}, got {got}.", "", expected, got)
 
 
 def must_match_series(
@@ -36,7 +36,7 @@ def must_match_series(
     time: float | None = None,
     subscriber: str = "",
 ) -> None:
-    """The node's first message must have the same `field` as the solution's first, and so on to the last.
+    """Check that the node's first message has the same `field` as the solution's first, and so on to the last.
 
     Without a `field`, whole messages are compared. With `time`, each must come within that many seconds of the
     solution's. With `subscriber`, only what that subscriber of the scenario got is compared. What several threads
@@ -50,13 +50,15 @@ def must_match_series(
     pairs = list(zip(expected, got, strict=False))
     too_early = _at_the_start(expected, got)
     shifted = shift(_values(expected, field), _values(got, field), tolerance)
-    for number, (wanted, came) in enumerate(pairs, start=1):
+    for number, (reference, message) in enumerate(pairs, start=1):
         part = f"message {number} on {name}"
         messages = [(e.fields, g.fields) for e, g in pairs]
         if not shifted:
-            run.compare_at(came.at, part, field, came.fields, wanted.fields, tolerance, name, messages, too_early)
-        if time is not None and abs(came.at - wanted.at) > time * SECOND + 1:
-            _wrong_time(run, part, wanted, came, pairs)
+            run.compare_at(
+                message.at, part, field, message.fields, reference.fields, tolerance, name, messages, too_early
+            )
+        if time is not None and abs(message.at - reference.at) > time * SECOND + 1:
+            _wrong_time(run, part, reference, message, pairs)
     if len(got) != len(expected):
         text = f"expected {len(expected)} messages on {name}, got {len(got)}."
         in_all = shifted or too_early or f"{_stops(expected, got)} {run.waits()}"
@@ -66,7 +68,7 @@ def must_match_series(
 
 
 def must_keep_rate(run: RecordedRun, hz: float, topic: str = "", tolerance: float = 0.02) -> None:
-    """The node must publish `hz` times per second of simulated time on average, within `tolerance` (0.02: 2 %).
+    """Check that the node publishes `hz` times per second of simulated time on average, within `tolerance` (0.02: 2 %).
 
     It must continue for as long as the solution does. A short gap before the second message does not count: a timer
     that is created before the clock starts fires as soon as it does, and then at multiples of its period since 0
@@ -93,12 +95,12 @@ def must_keep_rate(run: RecordedRun, hz: float, topic: str = "", tolerance: floa
 def must_have_no_gap(
     run: RecordedRun, longest: float, topic: str = "", start: float = 0.0, end: float | None = None
 ) -> None:
-    """No two messages may be more than `longest` s of simulated time apart, between `start` and `end` (s).
+    """Check that no two messages are more than `longest` s of simulated time apart, between `start` and `end` (s).
 
-    Also from `start` to the first message, and from the last to `end` where it is given.
+    The time from `start` to the first message counts too, and the time from the last one to `end` if it is given.
     """
     name = topic or run.output.name
-    times = [seconds(one.at) for one in run.messages_on(name)]
+    times = [seconds(message.at) for message in run.messages_on(name)]
     inside = [at for at in times if at >= start and (end is None or at <= end)]
     moments = [start, *inside, *([end] if end is not None else [])]
     for before, after in itertools.pairwise(moments):
@@ -112,19 +114,19 @@ def must_have_no_gap(
 
 
 def must_stamp(run: RecordedRun, topic: str = "", field: str = "header.stamp", within: float = 0.001) -> None:
-    """Each message's stamp must be the node's time when it is published, within this many seconds."""
+    """Check that each message's stamp is the node's time when it is published, within this many seconds."""
     name = topic or run.output.name
     messages = run.messages_on(name)
-    stamps = [_nanoseconds(field_of(one.fields, field)) for one in messages]
-    for number, (one, stamp) in enumerate(zip(messages, stamps, strict=True), start=1):
-        if abs(stamp - one.at) > within * SECOND:
-            wanted, came = shown(_stamp(one.at)), shown(_stamp(stamp))
-            text = f"expected {field} {wanted}, the time when it was published, got {came}."
-            run.wrong_at(one.at, text, f"message {number} on {name}", wanted, came, _of_stamps(stamps))
+    stamps = [_nanoseconds(field_of(message.fields, field)) for message in messages]
+    for number, (message, stamp) in enumerate(zip(messages, stamps, strict=True), start=1):
+        if abs(stamp - message.at) > within * SECOND:
+            expected, got = shown(_stamp(message.at)), shown(_stamp(stamp))
+            text = f"expected {field} {expected}, the time when it was published, got {got}."
+            run.wrong_at(message.at, text, f"message {number} on {name}", expected, got, _of_stamps(stamps))
 
 
 def _values(messages: Sequence[ReceivedMessage], field: str) -> list[Any]:
-    return [field_of(one.fields, field) for one in messages]
+    return [field_of(message.fields, field) for message in messages]
 
 
 def _never(run: RecordedRun, topic: str, expected: str, subscriber: str = "") -> None:
@@ -145,20 +147,20 @@ def _never(run: RecordedRun, topic: str, expected: str, subscriber: str = "") ->
 def _wrong_time(
     run: RecordedRun,
     part: str,
-    wanted: ReceivedMessage,
-    came: ReceivedMessage,
+    reference: ReceivedMessage,
+    message: ReceivedMessage,
     pairs: Sequence[tuple[ReceivedMessage, ReceivedMessage]],
 ) -> None:
     late = [(got.at - expected.at) / SECOND for expected, got in pairs]
-    at, general = seconds(wanted.at), ""
+    at, general = seconds(reference.at), ""
     if len(late) >= 3 and max(late) - min(late) < 0.02 * abs(late[0]):
         general = f"Every message comes {abs(late[0]):.2f} s too {'late' if late[0] > 0 else 'early'}."
-    general = general or _at_the_start([wanted], [came])
-    text = f"it was expected at {at:.2f} s, got it at {seconds(came.at):.2f} s."
-    run.wrong_at(came.at, text, part, f"{at:.2f} s", f"{seconds(came.at):.2f} s", general)
+    general = general or _at_the_start([reference], [message])
+    text = f"it was expected at {at:.2f} s, but happened at {seconds(message.at):.2f} s."
+    run.wrong_at(message.at, text, part, f"{at:.2f} s", f"{seconds(message.at):.2f} s", general)
 
 
-#: The clock of a node that starts is 0, and jumps to the simulated time with the first message on /clock.
+#: The clock of a new node is 0, and jumps to the simulated time with the first message on /clock.
 _WITH_THE_CLOCK = (
     "What is published at 0.00 s comes from the constructor, or from a timer that was created there: such a timer "
     "fires as soon as simulated time begins, whatever its period."
@@ -166,30 +168,33 @@ _WITH_THE_CLOCK = (
 
 
 def _at_the_start(expected: Sequence[ReceivedMessage], got: Sequence[ReceivedMessage]) -> str:
-    """Why there are more messages at the start than expected; empty if there are not."""
-    mine, its = (sum(one.at <= START for one in series) for series in (got, expected))
+    """Explain why there are more messages at the start than expected; empty if there are not."""
+    mine, its = (sum(message.at <= START for message in series) for series in (got, expected))
     return _WITH_THE_CLOCK if mine > its else ""
 
 
 def _in_the_order_of(
     expected: Sequence[ReceivedMessage], got: Sequence[ReceivedMessage], field: str, tolerance: float
 ) -> list[ReceivedMessage]:
-    """`got`, with what several threads published at one moment in the order in which it was expected."""
-    left, found = list(got), []
-    for wanted in expected[: len(got)]:
-        unordered, value = left[0].unordered or wanted.unordered, field_of(wanted.fields, field)
-        at_once = [i for i, one in enumerate(left) if one.at == left[0].at] if unordered else [0]
+    """Return `got`, with simultaneous messages from several threads reordered to match `expected`."""
+    left, ordered = list(got), []
+    for reference in expected[: len(got)]:
+        unordered, value = left[0].unordered or reference.unordered, field_of(reference.fields, field)
+        at_once = [i for i, message in enumerate(left) if message.at == left[0].at] if unordered else [0]
         same = (i for i in at_once if equal(field_of(left[i].fields, field), value, tolerance))
-        found.append(left.pop(next(same, 0)))
-    return found + left
+        ordered.append(left.pop(next(same, 0)))
+    return ordered + left
 
 
 def _begins_with_the_clock(series: Sequence[ReceivedMessage]) -> bool:
-    """Whether the second message comes sooner than the third, as a timer's does; two at once are not one timer's."""
+    """Return whether the second message comes sooner than the third.
+
+    That is how a timer begins. Two messages at once do not come from one timer.
+    """
     return len(series) > 2 and 0 < series[1].at - series[0].at < series[2].at - series[1].at
 
 
-#: A rate alone does not say which of the two it is.
+#: A wrong rate alone does not show which of the two is the cause.
 _PERIOD_OR_CLOCK = (
     "Either its period is wrong, or your node waits by the computer's clock (time.sleep or a wall timer), which runs "
     "at another speed here."
@@ -223,7 +228,7 @@ def _stamp(nanoseconds: int) -> dict[str, int]:
 
 
 def _stops(expected: Sequence[ReceivedMessage], got: Sequence[ReceivedMessage]) -> str:
-    """When the last message came, if more was expected long after it."""
+    """Return when the last message came, if more were expected long after it."""
     if not 0 < len(got) < len(expected) or expected[-1].at - got[-1].at <= SECOND:
         return ""
     return f"The last one came at {seconds(got[-1].at):.2f} s."

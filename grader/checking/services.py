@@ -11,13 +11,15 @@ from grader.scenario.times import SECOND
 
 
 def calls(run: RecordedRun, service: str = "", by: By = "grader") -> tuple[Call, ...]:
-    """The scenario's calls of the student's service, in order; `by="node"` for the requests of the student's."""
+    """Return the scenario's calls of the student's service, in order; with `by="node"`, the requests of the
+    student's node.
+    """
     name = service or run.only("service" if by == "grader" else "client")
     return tuple(call for call in run.recording.calls if call.service == name and call.by == by)
 
 
 def must_respond(run: RecordedRun, service: str = "", within: float | None = None) -> None:
-    """The node must respond to every request that the solution responds to, within this many seconds."""
+    """Check that the node responds to every request that the solution responds to, within this many seconds."""
     for number, call, reference in _numbered(run, service, "grader"):
         if reference.answered is None:
             continue
@@ -31,7 +33,7 @@ def must_respond(run: RecordedRun, service: str = "", within: float | None = Non
 
 
 def must_match_responses(run: RecordedRun, field: str = "", service: str = "", tolerance: float = TOLERANCE) -> None:
-    """Every response must have the same `field` as the solution's; without one, every field counts."""
+    """Check that every response has the same `field` as the solution's. By default every field counts."""
     numbered = _numbered(run, service, "grader")
     pairs = [(r.response, c.response) for _, c, r in numbered if r.response is not None and c.response is not None]
     for number, call, reference in numbered:
@@ -45,23 +47,23 @@ def must_match_responses(run: RecordedRun, field: str = "", service: str = "", t
 
 
 def must_call(run: RecordedRun, service: str = "", count: int | None = None) -> None:
-    """The node must call a reference server: `count` times, or as often as the solution does."""
+    """Check that the node calls a reference server: `count` times, or as often as the solution does."""
     name = service or run.only("client")
     got = calls(run, name, by="node")
-    wanted = count if count is not None else len(_reference_calls(run, name, "node"))
-    if len(got) == wanted:
+    expected = count if count is not None else len(_reference_calls(run, name, "node"))
+    if len(got) == expected:
         return
-    text = f"expected {wanted} requests to {name}, got {len(got)}."
+    text = f"expected {expected} requests to {name}, got {len(got)}."
     clients = sorted({end.topic for end in run.recording.end_points if end.kind == "client"})
     never = "" if got or name in clients else f"Your node has no client for {name}. Its clients are for: "
     never += (", ".join(clients) or "none") + "." if never else ""
-    run.wrong_at(None, text, "", f"{wanted} requests", len(got), never or run.waits())
+    run.wrong_at(None, text, "", f"{expected} requests", len(got), never or run.waits())
 
 
 def must_match_requests(
     run: RecordedRun, field: str = "", service: str = "", tolerance: float = TOLERANCE, time: float | None = None
 ) -> None:
-    """The node's first request must have the same `field` as the solution's first, and so on.
+    """Check that the node's first request has the same `field` as the solution's first, and so on.
 
     With `time`, each must arrive within this many seconds of the solution's.
     """
@@ -75,7 +77,7 @@ def must_match_requests(
 
 
 def _numbered(run: RecordedRun, service: str, by: By) -> list[tuple[int, Call, Call]]:
-    """(number from 1, the student's, the solution's) of each call."""
+    """Return (number from 1, the student's, the solution's) of each call."""
     name = service or run.only("service" if by == "grader" else "client")
     pairs = zip(calls(run, name, by), _reference_calls(run, name, by), strict=False)
     return [(number, call, reference) for number, (call, reference) in enumerate(pairs, start=1)]
@@ -98,7 +100,7 @@ def _no_response(run: RecordedRun, number: int, call: Call) -> None:
 
 
 def _all_late(run: RecordedRun, call: Call) -> str:
-    late = [(one.answered - one.at) / SECOND for one in calls(run, call.service) if one.answered is not None]
+    late = [(c.answered - c.at) / SECOND for c in calls(run, call.service) if c.answered is not None]
     if len(late) < 3 or max(late) - min(late) > 0.02 * max(late):
         return ""
     return f"Every response comes {late[0]:.2f} s after its request."

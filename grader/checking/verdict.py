@@ -11,8 +11,8 @@ from typing import Any, Literal, NoReturn, TypeVar
 class Finding:
     """What is wrong, in words for the student, and in parts if there are any.
 
-    `at` is in seconds after the scenario's start, `message` counts the messages sent from 1. `shortened` bounds the
-    texts, which may repeat what the student's program printed or published.
+    `at` is in seconds after the scenario's start, `message` is the number of the message sent, counted from 1.
+    `shortened` limits the length of the texts, which may repeat what the student's program printed or published.
     """
 
     text: str
@@ -28,7 +28,7 @@ class Finding:
         return replace(self, text=_shortened(self.text), expected=_shortened(self.expected), got=_shortened(self.got))
 
 
-#: In characters. Whoever reads all findings of a class compares them word by word.
+#: In characters. The overview of a class compares all findings word by word, so long ones cost time.
 LONGEST_TEXT = 4000
 
 
@@ -45,7 +45,7 @@ class Wrong(AssertionError):
 
 
 def fail(text: str, *, expected: object = "", got: object = "", at: float | None = None) -> NoReturn:
-    """End the check: the node does not pass it. `text` tells the student why; `at` is in seconds."""
+    """End the check: the node does not pass it. `text` says why, to the student; `at` is in seconds."""
     message = text
     if expected != "" or got != "":
         message += f" Expected {expected}, got {got}."
@@ -60,8 +60,8 @@ Status = Literal["passed", "failed", "blocked", "error"]
 class Verdict:
     """One check's verdict. `name` is its function, `title` its docstring.
 
-    `finding` is there for a failed check; `blocked_by` names the checks without which a blocked one can't be judged;
-    `error` says what crashed in the check, with file and line.
+    A failed check has a `finding`. `blocked_by` names the checks without which a blocked one can't be judged. `error`
+    says what crashed in the check, with file and line.
     """
 
     name: str
@@ -77,20 +77,22 @@ class Verdict:
 
     @property
     def earned(self) -> float:
-        """The points it gave."""
+        """Return the points that it gave."""
         return self.points if self.status == "passed" else 0.0
 
 
 Test = TypeVar("Test", bound=Callable[..., None])
 
-#: Where the mark is kept on the test function.
+#: The attribute of a test function that holds its options.
 ATTRIBUTE = "__check__"
 
 
 @dataclass(frozen=True)
 class CheckOptions:
-    """What the `check` decorator says about a test function. `depends` are names of other checks, `rule` is a sentence
-    of task.md."""
+    """The arguments of the `check` decorator of a test function.
+
+    `depends` are names of other checks, `rule` is a sentence of task.md.
+    """
 
     points: float
     hint: str
@@ -107,10 +109,10 @@ def check(
     misconception: str = "",
     rule: str = "",
 ) -> Callable[[Test], Test]:
-    """Make a test function a check that gives `points`; its docstring is the check's title.
+    """Make a test function a check that gives `points`. Its docstring is the check's title.
 
-    `hint` tells a student who fails the check where to look. `depends` lists checks (functions of the same file, or
-    names) without which this one can't be judged: it counts as blocked, not as failed, unless all of them passed.
+    `hint` says where to look to a student who fails the check. `depends` lists checks (functions of the same file, or
+    names) without which this one can't be judged: unless all of them passed, it counts as blocked, not as failed.
     `misconception` names the common mistake behind a failure, in two or three words. `rule` is the sentence of task.md
     that the check is based on, word for word: `spinbook audit` needs one for each hidden check, and looks for it there.
     """
@@ -124,6 +126,6 @@ def check(
 
 
 def check_options(test: object) -> CheckOptions | None:
-    """What `check` said about this function, if anything."""
+    """Return what `check` said about this function, if anything."""
     mark = getattr(test, ATTRIBUTE, None)
     return mark if isinstance(mark, CheckOptions) else None

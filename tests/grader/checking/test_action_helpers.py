@@ -127,10 +127,13 @@ def test_no_answer_to_a_goal() -> None:
         ((), "expected 2 feedback messages, got 0. Your node never publishes feedback."),
         ((Feedback(ns(1.5), {"left": 2}),), "expected 2 feedback messages, got 1."),
         ((Feedback(ns(1.5), {"left": 2}), Feedback(ns(2.0), {"left": 7})), "feedback 2: expected left 1, got 7."),
-        ((Feedback(ns(1.5), {"left": 2}), Feedback(ns(2.4), {"left": 1})), "expected at 2.00 s, got it at 2.40 s."),
+        (
+            (Feedback(ns(1.5), {"left": 2}), Feedback(ns(2.4), {"left": 1})),
+            "expected at 2.00 s, but happened at 2.40 s.",
+        ),
         (
             (Feedback(ns(1.4), {"left": 2}),),
-            "got it at 1.40 s. Does your node wait by the computer's clock, such as with",
+            "but happened at 1.40 s. Does your node wait by the computer's clock, such as with",
         ),
     ],
 )

@@ -138,7 +138,7 @@ def test_a_series_that_comes_too_late_or_ends_too_early() -> None:
     run(late, RIGHT).must_match_series("data")
     found = finding(lambda: run(late, RIGHT).must_match_series("data", time=0.05))
     assert found.text == (
-        "At 0.55 s (as usual), message 1 on /out: it was expected at 0.10 s, got it at 0.55 s. "
+        "At 0.55 s (as usual), message 1 on /out: it was expected at 0.10 s, but happened at 0.55 s. "
         "Every message comes 0.45 s too late."
     )
     assert (found.at, found.expected, found.got) == (0.55, "0.10 s", "0.55 s")

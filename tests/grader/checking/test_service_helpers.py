@@ -97,7 +97,7 @@ def test_requests_that_come_too_late() -> None:
     right = calls(2, 3, by="node")
     late = replace(right, calls=tuple(replace(call, at=call.at + ns(0.45) - ns(0)) for call in right.calls))
     run(late, right, CLIENT).must_match_requests()
-    assert "request 1 to /add: it was expected at 1.00 s, got it at 1.45 s." in says(
+    assert "request 1 to /add: it was expected at 1.00 s, but happened at 1.45 s." in says(
         lambda: run(late, right, CLIENT).must_match_requests(time=0.1)
     )
 
