@@ -1,4 +1,4 @@
-"""The files in a class's folder or zip, without what programs leave there."""
+"""The files in a class's folder or zip, without those that programs create there."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from grader.classroom.times import Time
 from grader.grading.grade import Skipped
 from grader.submission.reader import MOST_BYTES
 
-#: Made by operating systems, editors and Python, never by a student.
+#: Created by operating systems, editors and Python, never by a student.
 NOISE = {"__MACOSX", "__pycache__", "Thumbs.db", "desktop.ini"}
 WHY_NOISE = "made by a program, not handed in"
 
-#: A thousand students with as many files as they like.
+#: Enough for a thousand students with 20 files each.
 MOST_FILES = 20_000
 MOST_BYTES_IN_ALL = 2_000_000_000
 
-#: A little more than a submission may have: reading it says what is wrong with a larger one.
+#: One byte more than a submission may have, so that the reader can say that it is too large.
 MOST_BYTES_OF_ONE = max(MOST_BYTES.values()) + 1
 
 BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError, ValueError)
@@ -59,7 +59,7 @@ def date_of(path: Path) -> Time:
 def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
     """Yield the files in `archive`, written into the folder `into` with numbers as names.
 
-    Raises `SubmissionsError` when it is not a zip, or holds more than any class submits.
+    Raises `SubmissionsError` if it is not a zip, or holds more than any class submits.
     """
     try:
         opened = zipfile.ZipFile(archive)
@@ -77,7 +77,7 @@ def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
                 continue
             path = into / f"{number:05}{''.join(PurePosixPath(name).suffixes)[-20:]}"
             if stat.S_ISLNK(entry.external_attr >> 16):
-                path.symlink_to("nowhere")  # what reads it says so to the student
+                path.symlink_to("nowhere")  # the reader reports it to the student
                 yield File(name, path)
                 continue
             try:

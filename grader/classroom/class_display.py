@@ -1,4 +1,4 @@
-"""What the command prints about a class: how it was read, what needs a decision, the progress, and the result."""
+"""Prints how a class was read, the progress of grading, and the result."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from grader.classroom.submissions import Submissions
 from grader.grading.grade import Entry, Skipped
 from grader.report.printable import printable
 
-#: How many files that were skipped for the same reason are named; the overview page names all.
+#: At most this many skipped files are named per reason; the overview page names all of them.
 MOST_NAMED = 5
 
 
 def say(console: Console, text: str, style: str = "") -> None:
-    """Print a line, without anything in it that a terminal obeys."""
+    """Print a line, without control sequences that a terminal would obey."""
     console.print(Text(printable(text), style=style), soft_wrap=True)
 
 
@@ -30,7 +30,7 @@ def counted(number: int, what: str) -> str:
 
 
 def show_submissions(console: Console, collected: Submissions) -> None:
-    """Print how the submissions were read, and what was left out; the first line is the format and the count."""
+    """Print how the submissions were read and what was left out; the first line is the count and the format."""
     asked = [question for question in collected.questions if question.unclear != "name"]
     students = len(collected.handed_in) + len(asked)
     submissions = len({one.file.path for one in collected.handed_in}) + len(asked)
@@ -54,7 +54,7 @@ def _list(console: Console, skipped: Iterable[Skipped]) -> None:
 
 
 def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[Entry]) -> None:
-    """Print the class's result, and what is left to do for the instructor."""
+    """Print the class's result, and what is left for the instructor to do."""
     finals = sorted(entry.final for entry in entries if entry.final is not None)
     if finals:
         points = entries[0].grade.points
@@ -83,7 +83,7 @@ def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[E
 
 
 class ProgressDisplay:
-    """Prints each entry as it is done. Use it as a context manager."""
+    """Prints each entry when it is done. Use it as a context manager."""
 
     def __init__(self, console: Console, total: int) -> None:
         self._console, self._total, self._done = console, total, 0
@@ -101,7 +101,7 @@ class ProgressDisplay:
         self._task = self._bar.add_task("grading", total=total)
 
     def done(self, entry: Entry, changed: str) -> None:
-        """Count one more as done; `changed` says what an earlier grade was, if it was different."""
+        """Count one more entry as done; `changed` describes the difference from an earlier grade, if any."""
         self._done += 1
         self._bar.update(self._task, advance=1)
         if self._console.is_terminal and not changed:

@@ -43,9 +43,9 @@ DONE, QUESTIONS, FAULTS, STOPPED = 0, 1, 3, 130
 
 
 def grade_class(exercise: Exercise, class_request: ClassRequest, console: Console) -> int:
-    """Grade a class, and print the result; return the exit code.
+    """Grade a class and print the result; return the exit code.
 
-    Raises `SubmissionsError` when there is nothing to grade, `OverridesError` for a mistake in the overrides, `Busy`
+    Raises `SubmissionsError` if there is nothing to grade, `OverridesError` for a mistake in the overrides, `Busy`
     when another run is using the same results folder, `NotWritable` when the results can't be written, and what
     `grading_of` raises.
     """
@@ -127,7 +127,7 @@ def _graded(
 
 
 def _record_others(class_grading: ClassGrading, grading: Grading, collected: Submissions) -> None:
-    """Give a row to everybody from whom nothing is graded."""
+    """Record an entry for each student without a submission to grade."""
     for student in collected.missing:
         class_grading.record(student, no_grade(grading.runner, "missing", "Nothing was handed in."))
     for question in collected.questions:
@@ -146,10 +146,10 @@ def _grade(class_grading: ClassGrading, plan: ClassPlan, submissions: Mapping[st
 
 
 def _may_replace(class_request: ClassRequest, console: Console, count: int) -> bool:
-    """Ask the instructor, if there is a terminal to ask in."""
+    """Ask the instructor, if there is a terminal to ask on."""
     if class_request.replace or not sys.stdin.isatty():
         if not class_request.replace:
-            console.print("To replace them: the same command with --yes.")
+            console.print("To replace them, run the same command with --yes.")
         return class_request.replace
     return Confirm.ask(f"Replace {count} grades?", console=console, default=False)
 
@@ -184,7 +184,7 @@ def _finish(
 
 
 def _read(collected: Submissions, exercise: Exercise) -> tuple[dict[str, Tries], list[tuple[StudentSubmission, str]]]:
-    """Read the submissions, by student. A file that its reader can't read is listed separately."""
+    """Return the submissions by student, and separately those on which the reader itself failed."""
     submissions, unreadable = {}, []
     for one in collected.handed_in:
         try:
@@ -200,7 +200,7 @@ def _unread(grading: Grading, one: StudentSubmission) -> Grade:
 
 
 def _writable(entry: Entry, class_grading: ClassGrading, due: datetime | None) -> Entry:
-    """Return the entry, as a `host-error` if the gradebook's files can't hold it: they must not fail for the class."""
+    """Return the entry; as a `host-error` if it can't be written, so that the gradebook does not fail for the class."""
     try:
         gradebook(class_grading.results.folder, class_grading.exercise, [entry], due)
     except Exception as error:
@@ -228,7 +228,7 @@ def _backend(grading: Grading, class_request: ClassRequest) -> Iterator[Backend]
 
 @contextlib.contextmanager
 def _ended_by_signals() -> Iterator[None]:
-    """End a run on SIGTERM, which a machine sends when it shuts down, as cleanly as on Ctrl-C."""
+    """Treat SIGTERM, which a machine sends when it shuts down, like Ctrl-C."""
 
     def stop(number: int, frame: FrameType | None) -> None:
         raise KeyboardInterrupt

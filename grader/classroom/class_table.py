@@ -19,11 +19,11 @@ KNOWN = (*NEEDED, "name", "email", "submitted", "attempt")
 
 
 def by_row(table: Path, zone: tzinfo | None) -> tuple[list[tuple[File, Upload]], list[Skipped]]:
-    """Return the files in the rows, relative to the CSV file's folder, and rows whose file is missing.
+    """Return the files that the rows name, relative to the CSV file's folder, and the rows whose file is missing.
 
-    Times without a zone are in `zone`. Several files of a student are attempts if each has a time or a number in the
-    column attempt. Other columns are kept for each student, as their learning platform's. Raises `SubmissionsError`
-    for a row with a mistake.
+    Times without a zone are in `zone`. Several files of a student are attempts if each has a time, or a number in the
+    column attempt. Other columns are kept as the student's data from the learning platform. Raises
+    `SubmissionsError` for a row with a mistake.
     """
     uploads: dict[str, list[tuple[File, Upload]]] = defaultdict(list)
     skipped = []
@@ -59,7 +59,7 @@ def _time(row: dict[str, str], path: Path, place: str, zone: tzinfo | None) -> T
 
 
 def _attempts(theirs: list[tuple[File, Upload]]) -> list[tuple[File, Upload]]:
-    """Return a student's files as attempts only if the order of all of them is known."""
+    """Return a student's files; as attempts only if the order of all of them is known."""
     known = [upload.attempt for _, upload in theirs]
     if len(set(known)) == len(known) and all(known):
         return theirs

@@ -1,4 +1,4 @@
-"""Finds out who submitted what: in a folder, a zip, a learning platform's download, or by a CSV file."""
+"""Finds out who submitted what, from a folder, a zip, a learning platform's download or a CSV file."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ KINDS = "not one of .py, .ipynb, .zip"
 
 @dataclass(frozen=True)
 class CollectOptions:
-    """What the instructor says about a class: see the options of `spinbook grade`.
+    """The instructor's options for reading a class: see `spinbook grade`.
 
-    `attempts` is "last", "first" or "best"; without it, several attempts are a question. `zone` is the time zone of
+    `attempts` is "last", "first" or "best"; if it is empty, several attempts are a question. `zone` is the time zone of
     times that have none; None is this machine's.
     """
 
@@ -41,10 +41,10 @@ class CollectOptions:
 
 
 def collect(source: Path, exercise: Exercise, unpack_into: Path, options: CollectOptions | None = None) -> Submissions:
-    """Return what the class submitted, from a folder, a zip or a CSV file; the file names decide how to read it.
+    """Return what the class submitted. The names of the files decide how a folder or a zip is read.
 
-    A zip's files are written into the folder `unpack_into`, which has to be empty. Raises `SubmissionsError` when
-    there is nothing at all to grade, or when it is not clear how to read it.
+    A zip's files are written into the folder `unpack_into`, which has to be empty. Raises `SubmissionsError` if
+    there is nothing to grade, or if it is not clear how to read the source.
     """
     options = options or CollectOptions()
     if not source.exists():
@@ -62,9 +62,9 @@ def collect(source: Path, exercise: Exercise, unpack_into: Path, options: Collec
 
 @dataclass(frozen=True)
 class ClassFiles:
-    """The files of a class whose owners are known, and the others; see `Submissions`.
+    """The files of a class: those whose owners are known, and the others; see `Submissions`.
 
-    `together` says that the files of an attempt are one submission, such as a package.
+    With `together`, all files of an attempt are one submission, such as a package.
     """
 
     kind: str
@@ -99,7 +99,7 @@ def _found(source: Path, exercise: Exercise, unpack_into: Path, options: Collect
 
 
 def _odd(recognition: Recognition, why: str) -> list[Question]:
-    """Return what could be graded, but is not called as on the platform, each as from a student of that name."""
+    """Return a question for each gradable file or folder whose name does not fit the platform's format."""
     files: dict[str, list[str]] = defaultdict(list)
     for top, file in recognition.misfits:
         if can_be_graded(file.name):
@@ -109,14 +109,14 @@ def _odd(recognition: Recognition, why: str) -> list[Question]:
 
 @dataclass(frozen=True)
 class Collector:
-    """From files whose owners are known to one submission per student."""
+    """Turns files whose owners are known into one submission per student."""
 
     folder: Path
     options: CollectOptions
     together: bool
 
     def submissions(self, found: ClassFiles) -> Submissions:
-        """Return one submission per student; what is not clear becomes a question, never a guess."""
+        """Return one submission per student. Anything unclear becomes a question, never a guess."""
         units = in_groups(_units(found.uploads), self.options.groups)
         extras: list[Skipped] = []
         theirs: dict[str, list[StudentSubmission | Question]] = defaultdict(list)
@@ -143,7 +143,7 @@ class Collector:
         )
 
     def _chosen(self, unit: Unit, number: int, extras: list[Skipped]) -> list[StudentSubmission | Question]:
-        """Return the submission of each of the unit's students; of several attempts those that the policy names."""
+        """Return the submission of each student in the unit, with the attempts that the options select."""
         attempts = [unit.attempts[key] for key in sorted(unit.attempts)]
         if len(attempts) > 1 and not self.options.attempts:
             names = tuple(attempt[0][0].name for attempt in attempts)
@@ -163,7 +163,7 @@ class Collector:
         return [StudentSubmission(student, files[0], tuple(files[1:])) for student in unit.students]
 
     def _submission(self, attempt: Attempt, name: str, extras: list[Skipped]) -> File | None:
-        """Return one attempt's file, or the folder of its files; None if it is not clear which one counts."""
+        """Return the file of an attempt, or the folder of its files; None if it is not clear which file counts."""
         several = [file for file, _ in attempt if can_be_graded(file.name)]
         if len(attempt) > 1 and len(several) != 1:
             return self._folder(attempt, name) if self.together else None
@@ -172,7 +172,7 @@ class Collector:
         return replace(chosen, time=next(upload.time for file, upload in attempt if file is chosen))
 
     def _folder(self, attempt: Attempt, name: str) -> File:
-        """Return the attempt's files in a folder of their own, under the names that the student gave them."""
+        """Return a new folder with the attempt's files, under the names that the student gave them."""
         folder = self.folder / f"submission-{name}"
         for file, upload in attempt:
             if file.path.is_symlink() or file.fault:
@@ -190,7 +190,7 @@ class Collector:
         return File(name, folder, upload.time, next((file.fault for file, _ in attempt if file.fault), ""))
 
     def _missing(self, students: Sequence[Student], rows: dict[str, RosterRow]) -> list[Student]:
-        """Return everybody of the roster and of the groups from whom there is nothing."""
+        """Return the students of the roster and of the groups who submitted nothing."""
         there = {id(row) for row in rows.values()}
         missing = [row.student for row in self.options.roster if id(row) not in there]
         known = {
@@ -208,7 +208,7 @@ class Collector:
 
 
 def _units(uploads: Sequence[tuple[File, Upload]]) -> list[Unit]:
-    """Return what each student, or group, handed in; something aside only if there is nothing else."""
+    """Return what each student or group handed in; files marked `aside` only if there is nothing else."""
     by_owner: dict[tuple[str, ...], list[tuple[File, Upload]]] = defaultdict(list)
     for file, upload in uploads:
         by_owner[tuple(student.id for student in upload.students)].append((file, upload))
@@ -222,7 +222,7 @@ def _units(uploads: Sequence[tuple[File, Upload]]) -> list[Unit]:
 
 
 def _only(several: list[StudentSubmission | Question]) -> StudentSubmission | Question:
-    """Return a student's submission; alone and in a group, it is a question which one counts."""
+    """Return a student's submission. One alone and one in a group are a question: which one counts?"""
     if len(several) == 1:
         return several[0]
     names = [one.files if isinstance(one, Question) else (one.file.name,) for one in several]
@@ -244,9 +244,9 @@ def _not_gradable(handed_in: Sequence[StudentSubmission]) -> list[str]:
 
 
 def _notes(handed_in: Sequence[StudentSubmission]) -> list[str]:
-    """Return how ambiguous times were read, and of how many students."""
+    """Return notes on how ambiguous times were read, and for how many students."""
     count: dict[str, int] = defaultdict(int)
     for one in handed_in:
         if one.file.time.note:
             count[f"{one.file.time.source}: {one.file.time.note}"] += 1
-    return [f"{note}, of {number} student{'s' if number > 1 else ''}" for note, number in count.items()]
+    return [f"{note}, for {number} student{'s' if number > 1 else ''}" for note, number in count.items()]

@@ -17,7 +17,7 @@ from grader.report.pages import render
 
 @dataclass(frozen=True)
 class GradedExercise:
-    """One exercise that a class was graded for: `entries` by the student's id, `points` for full marks."""
+    """One graded exercise: `entries` by the student's id, and the `points` for full marks."""
 
     name: str
     title: str
@@ -27,7 +27,7 @@ class GradedExercise:
 
 @dataclass(frozen=True)
 class CourseRow:
-    """One student in all exercises: `entries` has one per exercise, None if nothing was submitted.
+    """One student's results: one entry per exercise, None if nothing was submitted.
 
     `earned` and `of` are points so far. A missing submission counts as 0 of its points; one that could not be graded
     does not count at all.
@@ -40,7 +40,7 @@ class CourseRow:
 
     @property
     def percent(self) -> float:
-        """Points so far, in percent of those possible."""
+        """Points so far, as a percentage of those possible."""
         return 100 * self.earned / self.of if self.of else 0.0
 
 
@@ -49,8 +49,8 @@ def graded_exercises(
 ) -> tuple[GradedExercise, ...]:
     """Return every exercise that has grades in `results/EXERCISE/students/STUDENT/grade.json`.
 
-    First those of `order`, in that order, then all others by name. A grade that can't be read is left out, because
-    `spinbook grade` grades it again.
+    Those in `order` come first, in that order; the others follow by name. A grade that can't be read is left out:
+    `spinbook grade` grades that submission again.
     """
     names = {file.parents[2].name for file in results.glob(f"*/{STUDENTS}/*/grade.json")}
     ordered = [*(name for name in order if name in names), *sorted(names - set(order))]
@@ -94,7 +94,7 @@ def _row(student: Student, exercises: Sequence[GradedExercise]) -> CourseRow:
 
 
 def course_csv(exercises: Sequence[GradedExercise], rows: Sequence[CourseRow]) -> str:
-    """Return the gradebook as CSV: student, name, email, a column per exercise, points so far, of how many, percent."""
+    """Return the gradebook as CSV, with a column per exercise, the points so far, those possible, and a percentage."""
     header = ["student", "name", "email", *(exercise.name for exercise in exercises), "points so far", "of", "percent"]
     table: list[list[Cell]] = []
     for row in rows:
@@ -104,7 +104,7 @@ def course_csv(exercises: Sequence[GradedExercise], rows: Sequence[CourseRow]) -
     return csv_text(header, table)
 
 
-#: How many of the checks that most students fail are shown.
+#: At most this many of the checks that students fail are shown.
 MOST_SHOWN = 10
 
 
@@ -128,7 +128,7 @@ class Struggle:
 
 
 def course_page(title: str, exercises: Sequence[GradedExercise], rows: Sequence[CourseRow]) -> str:
-    """Return the page `results/index.html` of a course, one HTML file.
+    """Return a course's page `results/index.html` as one HTML file.
 
     Its links lead to `EXERCISE/index.html` and `EXERCISE/students/STUDENT/feedback.html` next to it.
     """
@@ -148,7 +148,7 @@ def course_page(title: str, exercises: Sequence[GradedExercise], rows: Sequence[
 
 
 def column_of(exercise: GradedExercise) -> Column:
-    """Return what the page says about one exercise."""
+    """Return what the page shows for one exercise."""
     finals = [entry.final for entry in exercise.entries.values() if entry.final is not None]
     return Column(
         exercise=exercise,
@@ -166,7 +166,7 @@ def points_so_far(exercises: Sequence[GradedExercise], rows: Sequence[CourseRow]
 
 
 def struggles(columns: Sequence[Column]) -> tuple[Struggle, ...]:
-    """Return the checks of all exercises that the largest part of the graded students fail, worst first."""
+    """Return the most often failed checks of all exercises, worst first, by the share of graded students who fail."""
     found = [Struggle(column, tally) for column in columns for tally in tallies(list(column.exercise.entries.values()))]
     return tuple(sorted(found, key=lambda one: -one.tally.share)[:MOST_SHOWN])
 

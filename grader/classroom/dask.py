@@ -1,4 +1,4 @@
-"""Grades submissions on a Dask cluster: what is sent, and what a worker does with it."""
+"""Grades submissions on a Dask cluster."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ExerciseFiles:
-    """The files that grading needs, by their paths below a course's folder."""
+    """The files that grading needs, by path inside the course's folder."""
 
     exercise: str
     files: dict[str, bytes]
 
     @property
     def digest(self) -> str:
-        """The SHA-256 of all of it."""
+        """The SHA-256 of all names and contents."""
         total = hashlib.sha256(self.exercise.encode())
         for name, content in sorted(self.files.items()):
             total.update(f"{name} {len(content)}\n".encode())
@@ -54,7 +54,7 @@ class ExerciseFiles:
 
 
 def pack_exercise(exercise: Exercise) -> ExerciseFiles:
-    """Pack the exercise's folder, and the author's own solution."""
+    """Return the exercise's folder and the author's solution."""
     name = exercise.name
     found = [file for file in sorted(exercise.folder.rglob("*")) if file.is_file() and "__pycache__" not in file.parts]
     files = {f"exercises/{name}/{file.relative_to(exercise.folder).as_posix()}": file.read_bytes() for file in found}
@@ -65,7 +65,7 @@ def pack_exercise(exercise: Exercise) -> ExerciseFiles:
 
 @dataclass(frozen=True)
 class PreparedGrading:
-    """One exercise, ready to be graded for as long as this process lives. `resources` is closed after it."""
+    """One exercise, prepared for grading. Close `resources` when it is no longer needed."""
 
     grading: Grading
     key: str
@@ -77,7 +77,7 @@ _lock = threading.Lock()
 
 
 def describe_worker() -> dict[str, str]:
-    """Return what grades depend on here, besides the exercise. Raises `MiddlewareUnavailable`."""
+    """Return the versions on this worker that grades depend on. Raises `MiddlewareUnavailable`."""
     require_middleware()
     return versions()
 
@@ -87,7 +87,7 @@ def grade_on_worker(
 ) -> GradedSubmission:
     """Return one submission's grade, without recordings, and its plot.
 
-    `key` is the caller's: if grades would depend on anything different here, the result is a `host-error` that says so.
+    `key` is the caller's `grade_key`. If this worker's key differs, the result is a `host-error` that says so.
     """
     bench = _prepared_grading(packed, options)
     runner = bench.grading.runner
@@ -101,7 +101,7 @@ def grade_on_worker(
 
 
 def _prepared_grading(packed: ExerciseFiles, options: Options) -> PreparedGrading:
-    """Return the exercise, prepared by the first task for all that follow; only the newest one is kept."""
+    """Return the prepared exercise. The first task prepares it for all that follow; only the newest one is kept."""
     name = f"{packed.digest} {options}"
     with _lock:
         if name not in _ready:
@@ -115,18 +115,18 @@ def _prepared_grading(packed: ExerciseFiles, options: Options) -> PreparedGradin
         return _ready[name]
 
 
-# Each worker has the same version of this software and of ROS 2, and gets the exercise with the first task. How
-# `dask.distributed` handles tasks of a worker that has died is described in
+# Every worker has the same versions of Spinbook and of ROS 2, and gets the exercise with its first task. For how
+# `dask.distributed` handles the tasks of a worker that died, see
 # https://distributed.dask.org/en/stable/resilience.html.
 
 
-#: How long a scheduler has to answer, and then how long there may be no worker, in seconds.
+#: How long to wait for the scheduler's answer, and then for its first worker (s).
 SCHEDULER_S, WORKER_S = 10.0, 60.0
 
 
 @dataclass(frozen=True)
 class DaskBackend:
-    """The workers of one scheduler. Each takes as many submissions at once as it has threads."""
+    """The workers of one scheduler. Each grades as many submissions at once as it has threads."""
 
     grading: Grading
     client: Client
@@ -137,7 +137,7 @@ class DaskBackend:
         return grade_key(self.grading)
 
     def grade(self, submissions: Mapping[str, Submission]) -> Iterator[GradedSubmission]:
-        """See `Backend`. A worker that dies costs another attempt; after four deaths it is a fault of ours."""
+        """See `Backend`. If a worker dies, its submission is tried again; after four deaths it is a `host-error`."""
         from distributed import as_completed
 
         if not submissions:
@@ -164,7 +164,7 @@ class DaskBackend:
 
 @contextlib.contextmanager
 def dask_backend(grading: Grading, address: str) -> Iterator[DaskBackend]:
-    """Yield the cluster whose scheduler is at `address`, such as tcp://10.0.0.5:8786, with at least one worker.
+    """Yield the cluster whose scheduler is at `address`, such as tcp://10.0.0.5:8786. It has at least one worker.
 
     Raises `NoCluster` if there is none, or if a worker's versions differ from this machine's.
     """

@@ -36,11 +36,11 @@ KEYS = ("due", "zone", "grace", "penalty", "closes")
 
 @dataclass(frozen=True)
 class Deadline:
-    """When work is due and what lateness costs.
+    """When work is due, and the penalty for late work.
 
-    Work submitted within `grace` after `due` is on time. Later work loses `percent` of its score for each `unit` that
-    has begun since `due`, at most `at_most` percent; after `closes` it loses everything. Days and weeks are those of
-    the calendar of `zone`, None for this machine's: they end at the time of day of `due`, also if the clocks change.
+    Work submitted within `grace` after `due` is on time. Later work loses `percent` of its score for each `unit` begun
+    since `due`, at most `at_most` percent; after `closes` it loses everything. Days and weeks follow the calendar of
+    `zone` (None: this machine's): they end at the time of day of `due`, even if the clocks change.
     """
 
     due: datetime
@@ -57,9 +57,9 @@ class Deadline:
         return bool(self.percent or self.closes)
 
     def lost(self, submitted: datetime, due: datetime | None = None) -> float:
-        """Return how many percent of its score work loses if submitted then; `due` is a student's own later due date.
+        """Return the percentage of the score that is lost; `due` is the student's own due date, if any.
 
-        A student's own due date also postpones the closing date if that is earlier.
+        If the student's due date is later than the closing date, work is accepted until then.
         """
         due, submitted = (due or self.due).astimezone(timezone.utc), submitted.astimezone(timezone.utc)
         if self.closes and submitted > max(self.closes, due):
@@ -69,7 +69,7 @@ class Deadline:
         return min(self.at_most, self.percent * units_begun(due, submitted, self.unit, self.zone))
 
     def __str__(self) -> str:
-        """Return when work is due, and by which calendar days count."""
+        """Return when work is due, and by which calendar days are counted."""
         calendar = f"the calendar of {self.zone}" if self.zone else "this machine's calendar"
         if isinstance(self.zone, timezone) and self.zone is not timezone.utc:
             calendar += ', whose clocks never change (if they do, write zone = "Europe/Berlin" or the like)'
@@ -77,7 +77,7 @@ class Deadline:
 
 
 def deadline_of(exercise: Exercise) -> Deadline | None:
-    """Return the deadline in exercise.toml; None if there is none. Raises `ExerciseError` if it is not clear."""
+    """Return the deadline in exercise.toml; None if there is none. Raises `ExerciseError` for a mistake in it."""
     file = exercise.folder / "exercise.toml"
     entries = tomllib.loads(file.read_text(encoding="utf-8")).get("deadline")
     if entries is None:
@@ -105,7 +105,7 @@ def deadline_of(exercise: Exercise) -> Deadline | None:
 
 
 def _zone(entries: dict[str, Any], file: Path) -> tzinfo | None:
-    """Return the zone that is named; otherwise this machine's, unless `due` has another offset."""
+    """Return the zone that [deadline] names; otherwise the offset of `due`, or None for this machine's zone."""
     if "zone" in entries:
         try:
             return zone_named(str(entries["zone"]))
@@ -148,7 +148,7 @@ class OverridesError(Exception):
 
 @dataclass(frozen=True)
 class Override:
-    """One row: `points` that count instead of the score, or are `added` to it; or another `due` date."""
+    """One row: `points` that replace the score or, if `added`, are added to it; or another `due` date."""
 
     student: str
     reason: str
@@ -158,10 +158,10 @@ class Override:
 
 
 def overrides_in(file: Path, students: set[str], zone: tzinfo | None = None) -> dict[str, tuple[Override, ...]]:
-    """Return the rows by student, each of whom must be one of `students`.
+    """Return the rows by student. Each student must be one of `students`.
 
-    Columns: student, reason, and points or due, which is in `zone` if it names none. `85` are the points that count;
-    `+5` and `-5` are added to the score. Raises `OverridesError`.
+    Columns: student, reason, and either points or due. A due date without a zone is in `zone`. `85` replaces the
+    points; `+5` and `-5` are added to the score. Raises `OverridesError`.
     """
     found: dict[str, tuple[Override, ...]] = {}
     try:
@@ -201,10 +201,10 @@ class Adjuster:
     overrides: Mapping[str, tuple[Override, ...]] = field(default_factory=dict)
 
     def __call__(self, entry: Entry) -> tuple[Adjustment, ...]:
-        """Return what is added to or taken from this entry's score, with reasons. Earlier adjustments don't count.
+        """Return the adjustments to this entry's score, with reasons. Earlier adjustments are ignored.
 
-        Lateness depends on when the work was submitted, not on when it was graded. Points set by the instructor always
-        count, late or not; of several rows for one student the last one with points, or with a due date, is used.
+        Lateness depends on when the work was submitted, not on when it was graded. Points set by the instructor count
+        even if the work is late. If several rows set a student's points or due date, the last one counts.
         """
         theirs = self.overrides.get(entry.student.id, ())
         fixed = [override for override in theirs if override.points is not None]
@@ -222,7 +222,7 @@ class Adjuster:
         return tuple(made)
 
     def undated(self, handed_in: Sequence[StudentSubmission]) -> list[StudentSubmission]:
-        """Return the submissions whose lateness would cost points, but is not known."""
+        """Return the submissions of unknown date for which lateness would cost points."""
         if not self.deadline or not self.deadline.costs:
             return []
         decided = {
@@ -252,7 +252,7 @@ def date_shown(moment: datetime | None) -> str:
 
 
 def lateness(due: datetime, submitted: datetime, zone: tzinfo | None) -> str:
-    """Return `2 days 3 h`, `3 h 20 min` or `5 min`; a minute that has begun counts. Days are those of the calendar."""
+    """Return `2 days 3 h`, `3 h 20 min` or `5 min`; minutes are rounded up, and days are calendar days."""
     submitted = submitted.astimezone(timezone.utc)
     days = units_begun(due, submitted, UNITS["day"], zone)
     if later(due, days * UNITS["day"], zone) > submitted:

@@ -1,5 +1,4 @@
-"""What only the instructor can decide: the command asks before it grades anything, and never leaves anybody out in
-silence."""
+"""What only the instructor can decide. The command asks before it grades, so no student is left out silently."""
 
 from __future__ import annotations
 
@@ -16,7 +15,7 @@ from grader.submission.reader import Submission
 
 @dataclass(frozen=True)
 class Decision:
-    """One thing to decide: what it is, every file or student that it is about, and what to do."""
+    """One thing to decide: what it is, the files or students it concerns, and what to do."""
 
     what: str
     about: tuple[str, ...]
@@ -26,9 +25,9 @@ class Decision:
 #: What is unclear, and what to do.
 QUESTION_TEXTS: dict[Unclear, tuple[str, str, str]] = {
     "name": (
-        "{} could be graded, but nothing says whose: the name is not as the others'",
+        "{} could be graded, but the student is unknown: the name does not fit the format of the others",
         "entry",
-        "Rename or remove them, name them in a CSV file, or say with --format how to read the class.",
+        "Rename or remove them, name them in a CSV file, or choose how to read the class with --format.",
     ),
     "attempts": (
         "{} handed in several times",
@@ -47,7 +46,7 @@ QUESTION_TEXTS: dict[Unclear, tuple[str, str, str]] = {
 def decisions(
     collected: Submissions, adjuster: Adjuster, submissions: Mapping[str, Sequence[Submission]]
 ) -> list[Decision]:
-    """Return what is not clear about a class; `submissions` are those of `collected`, read, by student."""
+    """Return what is not clear about a class. `submissions` are those of `collected` after reading, by student."""
     programs = [f"{who}: {one.question}" for who, tries in submissions.items() for one in tries if one.question]
     unread = [f"{one.student.id}: {file.time.fault}" for one, file in _faults(collected.handed_in)]
     questions: dict[Unclear, list[str]] = {"name": [], "attempts": [], "files": [], "damaged": []}
@@ -90,7 +89,7 @@ def _undated(collected: Submissions, adjuster: Adjuster) -> Decision:
 
 
 def show_decisions(console: Console, found: Sequence[Decision], skip: bool) -> None:
-    """Print everything that is to be decided, in full, and what to do."""
+    """Print every decision in full, with what to do."""
     for decision in found:
         say(console, f"{decision.what}:", "yellow")
         for about in decision.about:

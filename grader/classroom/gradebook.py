@@ -19,7 +19,7 @@ from groundwork.files import write_if_changed
 
 
 def grades(exercise: Exercise, entries: Sequence[Entry]) -> str:
-    """Return everything, for people and their spreadsheets: one row per student, one column per check at the end."""
+    """Return the complete table for spreadsheets: one row per student, with one column per check at the end."""
     checks = list(dict.fromkeys(verdict.name for entry in entries for verdict in entry.grade.verdicts))
     header = ["student", "name", "email", "points", "of", "before adjustments", "adjustments", "outcome", "failed"]
     rows: list[list[Cell]] = []
@@ -38,14 +38,14 @@ def grades(exercise: Exercise, entries: Sequence[Entry]) -> str:
     return csv_text([*header, "message", "file", "submitted", *checks], rows)
 
 
-# For the instructor alone: it names hidden checks, and says why they fail.
+# For the instructor only: it names hidden checks and says why they fail.
 
 
 def junit(exercise: Exercise, entries: Sequence[Entry]) -> str:
-    """Return all entries as one JUnit XML document (the form that Jenkins and pytest share).
+    """Return all entries as one JUnit XML document, in the form that Jenkins and pytest share.
 
-    A blocked check is skipped. A run that did not complete is one more test case, `outcome`, that failed; a fault of
-    ours is one with an error.
+    A blocked check is skipped. A run that did not complete has an additional test case, `outcome`, which failed; a
+    fault of ours is an error there.
     """
     root = ET.Element("testsuites", name=exercise.name)
     for entry in entries:
@@ -100,14 +100,14 @@ def _xml_text(text: str) -> str:
 def write_gradebook(
     results: Path, exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None
 ) -> tuple[Path, ...]:
-    """Write a class's grades into the folder `results`, and return the files, in order of students' ids.
+    """Write a class's grades into the folder `results`, and return the files, sorted by student id.
 
     `grades.csv`, a table for each platform that imports one, `junit.xml`, and in each student's folder `results.json`
-    for Gradescope. `due` is when the work was due, which nbgrader's file contains. Each is written whole or not at all.
-    Raises OSError when the folder can't be written.
+    for Gradescope. nbgrader's table contains the due date, `due`. Each file is written completely or not at all.
+    Raises OSError if the folder can't be written.
     """
     contents = gradebook(results, exercise, entries, due)
-    # The results of these could not be written, which may be the fault.
+    # These may be host errors because their results could not be written.
     faulty = {folder_of(results, entry.student.id) for entry in entries if entry.grade.outcome == "host-error"}
     for file, content in contents.items():
         with contextlib.suppress(OSError) if file.parent in faulty else contextlib.nullcontext():
@@ -118,7 +118,7 @@ def write_gradebook(
 def gradebook(
     results: Path, exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None
 ) -> dict[Path, str]:
-    """Return what `write_gradebook` writes: the content of each file."""
+    """Return the content of each file that `write_gradebook` writes."""
     ordered = sorted(entries, key=lambda entry: entry.student.id)
     return {
         results / "grades.csv": BYTE_ORDER_MARK + grades(exercise, ordered),

@@ -14,13 +14,13 @@ from grader.classroom.submissions import File, SubmissionsError
 from grader.classroom.tables import table_rows
 from grader.grading.grade import Student
 
-#: One attempt: its files, and what their places say.
+#: One attempt: its files, and what their paths say.
 Attempt = Sequence[tuple[File, Upload]]
 
 
 @dataclass(frozen=True)
 class Unit:
-    """What some students handed in together, most often one: their attempts, in order of their texts."""
+    """The attempts of a group of students, or of a single student, by their sort key."""
 
     students: tuple[Student, ...]
     attempts: Mapping[str, Attempt]
@@ -28,14 +28,14 @@ class Unit:
 
 @dataclass(frozen=True)
 class Group:
-    """A group of the instructor's table."""
+    """A group in the instructor's table."""
 
     name: str
     members: tuple[Student, ...]
 
 
 def read_groups(table: Path) -> tuple[Group, ...]:
-    """Return the groups in a CSV file with the columns group and student, and perhaps name, email and others.
+    """Return the groups in a CSV file with the columns group and student, and optionally name, email and others.
 
     Raises `SubmissionsError` for a row with a mistake.
     """
@@ -53,9 +53,9 @@ def read_groups(table: Path) -> tuple[Group, ...]:
 
 
 def in_groups(units: Sequence[Unit], groups: Sequence[Group]) -> list[Unit]:
-    """Return the units with a group's members in the place of the group, or of the member who handed in for all.
+    """Return the units, with each group, or the member who handed in for the others, replaced by all members.
 
-    If several members handed something in, each keeps their own, and the others have nothing.
+    If several members handed something in, each keeps their own submission, and the others have none.
     """
     placed = dict(enumerate(units))
     called, owned = defaultdict(set), defaultdict(set)
@@ -76,10 +76,10 @@ def in_groups(units: Sequence[Unit], groups: Sequence[Group]) -> list[Unit]:
 
 
 def _known(member: Student, known: Sequence[Student]) -> Student:
-    """Return the member as the export names them, if it does."""
+    """Return the member as the export names them, otherwise unchanged."""
     return next((student for student in known if signs(member) & signs(student)), member)
 
 
 def _group_names(student: Student) -> set[str]:
-    """Return what a platform may call a group: Moodle writes `Group A_12`, Canvas `groupa_345`."""
+    """Return the names that platforms may give a group: Moodle writes `Group A_12`, Canvas `groupa_345`."""
     return {comparable(name) for name in (student.id, student.name, student.lms.get("Group", ""))} - {""}

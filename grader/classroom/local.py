@@ -21,7 +21,7 @@ from grader.report.feedback_plot import picture
 from grader.submission.reader import Submission
 from groundwork.files import claim_number
 
-#: How many submissions to grade at once per core: grader and program wait for each other.
+#: How many submissions to grade at once per core; more than one, as the grader and the program wait for each other.
 PER_CORE = 2
 
 
@@ -32,9 +32,9 @@ def at_once() -> int:
 
 @dataclass(frozen=True)
 class LocalBackend:
-    """One worker pool on this machine. Each submission goes through its scenarios one after another, on one core.
+    """One worker pool on this machine. The scenarios of a submission run one after another, on one core.
 
-    When no submission is waiting any more, an idle worker runs scenarios of those in progress.
+    When no more submissions are waiting, an idle worker runs scenarios of those in progress.
     """
 
     grading: Grading
@@ -67,7 +67,7 @@ class LocalBackend:
         finally:
             given_up.set()
             work_stealing.close()
-        for thread in threads:  # nothing is in progress any more when this is reached
+        for thread in threads:  # by now nothing is in progress
             thread.join()
 
     def _work(
@@ -98,7 +98,7 @@ class LocalBackend:
 
 
 def _graded(who: str, grading: Grading, submission: Submission) -> GradedSubmission:
-    """Grade one submission. A fault in the grader becomes this student's `host-error`; all others are still graded."""
+    """Grade one submission. A fault in the grader becomes this student's `host-error`; the others are still graded."""
     try:
         grade = grading.grade(submission)
     except ExerciseError:
@@ -110,7 +110,7 @@ def _graded(who: str, grading: Grading, submission: Submission) -> GradedSubmiss
 
 @contextlib.contextmanager
 def own_core() -> Iterator[int]:
-    """Yield a CPU to keep a program on: that of the lowest number that no process on this machine holds."""
+    """Yield the CPU with the lowest number that no other grading on this machine has reserved."""
     folder = Path(tempfile.gettempdir()) / f"spinbook-cores-{os.getuid()}"
     folder.mkdir(mode=0o700, exist_ok=True)
     cores = sorted(os.sched_getaffinity(0))

@@ -22,9 +22,9 @@ from groundwork.files import write_if_changed
 
 @dataclass(frozen=True)
 class Failure:
-    """How a check fails. `text` is the finding word for word, `kind` the same without the parts specific to a program.
+    """How a check fails. `text` is the finding word for word, `kind` the finding without what is specific to a program.
 
-    `exact` says whether the value is one that hardly any other mistake gives: a number of three digits or more.
+    `exact` is whether the value is one that hardly any other mistake produces: a number with three or more digits.
     """
 
     text: str
@@ -33,16 +33,16 @@ class Failure:
 
     @property
     def telling(self) -> bool:
-        """Whether `kind` says what is wrong, and not only that some value is not the expected one."""
+        """Whether `kind` says what is wrong, and not only that a value differs from the expected one."""
         return not COMPARISON.fullmatch(self.kind)
 
 
 @dataclass(frozen=True)
 class Signature:
-    """One or several known mistakes that nothing distinguishes.
+    """One known mistake, or several that fail in the same way.
 
-    `names` are their files' names, `sentences` the first lines of their docstrings. `failures` are the checks that
-    they fail, by name; checks blocked by these do not count.
+    `names` are the names of their files, `sentences` the first lines of their docstrings. `failures` has the checks
+    that they fail, by name; checks blocked by these do not count.
     """
 
     names: tuple[str, ...]
@@ -62,7 +62,7 @@ GUESS = re.compile(r" Is \S+ a misspelling of \S+\?")
 ENDED = re.compile(r"\b([A-Z]\w*(?:Error|Exception|Interrupt))\b.* in line \d+")
 #: A full stop that does not end a sentence, as in header.stamp, or any other character.
 INSIDE = r"(?:[^.]|\.(?=\S))*"
-#: A sentence that says what was expected, or was not; the range in it shows which rule is broken.
+#: A sentence that says what was, or was not, expected. A range in it ("between") shows which rule is broken.
 COMPARISON = re.compile(
     rf"(?!.* between ){INSIDE}\b(expected|must|came|got|never published|published nothing)\b{INSIDE}\."
 )
@@ -73,7 +73,7 @@ ENOUGH_DIGITS = 3
 
 
 def failures_of(grade: Grade) -> dict[str, Failure]:
-    """Return the checks that a graded submission fails, and how; nothing if its run did not complete."""
+    """Return how a graded submission fails checks, by check; nothing if its run did not complete."""
     if grade.outcome != "graded":
         return {}
     failed = [verdict for verdict in grade.verdicts if verdict.status == "failed" and verdict.finding]
@@ -105,12 +105,12 @@ def _digits(value: str) -> int:
     return len(found[0].replace(".", "")) if found else 0
 
 
-#: How well a submission's failure fits a signature's: the same specific words, or words with a value that hardly any
-#: other mistake gives; the same words; the same kind of specific words; or a comparison of two other values.
+#: How well a submission's failure fits a signature's: the same specific text, or a text with a value that hardly any
+#: other mistake produces; the same text; the same kind of specific text; or a comparison of two other values.
 SAME, SAME_WORDS, SAME_KIND, OTHER_VALUE = 1.0, 0.8, 0.75, 0.25
 
-#: How well all of a signature's failures have to fit, on average: if the submission fails just those checks, and if
-#: it fails others, too.
+#: How well a signature's failures have to fit on average: if the submission fails only those checks, and if it also
+#: fails others.
 FITS, FITS_AMONG_OTHERS = 0.7, 0.9
 
 
@@ -124,7 +124,7 @@ class MisconceptionGroup:
 
 @dataclass(frozen=True)
 class Misconceptions:
-    """Groups, the largest first; and under `other` the students who fail checks in ways that no known mistake does."""
+    """Groups, the largest first, and the `other` students, whose failures no known mistake explains."""
 
     groups: tuple[MisconceptionGroup, ...]
     other: tuple[Entry, ...]
@@ -154,11 +154,11 @@ def _blocked(grade: Grade) -> frozenset[str]:
 
 
 def mistakes_in(failed: Mapping[str, Failure], blocked: Set[str], signatures: Sequence[Signature]) -> list[int]:
-    """Return the numbers of the signatures that explain how a submission fails, the one that explains most first.
+    """Return the indices of the signatures that explain how a submission fails, the one that explains most first.
 
-    What one explains is set aside, and the rest is matched again. If two explain the same equally well, neither is
-    named; and if something is left unexplained, only those are named that fit nearly word for word: most of the time
-    it is a mistake that is not in the list.
+    What one signature explains is set aside, and the rest is matched again. If two explain the same failures equally
+    well, neither is named. If something is left unexplained, only those are named that fit nearly word for word: most
+    of the time it is a mistake that is not in the list.
     """
     left, made = set(failed), dict[int, float]()
     while left:
@@ -172,14 +172,14 @@ def mistakes_in(failed: Mapping[str, Failure], blocked: Set[str], signatures: Se
 
 
 def _has_rival(best: int, scores: Mapping[int, tuple[float, float]], signatures: Sequence[Signature]) -> bool:
-    """Return whether another signature explains some of the same checks, and the whole as well."""
+    """Return whether another signature explains some of the same checks, and fits as well on the whole."""
     checks = signatures[best].failures.keys()
     equal = [number for number, score in scores.items() if score == scores[best] and number != best]
     return any(checks & signatures[number].failures.keys() for number in equal)
 
 
 def _stands_alone(signature: Signature, fit: float) -> bool:
-    """Return whether a signature may be named though the submission fails other checks that nothing explains."""
+    """Return whether a signature may be named although other failures remain unexplained."""
     failures = signature.failures.values()
     return fit >= FITS_AMONG_OTHERS and (len(failures) > 1 or any(failure.telling for failure in failures))
 
@@ -189,8 +189,8 @@ def _score(
 ) -> tuple[float, float]:
     """Return how much of what is `left` a signature explains, and how well it fits on average; zeros if it doesn't.
 
-    A check that can't be judged counts neither for nor against it; nor does one that another mistake explains, unless
-    most of its checks are like that.
+    A blocked check counts neither for nor against it. Nor does one that another mistake explains, unless that is so
+    for most of the signature's checks.
     """
     judged = [name for name in signature.failures if name not in blocked and (name in left or name not in failed)]
     if not judged or 2 * len(judged) < len(signature.failures):
@@ -208,18 +208,18 @@ def _fit(failure: Failure | None, known: Failure) -> float:
     return SAME_KIND if known.telling else OTHER_VALUE
 
 
-#: Gradings at once. Each already runs several scenarios at once.
+#: How many mistakes are graded at once. Each grading already runs several scenarios at once.
 AT_ONCE = 2
 
 
 def signatures(grading: Grading, failing: Sequence[Set[str]] | None = None) -> tuple[Signature, ...]:
     """Return the signatures of the exercise's usual mistakes, sorted by name.
 
-    `failing` has the checks that each student fails: a mistake is left out, without being graded, if the checks that
-    it names explain none of these. Without `failing`, all are graded.
+    `failing` has the checks that each student fails: a mistake whose own checks explain none of these is left out
+    without being graded. Without `failing`, all mistakes are graded.
 
-    A mistake is graded again when anything that its grade depends on has changed. Mistakes that fail the same checks
-    with the same words are one signature; one that fails no check, or does not complete, is left out.
+    A mistake is graded again if anything that its grade depends on has changed. Mistakes that fail the same checks
+    with the same findings are one signature. A mistake that fails no check, or does not complete, is left out.
     """
     mistakes = mistakes_of(grading.runner.exercise)
     if failing is not None:

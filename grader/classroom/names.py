@@ -1,4 +1,4 @@
-"""Names of students: the same name is written in several ways, and becomes the name of a folder."""
+"""Names of students: how to compare different spellings, and how to use them as names of folders."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ def normal(text: str) -> str:
 
 
 def student_id(text: str) -> str:
-    """Return `text` as a name that a folder can have on any system: letters with their marks, digits and `.@+-_`."""
+    """Return `text` as a folder name that is valid on any system: letters with their marks, digits and `.@+-_`."""
     kept = "".join(char if _is_kept(char) else " " for char in normal(text))
     return _cut(re.sub(r"\s+", "_", kept).strip("._" + JOINERS), LONGEST) or "nameless"
 
 
 def _is_kept(char: str) -> bool:
-    # Vowel signs and accents are marks (M): without them, other names remain.
+    # Vowel signs and accents are marks (M): without them, it would be another name.
     return char.isalnum() or char in ".@+-_" + JOINERS or unicodedata.category(char).startswith("M")
 
 
@@ -38,7 +38,7 @@ def _cut(text: str, most: int) -> str:
 
 
 def unique_ids(names: Iterable[str]) -> dict[str, str]:
-    """Return an id for each name; no two share one, also where small and capital letters are the same."""
+    """Return a unique id for each name, also on systems that ignore the case of letters."""
     by_id: dict[str, list[str]] = defaultdict(list)
     for name in dict.fromkeys(map(normal, names)):
         by_id[student_id(name).casefold()].append(name)
@@ -55,5 +55,5 @@ def _digest(name: str) -> str:
 
 @cache
 def comparable(name: str) -> str:
-    """Return a name with only its letters and digits, small, to compare names that platforms have shortened."""
+    """Return only the letters and digits, in lower case, to compare names that platforms have shortened."""
     return "".join(char for char in normal(name).casefold() if _is_kept(char) and char not in ".@+-_")

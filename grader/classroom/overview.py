@@ -1,4 +1,4 @@
-"""A class at a glance: the instructor's page."""
+"""The instructor's page about a class."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Tally:
-    """One check: how many students fail it, and for how many it can't be judged, as numbers and in percent."""
+    """How many students fail a check, and for how many it can't be judged, as numbers and in percent."""
 
     verdict: Verdict
     failed: int
@@ -63,7 +63,7 @@ def page_of(entry: Entry) -> str:
 
 
 def row(entry: Entry, misconceptions: Misconceptions) -> Row:
-    """Return what the page shows of `entry`."""
+    """Return what the page shows for `entry`."""
     verdicts = entry.grade.verdicts
     return Row(
         entry=entry,
@@ -92,7 +92,7 @@ def tallies(entries: Sequence[Entry]) -> tuple[Tally, ...]:
 
 BINS = 10
 
-#: In units of the picture.
+#: Sizes of the histogram, in the units of its SVG.
 WIDTH, HEIGHT, TOP, BOTTOM, GAP = 640.0, 200.0, 24.0, 26.0, 6.0
 
 
@@ -159,9 +159,9 @@ def overview_page(
     faults: Sequence[Entry],
     misconceptions: Misconceptions,
 ) -> str:
-    """Return the page `results/index.html`: the class's results, a row per student, the costliest checks and mistakes.
+    """Return the page `results/index.html`: the results, a row per student, and the most frequent failures.
 
-    `entries` have a score; `faults` have none, through a fault of ours or before a decision. Each row links to
+    `entries` have a score; `faults` have none, because of a fault of ours or an open decision. Each row links to
     `students/STUDENT/feedback.html` next to the page. The page is one HTML file; its one script sorts the table,
     which is also sorted without it.
     """

@@ -1,4 +1,4 @@
-"""Which format a class's export has: one is taken only if nearly everything in it fits."""
+"""Finds out which format a class's export has. A format is used only if nearly everything fits."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from grader.classroom.submissions import File, SubmissionsError
 from grader.exercise.exercise import Exercise
 from grader.submission.file_kinds import kind_of
 
-#: What submissions can be, with any capitals; what else students save is read as well, and named.
+#: The kinds of files that can be submissions.
 GRADABLE = ("python", "notebook", "archive")
 
 #: A folder with one of these is one student's package, not a class.
@@ -20,7 +20,7 @@ PACKAGE = {"package.xml", "setup.py", "setup.cfg", "CMakeLists.txt"}
 
 
 def can_be_graded(name: str) -> bool:
-    """Return whether submissions are called like this."""
+    """Return whether a submission can have this name."""
     return kind_of(name) in GRADABLE
 
 
@@ -28,8 +28,8 @@ def can_be_graded(name: str) -> bool:
 class Recognition:
     """A class's files as one format understands them, below the folder `inside`.
 
-    `misfits` are files that it does not understand, each with the file or folder of the class that it is in; `others`
-    are next to `inside`, and the platform's own.
+    `misfits` are files that the format does not understand, each with the top-level name that it is below; `others`
+    are files next to `inside`.
     """
 
     form: Format
@@ -40,23 +40,23 @@ class Recognition:
 
     @property
     def fits(self) -> set[tuple[str, ...]]:
-        """Whose submissions are understood."""
+        """The students whose submissions are understood."""
         return {tuple(s.id for s in place.students) for _, place in self.understood if isinstance(place, Upload)}
 
     @property
     def odd(self) -> set[str]:
-        """The files and folders of the class with something to grade that do not fit."""
+        """The top-level names with something to grade that do not fit."""
         return {top for top, file in self.misfits if can_be_graded(file.name)}
 
     @property
     def nearly_all(self) -> bool:
-        """Whether this is the format: one in ten may be odd, and in a small class one."""
+        """Whether this is the format: a tenth of the names may be odd, or one in a small class."""
         return len(self.fits) > len(self.odd) <= max(1, len(self.fits) // 10)
 
 
 @dataclass(frozen=True)
 class Recogniser:
-    """The files of a class, by their places, in a folder or zip called `root`; for `zone` see `Export`."""
+    """Recognises the format of a class's files, given by path in a folder or zip called `root`; see `Export`."""
 
     files: Mapping[Parts, File]
     root: str
@@ -64,16 +64,16 @@ class Recogniser:
     zone: tzinfo | None
 
     def recognise(self, name: str = "") -> Recognition:
-        """Return the files as the format `name` understands them, or the one that fits nearly all of them.
+        """Return the files as understood by the format `name`, or by the one that fits nearly all of them.
 
-        Raises `SubmissionsError` if a format fits many of them but not nearly all, or if none fits `name`.
+        Raises `SubmissionsError` if a format fits many of them but not nearly all, or if no file fits `name`.
         """
         if name == PLAIN.name:
             return self._plain()
         tried = [one for form in PLATFORMS if name in ("", form.name) for one in self._tried(form)]
         tried.sort(key=lambda one: (len(one.odd), -len(one.fits)))
         if name and not any(one.fits for one in tried):
-            raise SubmissionsError(f"--format {name}: no name here is one of {FORMATS[name].title}.")
+            raise SubmissionsError(f"--format {name}: no file here has a name as in {FORMATS[name].title}.")
         if name:
             return max(tried, key=lambda one: len(one.fits))
         for one in tried:
@@ -110,7 +110,7 @@ class Recogniser:
         return Recognition(form, inside, understood, tuple(misfits), others)
 
     def _levels(self, form: Format) -> Iterator[Parts]:
-        """Yield the folders that may be the class's: a lone folder around everything, and those that `form` names."""
+        """Yield the folders that may contain the class: a lone folder around everything, and those that `form` has."""
         for inside in self._lone_folders():
             yield inside
             for name in sorted(self._entries(inside) & set(form.inside)):
@@ -129,7 +129,7 @@ class Recogniser:
         return {parts[len(inside)] for parts in self.files if parts[: len(inside)] == inside}
 
     def _class_folder(self) -> Parts:
-        """Return the lone folder around a class of files or folders; one around a single student's work is theirs."""
+        """Return the lone folder around a whole class; a lone folder around one student's work does not count."""
         deepest = list(self._lone_folders())[-1]
         skip = len(deepest)
         with_work = {parts[skip] for parts in self.files if len(parts) > skip and can_be_graded(parts[-1])}

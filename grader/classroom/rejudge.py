@@ -1,4 +1,4 @@
-"""Judges stored recordings with changed checks: no program is run again, and nothing is replaced unless confirmed."""
+"""Judges stored recordings with changed checks. No program runs again, and nothing is replaced without confirmation."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from grader.report.printable import printable
 
 @dataclass(frozen=True)
 class NewGrade:
-    """A student's new grade, and in words what is different."""
+    """A student's new grade, and how it differs from the stored one, in words."""
 
     handed_in: StudentSubmission
     graded: GradedSubmission
@@ -34,10 +34,10 @@ def rejudge(
     console: Console,
     may_replace: Callable[[int], bool],
 ) -> None:
-    """Judge every student's stored recordings, print the differences, and replace grades if `may_replace` says so.
+    """Judge every student's stored recordings, print the differences, and replace grades if `may_replace` allows it.
 
-    `may_replace` gets the number of grades that are different. Without recordings, or with recordings of another
-    submission, scenario or version, a student's grade stays as it is, and a message says so.
+    `may_replace` gets the number of grades that differ. If a student has no recordings, or only those of another
+    submission, scenario or version, the grade stays as it is, and a message says so.
     """
     found, missing = [], []
     for one in collected.handed_in:

@@ -1,4 +1,4 @@
-"""The command `spinbook replay`: plots and bags of what a student's program did, for a dispute about its grade."""
+"""The command `spinbook replay`: plots and bags of what a student's program did, for questions about its grade."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ DONE, FAULT = 0, 3
 def replay(results: Path, student: str, exercise: str, out: Path | None) -> None:
     """Draw and write what a STUDENT's program did when it was graded, from the recordings in RESULTS.
 
-    Nothing is run: a recording is what the grade was given for, message by message, also after the exercise has
-    changed. Each scenario becomes a plot over the solution's, and a rosbag2 (MCAP) for Foxglove, PlotJuggler or
+    Nothing is run: the recordings are those that were graded, even if the exercise has changed
+    since. Each scenario becomes a plot over the solution's, and a rosbag2 (MCAP) for Foxglove, PlotJuggler or
     `ros2 bag play`. STUDENT is the name of a folder in RESULTS/students.
 
     \b

@@ -18,11 +18,11 @@ from grader.submission.reader import Submission
 class ClassRequest:
     """A class to grade: where the submissions are, where to write the results, and how.
 
-    `jobs` is how many submissions are graded at once, None for as many as suit this machine. `format` is the name of a
-    format, empty for the one that fits; `attempts` is which of several counts: "last", "first" or "best". `roster` and
-    `groups` are CSV files. With `skip`, what needs a decision is not graded, and everything else is. `regrade` names
+    `jobs` is how many submissions are graded at once (None: as many as suit this machine). `format` is the name of a
+    format, empty for the one that fits; `attempts` is which attempt counts: "last", "first" or "best". `roster` and
+    `groups` are CSV files. With `skip`, what needs a decision is not graded, and the rest is. `regrade` names
     students whose submissions are graded again even if nothing has changed, `*` all of them. `overrides` is a CSV file,
-    `scheduler` a Dask scheduler's address. `rejudge` requests new verdicts on stored recordings, and `replace` keeping
+    `scheduler` a Dask scheduler's address. `rejudge` requests new verdicts on stored recordings, and `replace` stores
     them without asking. `publish` requests one zip per student.
     """
 
@@ -45,7 +45,7 @@ class ClassRequest:
 
 @dataclass(frozen=True)
 class GradedSubmission:
-    """One submission's grade, and its plot; `who` is the key under which it was submitted for grading."""
+    """One submission's grade and plot. `who` is its key in `Backend.grade`."""
 
     who: str
     grade: Grade
@@ -53,7 +53,7 @@ class GradedSubmission:
 
 
 class NoCluster(Exception):
-    """Raised when the cluster can't be used; the text tells the instructor why."""
+    """Raised if the cluster can't be used; the text tells the instructor why."""
 
 
 class Backend(Protocol):
@@ -64,10 +64,10 @@ class Backend(Protocol):
         """A key of everything that a grade depends on, except the submission."""
 
     def grade(self, submissions: Mapping[str, Submission]) -> Iterator[GradedSubmission]:
-        """Yield the grade of each submission, in the order in which they are done.
+        """Yield the grade of each submission as soon as it is done.
 
         A fault of ours or the machine's is a grade with the outcome `host-error`; nothing is raised for a single
-        submission. When the iterator is closed, the gradings in progress are abandoned.
+        submission. When the iterator is closed, gradings in progress are abandoned.
         """
 
 
@@ -78,7 +78,7 @@ def host_error(runner: ScenarioRunner, submission: Submission, text: str) -> Gra
 
 
 def no_grade(runner: ScenarioRunner, outcome: Outcome, message: str) -> Grade:
-    """Return the grade of a student from whom nothing was run."""
+    """Return the grade of a student without a program that was run."""
     return Grade(
         exercise=runner.exercise.name,
         submission="",

@@ -1,4 +1,4 @@
-"""The results of a class: what has to be graded again, what does not, and the folder that stores them."""
+"""The results of a class: the folder that stores them, and what has to be graded again."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ from grader.report.feedback import feedback_page
 from grader.submission.reader import Submission
 from groundwork.files import remove_parts, try_lock, write_if_changed
 
-#: In a student's folder: the recordings, as JSON below a line with the key of what they depend on, and the name of the
-#: file next to `students/` with the solution's.
+#: The recordings in a student's folder: a line with their key and the name of the file, next to `students/`, with the
+#: solution's recordings; then JSON.
 RECORDINGS = "recordings.json.gz"
 REFERENCE = "reference-{}.json.gz"
 
@@ -41,7 +41,7 @@ NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 
 
 class NotWritable(Exception):
-    """Raised when the results can't be written; the text tells the instructor why."""
+    """Raised if the results can't be written; the text tells the instructor why."""
 
     def __init__(self, folder: Path, error: OSError) -> None:
         why = error.strerror or str(error)
@@ -49,11 +49,11 @@ class NotWritable(Exception):
 
 
 class Busy(Exception):
-    """Raised when another grading is writing into the same folder."""
+    """Raised if another grading is writing to the same folder."""
 
 
 class Results:
-    """One folder of results. Use it as a context manager: meanwhile no other process writes into it."""
+    """One folder of results. Use it as a context manager, which keeps other gradings from writing to it."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -61,7 +61,7 @@ class Results:
         self._reference: tuple[dict[str, Recording], str] = ({}, "")
 
     def entry(self, student: str) -> tuple[Entry, str] | None:
-        """Return the stored entry of a student, and the key of the grade; None if missing or unreadable."""
+        """Return a student's stored entry and the key of the grade; None if missing or unreadable."""
         try:
             return from_json((folder_of(self.folder, student) / "grade.json").read_text(encoding="utf-8"))
         except (OSError, ValueError, KeyError, TypeError, AttributeError):
@@ -75,7 +75,7 @@ class Results:
             return None
 
     def stored(self, student: str) -> StoredRun | None:
-        """Return what is stored of a student's run; None if there is nothing."""
+        """Return the stored recordings of a student's run; None if there are none."""
         try:
             first, recordings = _read_recordings(folder_of(self.folder, student) / RECORDINGS)
         except UNREADABLE:
@@ -88,7 +88,7 @@ class Results:
         return StoredRun(key, recordings, references)
 
     def keep_recordings(self, student: str, key: str, grade: Grade) -> None:
-        """Keep what was recorded of a student's run, so that changed checks can judge it, and a dispute be settled."""
+        """Store the recordings of a student's run, for changed checks and for questions about the grade."""
         if grade.references is not self._reference[0]:
             name = REFERENCE.format(hashlib.sha256(recordings_to_json(grade.references).encode()).hexdigest()[:12])
             self._write_recordings(self.folder / name, "", grade.references)
@@ -102,12 +102,12 @@ class Results:
         write_if_changed(file, content, durable=True)
 
     def write(self, entry: Entry, key: str, page: str, plot: str | None) -> None:
-        """Store a student's entry. Whenever this is interrupted, the files are complete, or are made again."""
+        """Store a student's entry. If this is interrupted, the next run grades the submission again."""
         folder = folder_of(self.folder, entry.student.id)
         text = to_json(entry, key)
         try:
             if (folder / "grade.json").read_text(encoding="utf-8") != text:
-                # What it confirms is about to change.
+                # It confirms the files that are about to change.
                 (folder / "grade.json").unlink()
         except (OSError, ValueError):
             pass
@@ -136,7 +136,7 @@ class Results:
     def __enter__(self) -> Results:
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            with tempfile.TemporaryFile(dir=self.folder):  # a lock can be taken in a folder that is read-only
+            with tempfile.TemporaryFile(dir=self.folder):  # a lock would also succeed in a read-only folder
                 pass
             lock = try_lock(self.folder / ".lock")
         except FileExistsError as error:
@@ -156,7 +156,7 @@ class Results:
         os.close(self._lock)
 
 
-#: What reading a stored file raises if it is damaged.
+#: What reading a damaged file can raise.
 UNREADABLE = (OSError, EOFError, zlib.error, ValueError, KeyError, TypeError)
 
 
@@ -175,10 +175,10 @@ def _read_recordings(file: Path) -> tuple[str, dict[str, Recording]]:
 
 
 def grade_key(grading: Grading) -> str:
-    """Return a key that two gradings share if they give every submission the same grade, as far as is known beforehand.
+    """Return a key that is equal for two gradings that give every submission the same grade.
 
-    It depends on the part of the exercise's text that grades and pages show; and on the machine's versions of Python
-    and ROS and the level of isolation.
+    It covers the parts of the exercise that grades and pages show, the machine's versions of Python and ROS, and the
+    level of isolation.
     """
     runner = grading.runner
     exercise = runner.exercise
@@ -186,7 +186,7 @@ def grade_key(grading: Grading) -> str:
     if exercise.solution_file:
         files.append(exercise.solution_file)
     depends = {
-        # The exercise as it was read: a due date, which is not in it, can be changed after grading.
+        # The exercise as read. The due date is not part of it, so it can be changed after grading.
         "exercise": repr(replace(exercise, folder=Path(), solution_folder=None)),
         "files": digest_of([file for file in files if file.exists()]),
         **_of_a_run(grading),
@@ -195,7 +195,7 @@ def grade_key(grading: Grading) -> str:
 
 
 def recordings_key(grading: Grading, submission: Submission) -> str:
-    """Return a key that stays the same as long as a submission's recordings would, whatever the checks are."""
+    """Return a key of everything that a submission's recordings depend on; checks are not part of it."""
     return submission_key(_digest(_of_a_run(grading)), submission.digest)
 
 
@@ -221,13 +221,13 @@ def submission_key(key: str, digest: str) -> str:
     return hashlib.sha256(f"{key} {digest}".encode()).hexdigest()
 
 
-#: A student's submissions, as many as there are attempts that may count: most often one.
+#: A student's attempts that may count, usually one.
 Tries = tuple[Submission, ...]
 
 
 @dataclass(frozen=True)
 class ClassPlan:
-    """What a run is going to do. `former` are the entries of an earlier run, by student."""
+    """What a run will do. `former` has the entries of an earlier run, by student."""
 
     to_grade: tuple[StudentSubmission, ...]
     unchanged: tuple[Entry, ...]
@@ -236,7 +236,7 @@ class ClassPlan:
 
 @dataclass
 class ClassGrading:
-    """One class, graded into one folder of results by `backend`."""
+    """Grades one class with `backend` into one folder of results."""
 
     exercise: Exercise
     backend: Backend
@@ -249,9 +249,9 @@ class ClassGrading:
     def plan(
         self, collected: Submissions, submissions: Mapping[str, Tries], regrade: Callable[[str], bool]
     ) -> ClassPlan:
-        """Return what has to be graded: what has no grade yet, what has changed, and what `regrade` names.
+        """Return what has to be graded: submissions that are new, that have changed, or that `regrade` selects.
 
-        `submissions` are those of `collected`, read, by student.
+        `submissions` are those of `collected` after reading, by student.
         """
         to_grade, unchanged, former = [], [], {}
         for handed_in in collected.handed_in:
@@ -266,18 +266,18 @@ class ClassGrading:
         return ClassPlan(tuple(to_grade), tuple(unchanged), former)
 
     def take_in(self, collected: Submissions) -> None:
-        """Take over the stored entries of these students as they are, if there is no newer one."""
+        """Use the stored entries of these students unless there are newer ones."""
         for one in collected.handed_in:
             kept = self.results.entry(one.student.id)
             if kept and one.student.id not in self.entries:
                 self.entries[one.student.id] = kept[0]
 
     def run(self, plan: ClassPlan, submissions: Mapping[str, Tries]) -> Iterator[Entry]:
-        """Grade what has to be graded, and yield each entry once it is stored.
+        """Grade what the plan names, and yield each entry once it is stored.
 
-        What several students handed in together is graded once. If we or the machine were at fault, the submission is
-        tried once more after all others; if that fails as well, the entry says so, has no score, and is graded again by
-        the next run.
+        What several students handed in together is graded once. After a fault of ours or the machine's, the submission
+        is tried once more after all others. If that fails, too, the entry says so and has no score, and the next run
+        grades it again.
         """
         jobs = {
             str(file.path): submission
@@ -298,7 +298,7 @@ class ClassGrading:
     def _complete(
         self, waiting: dict[str, StudentSubmission], done: dict[str, GradedSubmission], submissions: Mapping[str, Tries]
     ) -> Iterator[Entry]:
-        """Store and yield the entries of students all of whose attempts are graded; let go of what nobody waits for."""
+        """Store and yield the entries of students whose attempts are all graded; drop grades no longer needed."""
         for one in [one for one in waiting.values() if all(str(file.path) in done for file in one.files)]:
             del waiting[one.student.id]
             graded = self._best(one, [done[str(file.path)] for file in one.files])
@@ -308,7 +308,7 @@ class ClassGrading:
             del done[path]
 
     def _best(self, handed_in: StudentSubmission, attempts: list[GradedSubmission]) -> GradedSubmission:
-        """Return the attempt with the most points, late or not; after a fault of ours nobody knows which that is."""
+        """Return the attempt with the most points, late or not. After a fault of ours the best attempt is not known."""
         if faults := [graded for graded in attempts if not graded.grade.has_score]:
             return faults[0]
         finals = []
@@ -320,7 +320,7 @@ class ClassGrading:
         return replace(attempts[best], grade=replace(attempts[best].grade, submission=name))
 
     def _kept(self, handed_in: StudentSubmission, graded: GradedSubmission, tries: Tries) -> Entry:
-        """Store a grade; one whose page or files can't be written becomes a `host-error`; others go on."""
+        """Store a grade. If its page or files can't be written, it becomes a `host-error`, and the others go on."""
         try:
             return self.keep(handed_in, graded, tries)
         except Exception as error:
@@ -328,7 +328,7 @@ class ClassGrading:
             return self.give_up(Entry(handed_in.student, handed_in.file.name, graded.grade), not_written(error))
 
     def record(self, student: Student, grade: Grade) -> Entry:
-        """Store the entry of a student from whom nothing is graded."""
+        """Store the entry of a student without a submission to grade."""
         entry = Entry(student, "", grade)
         self.entries[student.id] = entry = replace(entry, adjustments=self.adjust(entry))
         try:
@@ -358,7 +358,7 @@ class ClassGrading:
             recorded = recordings_key(self.grading, submission)
             self.results.keep_recordings(entry.student.id, recorded, grade)
         self.results.write(entry, key, feedback_page(entry, self.exercise, graded.plot), graded.plot)
-        # The recordings are in the page now; kept for a whole class, they would fill the memory.
+        # The page contains the recordings now; those of a whole class would fill the memory.
         self.entries[entry.student.id] = entry = replace(entry, grade=replace(grade, recordings={}, references={}))
         return entry
 
@@ -370,7 +370,7 @@ class ClassGrading:
             return self.give_up(Entry(handed_in.student, handed_in.file.name, kept.grade), not_written(error))
 
     def _unchanged(self, handed_in: StudentSubmission, kept: Entry, key: str) -> Entry:
-        """Return the entry of a submission that needs no grading: its student and date may still have changed."""
+        """Return the entry of a submission that needs no grading, with the student's current name and date."""
         entry = self._entry(handed_in, kept)
         plot = self.results.plot(entry.student.id)
         self.results.write(entry, key, feedback_page(entry, self.exercise, plot), plot)
@@ -391,7 +391,7 @@ class ClassGrading:
 def _of_file(of: Entry, handed_in: StudentSubmission) -> Entry:
     """Return the entry with the student's name and the file's date as they are now.
 
-    The grading process may see a file under another name; of several attempts, the entry's own is known by its name.
+    Of several attempts, the name tells which one the entry is for.
     """
     file = next((file for file in handed_in.files if file.name == of.file), handed_in.file)
     return replace(
@@ -406,11 +406,11 @@ def _of_file(of: Entry, handed_in: StudentSubmission) -> Entry:
 
 
 def stop_if_no_room(folder: Path, error: Exception) -> None:
-    """Raise `NotWritable` for an error after which nothing else can be written either."""
+    """Raise `NotWritable` if nothing else can be written either after this error."""
     if isinstance(error, OSError) and error.errno in NO_ROOM:
         raise NotWritable(folder, error) from None
 
 
 def not_written(error: Exception) -> str:
-    """Return the sentence that a student's results could not be written."""
+    """Return a sentence that says that a student's results could not be written."""
     return f"the results could not be written: {type(error).__name__}: {error}"

@@ -1,4 +1,4 @@
-"""Everybody in the class: a table of the instructor's, or the list that a platform exports."""
+"""The list of the class's students: an instructor's table, or the list that a platform exports."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from grader.classroom.tables import table_rows
 from grader.classroom.times import UNKNOWN, Time, localized, read_time
 from grader.grading.grade import Student
 
-#: Columns in which a platform writes who a student is.
+#: Columns in which platforms identify students.
 IDENTITY = {
     *("ID", "Identifier", "Username", "EID", "Display ID", "SID", "Login", "UserID", "OrgDefinedId", "Email address"),
     *("SIS User ID", "SIS Login ID", "Email", "student", "login", "username"),
 }
 
-#: When it was handed in, in our own table and in Moodle's grading worksheet.
+#: The column with the time of submission, in our own table and in Moodle's grading worksheet.
 SUBMITTED = ("submitted", "Last modified (submission)")
 
 #: How Moodle writes a time in English (langconfig.php, strftimedatetime).
@@ -32,15 +32,15 @@ MOODLE_TIMES = ("%A, %d %B %Y, %I:%M %p", "%A, %d %B %Y, %H:%M", "%d %B %Y, %I:%
 
 @dataclass(frozen=True)
 class RosterRow:
-    """A student of the class, and when the table says that they handed in."""
+    """A student of the class, and the time of submission, if the table has it."""
 
     student: Student
     time: Time = UNKNOWN
 
 
 def read_roster(table: Path, zone: tzinfo | None) -> tuple[RosterRow, ...]:
-    """Return the students in a table with the column student, and perhaps name, email, submitted and others, or in a
-    list that a platform has exported; times without a zone are in `zone`.
+    """Return the students in a table with the column student, and optionally name, email, submitted and others, or in a
+    list that a platform has exported. Times without a zone are in `zone`.
 
     Raises `SubmissionsError` for a table that has none of these columns, and for a row with a mistake.
     """
@@ -49,10 +49,10 @@ def read_roster(table: Path, zone: tzinfo | None) -> tuple[RosterRow, ...]:
         student = _student(row)
         if student is None:
             raise SubmissionsError(
-                f"{table}:{number}: nothing says who this is. Write a column student, or give the list of students, "
+                f"{table}:{number}: no column says who this is. Add a column student, or give the list of students, "
                 "grades or submissions that your platform exports."
             )
-        if student.id:  # somebody in two sections is listed twice
+        if student.id:  # a student in two sections is listed twice
             rows.setdefault(student.id, RosterRow(student, _time(row, f"{table}:{number}", zone)))
     return tuple(rows.values())
 
@@ -66,7 +66,7 @@ def _student(row: Mapping[str, str]) -> Student | None:
 
 
 def generic_student(row: Mapping[str, str]) -> Student:
-    """Return the student in a row of our own tables."""
+    """Return the student in a row of a table in our own format."""
     lms = {name: value for name, value in row.items() if name not in ("student", "name", "email", "group", "submitted")}
     return Student(normal(row["student"]), normal(row.get("name", "")), row.get("email", ""), lms)
 
@@ -90,7 +90,7 @@ def _time(row: Mapping[str, str], place: str, zone: tzinfo | None) -> Time:
 
 @cache
 def signs(student: Student) -> frozenset[str]:
-    """Return what tells a student among the members of groups: ids, addresses, numbers and names."""
+    """Return what identifies a student among the members of groups: ids, addresses, numbers and names."""
     return frozenset(_keys(student) | _ids(student) | _names(student))
 
 
@@ -102,13 +102,13 @@ def _keys(student: Student) -> set[str]:
 
 @cache
 def _ids(student: Student) -> set[str]:
-    """Return the id as the export writes it, and as the results' folder is called."""
+    """Return the id as in the export, and as the name of the student's results folder."""
     return {normal(student.id).casefold(), student_id(student.id).casefold()}
 
 
 @cache
 def _names(student: Student) -> set[str]:
-    """Return the name as platforms write it: in any order of its words, and without what is between them."""
+    """Return the name with its words sorted, and with only its letters and digits, as platforms vary both."""
     words = re.split(r"[\s,_]+", normal(student.name or student.id).casefold())
     return {" ".join(sorted(filter(None, words))), comparable(student.name or student.id)} - {""}
 
@@ -167,7 +167,7 @@ def _by_name(students: Sequence[Student]) -> dict[str, list[int]]:
 
 
 def with_row(student: Student, row: RosterRow | None) -> Student:
-    """Return the student with what the roster says; the id stays."""
+    """Return the student with the roster's data; the id stays the same."""
     if not row:
         return student
     listed = row.student

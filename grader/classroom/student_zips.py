@@ -18,7 +18,7 @@ DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def publish(results: Path, entries: Sequence[Entry]) -> Path:
-    """Write `to-students/STUDENT.zip` for each entry, read-only, and return the folder. Others are removed."""
+    """Write a read-only `to-students/STUDENT.zip` per entry, and return the folder. Other zips are removed."""
     folder = results / FOLDER
     folder.mkdir(exist_ok=True)
     wanted = {f"{entry.student.id}.zip": _zip(results, entry) for entry in entries}

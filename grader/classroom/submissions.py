@@ -1,4 +1,4 @@
-"""What a class handed in, as plain data."""
+"""The submissions of a class, as plain data."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from grader.grading.grade import Skipped, Student
 
 
 class SubmissionsError(Exception):
-    """Raised when the source contains no class's submissions, or can't be read; the text is for the instructor."""
+    """Raised if a class's submissions, or a table about them, can't be read; the text is for the instructor."""
 
 
 @dataclass(frozen=True)
 class File:
-    """A submitted file, or a folder of files. `name` is its name in the class's folder or zip, `path` where it is.
+    """A submitted file or folder. `name` is its path in the class's folder or zip, `path` its path on disk.
 
     `fault` says why it can't be read out of the class's zip.
     """
@@ -29,18 +29,18 @@ class File:
 
     @property
     def submitted(self) -> datetime | None:
-        """When it was handed in, with a time zone, if known."""
+        """When it was handed in, with a time zone; None if unknown."""
         return self.time.at
 
     @property
     def submitted_from(self) -> str:
-        """Who says so."""
+        """The source of that time, such as "timestamp.txt"."""
         return self.time.source
 
 
 @dataclass(frozen=True)
 class StudentSubmission:
-    """One student's one submission. `others` are the student's other attempts if the best of them is to count."""
+    """One student's submission. `others` are the student's other attempts, if the best attempt counts."""
 
     student: Student
     file: File
@@ -52,14 +52,14 @@ class StudentSubmission:
         return (self.file, *self.others)
 
 
-#: Several files at once; several attempts, one after another; a file that can't be read out of the zip; a file whose
-#: name is none that the platform gives.
+#: Several files in one attempt; several attempts; a file that can't be read from the zip; a file whose name does not
+#: fit the platform's format.
 Unclear = Literal["files", "attempts", "damaged", "name"]
 
 
 @dataclass(frozen=True)
 class Question:
-    """What only the instructor can say: which of a student's files counts, or whose they are. `why` adds the reason."""
+    """A question that only the instructor can answer: which of a student's files counts, or whose they are."""
 
     student: Student
     files: tuple[str, ...]
@@ -78,10 +78,10 @@ class Question:
 
 @dataclass(frozen=True)
 class Submissions:
-    """What a class submitted, sorted by student; what was left out, and why; and the questions to ask.
+    """What a class submitted, sorted by student; what was left out and why; and the open questions.
 
-    `kind` says in words how it was read, such as "a download from Moodle". `missing` are students of the roster from
-    whom there is nothing. `notes` say how something unclear was read, `dates` what the platform says of dates.
+    `kind` says in words how it was read, such as "a download from Moodle". `missing` are students of the roster who
+    submitted nothing. `notes` say how something ambiguous was read, `dates` where the platform keeps dates.
     """
 
     kind: str
@@ -94,6 +94,6 @@ class Submissions:
 
     @property
     def students(self) -> tuple[Student, ...]:
-        """Everybody: who handed something in, and who did not."""
+        """All students: those who handed something in, and those who did not."""
         theirs = [one.student for one in self.handed_in] + [question.student for question in self.questions]
         return tuple(sorted([*theirs, *self.missing], key=lambda student: student.id))

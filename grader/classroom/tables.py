@@ -1,4 +1,4 @@
-"""Tables as CSV: those that instructors and platforms write, and those that are written for them."""
+"""Reads and writes CSV tables, for instructors and platforms."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from grader.report.printable import printable
 
 Cell = str | float | None
 
-#: Excel reads a CSV file as UTF-8 only if it begins with this. Only in the file for people.
+#: Excel reads a CSV file as UTF-8 only if it begins with this. Only the file for people has it.
 BYTE_ORDER_MARK = "\ufeff"
 
-#: A spreadsheet takes a text that begins like this for a formula (OWASP, "CSV Injection").
+#: A spreadsheet treats a text that begins like this as a formula (OWASP, "CSV Injection").
 FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "＝", "＋", "－", "＠")
 
 LONGEST_CELL = 20_000
 
 
 def table_rows(table: Path, needed: Sequence[str]) -> list[tuple[int, dict[str, str]]]:
-    """Return the rows, each with its line number; values without the spaces around them. Empty rows are left out.
+    """Return the rows with their line numbers. Spaces around values are removed, and empty rows are left out.
 
     Commas, semicolons or tabs separate columns. Raises `SubmissionsError` if the file can't be read or lacks a column.
     """
@@ -46,10 +46,9 @@ def table_rows(table: Path, needed: Sequence[str]) -> list[tuple[int, dict[str, 
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
-    """Return header and rows as CSV (RFC 4180): quoted if needed, numbers as `number` writes them, None as nothing.
+    """Return header and rows as CSV (RFC 4180): quoted if needed, numbers formatted by `number`, None as an empty cell.
 
-    A text that a spreadsheet would take for a formula gets an apostrophe in front of it. Control characters are
-    replaced.
+    A text that a spreadsheet would treat as a formula gets an apostrophe in front. Control characters are replaced.
     """
     out = io.StringIO()
     writer = csv.writer(out)

@@ -1,4 +1,4 @@
-"""When something was handed in: reading times as platforms and people write them, and counting days by a calendar."""
+"""Reads times as platforms and people write them, and counts calendar days."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ DAY = timedelta(days=1)
 
 @dataclass(frozen=True)
 class Time:
-    """When work was handed in, as far as the platform says.
+    """When work was handed in, as far as it is known.
 
-    `at` has a time zone. `source` says who wrote it, such as "timestamp.txt". `late` is the platform's own mark, None
-    if it makes none. `fault` says what can't be read, `note` how something ambiguous was read.
+    `at` has a time zone. `source` says who wrote it, such as "timestamp.txt". `late` is whether the platform marked
+    it as late, None if it does not say. `fault` says what can't be read, `note` how something ambiguous was read.
     """
 
     at: datetime | None = None
@@ -27,8 +27,8 @@ class Time:
 
 UNKNOWN = Time()
 
-# Abbreviations are not unique: RFC 5322, section 4.3, defines the American ones; the others are those of the IANA
-# time zone database. Where several zones share one, the deadline's own zone decides, otherwise this table.
+# Abbreviations are not unique. RFC 5322, section 4.3, defines the American ones; the others are from the IANA time
+# zone database. If several zones share one, the deadline's own zone decides, otherwise this table.
 _HOURS = {
     "Z": 0, "UTC": 0, "GMT": 0, "WET": 0, "WEST": 1, "BST": 1, "CET": 1, "CEST": 2, "MET": 1, "MEST": 2, "SAST": 2,
     "CAT": 2, "WAT": 1, "EAT": 3, "EET": 2, "EEST": 3, "IDT": 3, "MSK": 3, "PKT": 5, "IST": 5.5, "WIB": 7, "HKT": 8,
@@ -37,7 +37,7 @@ _HOURS = {
     "PST": -8, "PDT": -7, "AKST": -9, "AKDT": -8, "HST": -10, "BRT": -3, "ART": -3,
 }  # fmt: skip
 
-#: Each of these is used by more than one country, for different times.
+#: Each of these means different times in different countries.
 _AMBIGUOUS = {"AST", "BST", "CDT", "CST", "EST", "EDT", "IST", "MST", "PST", "WST"}
 
 _WRITTEN = re.compile(
@@ -57,10 +57,10 @@ _OFFSET = re.compile(r"(?:UTC|GMT)?([+-])(\d\d?)(?::?([0-5]\d))?")
 
 
 def read_time(text: str, source: str, zone: tzinfo | None, near: tzinfo | None = None) -> Time:
-    """Return the time in a text: a date, a time, and a zone's name, abbreviation or offset.
+    """Return the time that a text contains: a date, a time, and a zone's name, abbreviation or offset.
 
-    `zone` is that of a time without one, `near` the zone to prefer for an abbreviation of several zones; None is this
-    machine's. What can't be read becomes the `fault`.
+    `zone` applies to a time without one; `near` is preferred if an abbreviation stands for several zones. None is this
+    machine's zone. A text that can't be read becomes the `fault`.
     """
     line = next(iter(text.strip("\ufeff \t\r\n\0").splitlines()), "").strip()
     try:
@@ -72,7 +72,7 @@ def read_time(text: str, source: str, zone: tzinfo | None, near: tzinfo | None =
             raise ValueError
         written = datetime.fromisoformat(f"{match['day']} {match['time'] or '00:00'}")
         at, note = _in_zone(written, (match["zone"] or "").strip(), zone, near)
-        at.astimezone(timezone.utc)  # some of the years 1 and 9999 do not exist everywhere
+        at.astimezone(timezone.utc)  # times in the years 1 and 9999 can overflow in other zones
     except (ValueError, OverflowError, OSError) as error:
         why = f": {error}" if "zone" in str(error) else ""
         return Time(source=source, fault=f"{source} says {line[:80]!r}, which is not a time that can be read{why}")
@@ -80,12 +80,12 @@ def read_time(text: str, source: str, zone: tzinfo | None, near: tzinfo | None =
 
 
 def month_named(name: str) -> int:
-    """Return the number of a month by its English name or the first letters. Raises ValueError."""
+    """Return the number of a month from its English name or the first letters. Raises ValueError."""
     return _MONTHS.index(name[:3].lower()) + 1
 
 
 def _in_digits(line: str) -> str:
-    """Return a time that names its month as one in digits; any other text as it is."""
+    """Return a time with a month's name in digits; any other text is returned unchanged."""
     for worded in _WORDED:
         if match := worded.fullmatch(line):
             day = f"{match['year']}-{month_named(match['month']):02}-{int(match['day']):02}"
@@ -95,7 +95,7 @@ def _in_digits(line: str) -> str:
 
 def _in_zone(written: datetime, name: str, zone: tzinfo | None, near: tzinfo | None) -> tuple[datetime, str]:
     """Return the time with its zone, and how an ambiguous name was read."""
-    if name in ("", "%Z"):  # ngshare leaves strftime's %Z in some versions
+    if name in ("", "%Z"):  # some versions of ngshare leave strftime's %Z in the text
         return localized(written, zone), without_zone(zone)
     if offset := _OFFSET.fullmatch(name.upper()):
         length = timedelta(hours=int(offset[2]), minutes=int(offset[3] or 0))
@@ -113,24 +113,24 @@ def _in_zone(written: datetime, name: str, zone: tzinfo | None, near: tzinfo | N
 
 
 def without_zone(zone: tzinfo | None) -> str:
-    """Return how times without a zone are read."""
+    """Return a note on how times without a zone are read."""
     return f"a time without a zone was read as {zone or 'local time of this machine'}"
 
 
 def moment(text: str, zone: tzinfo | None = None) -> datetime | None:
-    """Return the time in `2026-11-22 23:59` or any ISO 8601 form; one without a zone is in `zone`. None otherwise."""
+    """Return the time in `2026-11-22 23:59` or any ISO 8601 form; one without a zone is in `zone`. Otherwise None."""
     return read_time(text, "", zone, zone).at
 
 
 def localized(written: datetime, zone: tzinfo | None) -> datetime:
-    """Return a time without a zone as one in `zone`; None is this machine's."""
+    """Return a time without a zone as a time in `zone` (None: this machine's)."""
     return written.replace(tzinfo=zone) if zone else written.astimezone()
 
 
 def later(at: datetime, length: timedelta, zone: tzinfo | None) -> datetime:
     """Return the time `length` after `at`, in UTC: days by the calendar of `zone`, hours and minutes by the clock.
 
-    A day later is the same time on the next day, also if the clocks change in between (RFC 5545, section 3.3.6).
+    A day later is the same time on the next day, even if the clocks change in between (RFC 5545, section 3.3.6).
     """
     days, rest = divmod(length, DAY)
     wall = at.astimezone(zone).replace(tzinfo=None) + days * DAY
@@ -138,8 +138,8 @@ def later(at: datetime, length: timedelta, zone: tzinfo | None) -> datetime:
 
 
 def units_begun(since: datetime, until: datetime, unit: timedelta, zone: tzinfo | None) -> int:
-    """Return how many units have begun between two times; days and weeks are those of the calendar of `zone`."""
-    # Python subtracts two times of one zone as if clocks never changed, unless it is UTC.
+    """Return how many units have begun between two times. Days and weeks follow the calendar of `zone`."""
+    # Python ignores clock changes when it subtracts two times in the same zone, unless it is UTC.
     passed = until.astimezone(timezone.utc) - since.astimezone(timezone.utc)
     begun = max(0, -(-passed // unit) - 1)
     while later(since, begun * unit, zone) < until.astimezone(timezone.utc):

@@ -1,7 +1,7 @@
-"""Reads a folder or an archive as students pack it: what programs made by themselves is left out.
+"""Reads a folder or an archive as students pack it, without the files that tools create.
 
-Nothing is written to disk, nothing outside is named, and no figure of an archive is trusted: reading ends when the
-limits are reached.
+Nothing is written to disk, no path leads outside, and the sizes that an archive states are not trusted: reading ends
+when the limits are reached.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ from pathlib import Path, PurePosixPath
 from grader.submission.file_kinds import kind_of
 from grader.submission.problems import Unreadable
 
-#: The limits of all files together that can matter. What a build left behind does not count.
+#: The most files that can matter. What a build left behind does not count.
 MOST_FILES = 400
 MOST_BYTES = 4_000_000
-#: The limit of entries, of whatever kind.
+#: The most entries of any kind.
 MOST_ENTRIES = 50_000
-#: The limit of a tar archive once it is decompressed (bytes), and of archives inside archives.
+#: The limit of a decompressed tar archive, and the most archives inside each other.
 MOST_TAR_BYTES = 60_000_000
 DEEPEST = 3
 
 ADVICE = "Hand in your code only, without what was built from it."
 
-#: Folders that no student writes: of version control, of Python, of colcon, of editors and of operating systems.
+#: Folders and files of version control, Python, colcon, editors and operating systems, which no student writes.
 _NOISE = re.compile(
     r"__MACOSX|__pycache__|\..*|.*\.egg-info|node_modules|venv|env|site-packages|dist-packages|backups", re.IGNORECASE
 )
@@ -60,7 +60,7 @@ class Contents:
     left: int = MOST_BYTES
 
     def add(self, name: str, data: bytes) -> None:
-        """Keep a file. Raises `Unreadable` when it is too much."""
+        """Keep a file. Raises `Unreadable` if that exceeds a limit."""
         self.left -= len(data)
         if self.left < 0:
             raise Unreadable(f"It holds more than {MOST_BYTES // 1_000_000} MB. {ADVICE}")
@@ -75,7 +75,7 @@ class Contents:
 
 
 def _can_be_written(name: str, files: Collection[str]) -> bool:
-    """Return whether a file system can hold this path beside those of the others."""
+    """Return whether a file system can hold this path together with the others."""
     parts = name.split("/")
     sizes = [len(part.encode("utf-8", errors="replace")) for part in parts]
     above = ["/".join(parts[:count]) for count in range(1, len(parts))]
@@ -90,12 +90,12 @@ def _can_be_written(name: str, files: Collection[str]) -> bool:
     )
 
 
-#: A path, and what reads it up to a little more than the given number of bytes; None if it can't be read.
+#: A path, and a function that reads it up to slightly more than a number of bytes; it returns None on failure.
 _Entry = tuple[str, Callable[[int], "bytes | None"]]
 
 
 def unpacked(content: bytes) -> Contents:
-    """Return what is in an archive, and in archives inside it. Raises `Unreadable`."""
+    """Return the contents of an archive and of the archives inside it. Raises `Unreadable`."""
     contents = Contents()
     _unpack(content, "", contents, 0)
     if contents.links and not contents.files:
@@ -104,7 +104,7 @@ def unpacked(content: bytes) -> Contents:
 
 
 def folder_contents(folder: Path) -> Contents:
-    """Return what is in a folder. Links are not followed. Raises `Unreadable`."""
+    """Return the contents of a folder. Links are not followed. Raises `Unreadable`."""
     contents, entries = Contents(), list[_Entry]()
     for place, folders, names in os.walk(folder):
         folders[:] = sorted(name for name in folders if not _NOISE.fullmatch(name))
@@ -128,10 +128,10 @@ def _file(path: Path, most: int) -> bytes | None:
 
 
 def _keep(entries: Sequence[_Entry], prefix: str, contents: Contents, depth: int) -> None:
-    """Read those entries that a student can have written."""
+    """Read the entries that a student can have written."""
     meant = [(name, load) for name, load in entries if _is_meant(name)]
     own = [(name, load) for name, load in meant if not set(name.split("/")[:-1]) & set(_BUILT)]
-    # What colcon built matters only if the code that it was built from is not there.
+    # What colcon built matters only if its source code is missing.
     meant = own if any(kind_of(name) in ("python", "notebook", "c++") for name, _ in own) else meant
     if len(meant) > MOST_FILES:
         raise Unreadable(f"It holds {len(meant)} files. {ADVICE}")
@@ -140,7 +140,7 @@ def _keep(entries: Sequence[_Entry], prefix: str, contents: Contents, depth: int
 
 
 def content_of(path: Path, most: int) -> bytes:
-    """Return the content of a file itself, without following links. Raises `Unreadable`."""
+    """Return the content of a regular file, without following links. Raises `Unreadable`."""
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError as error:
@@ -230,7 +230,7 @@ def _decompressed(content: bytes) -> bytes:
         elif content.startswith(b"BZh"):
             data = bz2.BZ2File(stream).read(MOST_TAR_BYTES + 1)
         elif content.startswith(b"\xfd7zXZ\x00"):
-            import lzma  # not in every Python
+            import lzma  # optional when Python is built
 
             data = lzma.LZMADecompressor(memlimit=200_000_000).decompress(content, MOST_TAR_BYTES + 1)
         else:
@@ -243,12 +243,12 @@ def _decompressed(content: bytes) -> bytes:
 
 
 def _path(name: str) -> str:
-    """Return a name as a path inside the archive: it leads nowhere else."""
+    """Return a name as a path that can't lead outside the archive."""
     parts = PurePosixPath(name.replace("\\", "/").replace("\0", "")).parts
     return "/".join(part for part in parts if part not in ("/", "..") and not part.endswith(":"))
 
 
 def _is_meant(name: str) -> bool:
-    """Return whether this is more than what file managers, editors and Python add by themselves."""
+    """Return whether this is a student's file, and not one that file managers, editors or Python add."""
     *folders, file = name.split("/")
     return bool(file) and not any(map(_NOISE.fullmatch, folders)) and not _FILES.fullmatch(file)

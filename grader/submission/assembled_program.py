@@ -1,4 +1,4 @@
-"""Puts a program together from a notebook's cells, as the kernel would run them."""
+"""Assembles a program from a notebook's cells, as the kernel would run them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from grader.submission import python_code
 from grader.submission.notebook import NotebookCell
 from grader.submission.places import mark
 
-#: What a cell with `%%node NAME --class A` is started by; `--main` calls its `main`.
+#: The code that starts the classes of `%%node NAME --class A`; `--main` calls the cell's `main` instead.
 _SPIN = """
 
 if __name__ == "__main__":
@@ -41,7 +41,7 @@ if __name__ == "__main__":
 
 @dataclass(frozen=True)
 class AssembledProgram:
-    """A program, and the numbers of the cells that it is made of."""
+    """A program, and the numbers of the cells that it consists of."""
 
     code: str
     cells: tuple[int, ...]
@@ -49,7 +49,7 @@ class AssembledProgram:
 
 @dataclass(frozen=True)
 class _Options:
-    """The words of `%%node NAME …` that say what belongs to the program, and how it is started."""
+    """The options of `%%node NAME …`: what belongs to the program, and how it starts."""
 
     after: tuple[str, ...] = ()
     usual_imports: bool = False
@@ -60,7 +60,7 @@ class _Options:
 def assemble(
     cell: NotebookCell, cells: Sequence[NotebookCell], exercise: Exercise, others: Collection[int] = ()
 ) -> AssembledProgram:
-    """Return the program of this cell, with what it needs of the others. `others` are cells that must not be used."""
+    """Return the program of this cell, with what it needs from other cells, except those in `others`."""
     options = _options(cell)
     pieces = {cell.number: _split(cell, cells)}
     taken = {cell.number, *range(cell.number + 1, cell.number + len(pieces[cell.number]))}
@@ -109,7 +109,7 @@ def _start(options: _Options) -> str:
 
 
 def _split(cell: NotebookCell, cells: Sequence[NotebookCell]) -> list[str]:
-    """Return the cell's code, and that of the cells below which an editor split from it in the middle of a block."""
+    """Return the cell's code, and the code of the cells below that an editor split from it within a block."""
     parts = [cell.code.rstrip("\n")]  # a kernel drops the last line ends, too
     for one in cells:
         if one.number != cell.number + len(parts) or not one.is_plain or one.magic.name:
@@ -126,7 +126,7 @@ def _split(cell: NotebookCell, cells: Sequence[NotebookCell]) -> list[str]:
 
 
 def _after(code: str, options: _Options, cell: NotebookCell, cells: Sequence[NotebookCell]) -> tuple[str, set[int]]:
-    """Return what the code uses of the cells that `--after` names, with all that this uses itself, and those cells."""
+    """Return the code that `code` uses, even indirectly, from the cells that `--after` names, and their numbers."""
     named = [_named(name, cell, cells) for name in options.after]
     pieces = [one for one in named if one is not None]
     chosen: dict[tuple[int, int], ast.stmt] = {}
@@ -147,7 +147,7 @@ def _after(code: str, options: _Options, cell: NotebookCell, cells: Sequence[Not
 
 
 def _named(name: str, cell: NotebookCell, cells: Sequence[NotebookCell]) -> NotebookCell | None:
-    """Return the last cell above that has this name, or the last below."""
+    """Return the last cell above with this name, otherwise the last one below."""
     same = [one for one in cells if one.name == name and one.number != cell.number]
     above = [one for one in same if one.number < cell.number]
     return next(reversed(above or same), None)
@@ -176,12 +176,12 @@ def _can_be_used(one: NotebookCell, cell: NotebookCell) -> bool:
     )
 
 
-#: A notebook with more cells than this is not one that a person wrote.
+#: No person writes a notebook with more cells than this.
 _MOST_CELLS = 1000
 
 
 def _needed(code: str, cell: NotebookCell, cells: Sequence[NotebookCell]) -> list[NotebookCell]:
-    """Return the ordinary cells without which the code is no whole program: what it uses, and what starts it."""
+    """Return the ordinary cells that complete the program: those that it uses, and those that start it."""
     chosen: list[NotebookCell] = []
     is_whole = cell.magic.name and python_code.starts(code) and not python_code.missing(code)
     if is_whole or len(cells) > _MOST_CELLS:
@@ -207,7 +207,7 @@ def _definers(names: set[str], cell: NotebookCell, plain: Sequence[NotebookCell]
 
 
 def _starters(whole: str, cell: NotebookCell, plain: Sequence[NotebookCell]) -> list[NotebookCell]:
-    """Return the cells that use what the program defines, and those that set rclpy up, unless it starts by itself."""
+    """Return the cells that use the program's definitions or set up rclpy, unless the program starts by itself."""
     if cell.magic.name and python_code.starts(whole):
         return []
     own = python_code.definitions(whole)
@@ -215,7 +215,7 @@ def _starters(whole: str, cell: NotebookCell, plain: Sequence[NotebookCell]) -> 
 
 
 def _in_order(cell: NotebookCell, text: str, more: Iterable[NotebookCell]) -> str:
-    """Return all of it in the notebook's order, except that what another cell needs at once comes above it."""
+    """Return all code in the notebook's order, but move up what another cell needs when it runs."""
     pieces = [(cell.number, text), *((one.number, one.code) for one in more)]
     pieces.sort()
     for number, code in list(pieces):
@@ -234,7 +234,7 @@ def _marked(number: int, line: int, text: str) -> str:
 
 
 def _usual_imports(code: str, exercise: Exercise) -> str:
-    """Return the imports that tutorials leave out, of what the code uses: rclpy's, and the exercise's own types."""
+    """Return usual imports that the code lacks: those that tutorials leave out, and the exercise's own types."""
     known = {"rclpy": "import rclpy", "Node": "from rclpy.node import Node", "np": "import numpy as np"}
     known |= {name: f"import {name}" for name in ("math", "time", "sys", "random", "threading")}
     types = [*(topic.type for topic in exercise.topics), *(endpoint.type for endpoint in exercise.endpoints)]

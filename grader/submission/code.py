@@ -1,7 +1,7 @@
-"""The one reader: from the bytes that were handed in to the program that runs, the same for everybody who asks.
+"""Turns the bytes that were handed in into the program that runs, in the same way for every command.
 
-`%check`, `spinbook check`, `submit`, the page and `grade` all read with it. It knows no disk, no sandbox and no ROS, so
-that it also runs in a web page. Nothing of a submission is run or imported.
+`%check`, `spinbook check`, `submit`, the page and `grade` all read with it. It needs no disk, sandbox or ROS, so it
+also runs in a web page. Nothing of a submission is run or imported.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ NO_CPP = "C++ is not graded yet: hand in Python."
 class Code:
     """A program as it runs: `files` by their paths, of which `main` is started.
 
-    `source` is the text of the program itself, `notes` say which choice was made and why, and `python` is the version
-    that the student's notebook or record names, or "".
+    `source` is the text of the program itself, `notes` say which program was chosen and why, and `python` is the
+    version that the student's notebook or record names, or "".
     """
 
     files: Mapping[str, bytes]
@@ -49,7 +49,7 @@ class Code:
 
 @dataclass(frozen=True)
 class _Option:
-    """One program that can be meant: where it is from, its text, and how it is run."""
+    """One program that the student may mean: where it is from, its text, and how it is run."""
 
     title: str
     source: str
@@ -61,7 +61,7 @@ class _Option:
 
 @dataclass
 class _ReadState:
-    """What is known while the files of one submission are read."""
+    """The state of reading the files of one submission."""
 
     files: Mapping[str, bytes]
     exercise: Exercise
@@ -72,13 +72,13 @@ class _ReadState:
 
 
 def as_text(code: Code) -> str:
-    """Return a program as JSON, to hand it to another process."""
+    """Return a program as JSON, for another process."""
     files = {name: content.decode("latin-1") for name, content in code.files.items()}
     return json.dumps({**asdict(replace(code, files={})), "files": files})
 
 
 def from_text(text: str) -> Code:
-    """Return the program that `as_text` has written."""
+    """Return the program that `as_text` wrote."""
     fields = json.loads(text)
     files = {name: content.encode("latin-1") for name, content in fields["files"].items()}
     return Code(**{**fields, "files": files, "notes": tuple(fields["notes"])})
@@ -102,7 +102,7 @@ def code_of(name: str, content: bytes, exercise: Exercise) -> Code:
 
 
 def targets(exercise: Exercise) -> tuple[ProgramFile, ...]:
-    """Return the programs that a submission has to have."""
+    """Return the programs that a submission must have."""
     return exercise.programs or (ProgramFile(exercise.file_name, exercise.node_name, exercise.class_name),)
 
 
@@ -120,7 +120,7 @@ def code_of_python(content: bytes, exercise: Exercise) -> Code:
 
 
 def _refuse_conflict(content: bytes, where: str) -> None:
-    """Raise `Unreadable` for marks of a merge conflict, unless they are in a text of the program."""
+    """Raise `Unreadable` for the markers of a merge conflict, unless they are in a string."""
     if (line := merge_conflict(content)) and python_code.tree_of(content.decode("utf-8", errors="replace")) is None:
         raise Unreadable(
             f"Line {line} of {where} is a mark of a merge conflict from git. Choose one of the two versions there, and "
@@ -180,17 +180,17 @@ def uses_other_files(code: Code) -> bool:
 
 
 def _storable(code: str) -> bytes:
-    """Encode a program; raise `Unreadable` for half of a character, which JSON can hold and no file can."""
+    """Encode a program; raise `Unreadable` for a lone surrogate, which JSON can contain, but no file."""
     try:
         return code.encode()
     except UnicodeEncodeError as error:
         line = code.count("\n", 0, error.start) + 1
-        text = f"Line {line} of the exercise's cell holds {code[error.start]!r}, half of a character."
+        text = f"Line {line} of the exercise's cell contains {code[error.start]!r}, half of a character."
         raise Unreadable(f"{text} Delete it and type the character again.") from None
 
 
 def _modules(files: Mapping[str, bytes], notebook: Notebook) -> dict[str, bytes]:
-    """Return the other cells' modules that a program imports: beside it, and inside the notebook's package."""
+    """Return the modules in other cells that a program imports, next to it or from the notebook's package."""
     package = next((name for cell in notebook.cells for name in _package(cell)), "notebook_nodes")
     cells = {cell.name: cell for cell in notebook.cells if cell.name and cell.magic.name != "part"}
     found: dict[str, bytes] = {}
@@ -244,7 +244,7 @@ def _of_one(option: _Option, reading: _ReadState) -> Code:
 
 
 def _files_of(option: _Option, reading: _ReadState, file: str) -> dict[str, bytes]:
-    """Return a program's files; one that is in a package is started by a small file called `file`."""
+    """Return a program's files. A small file called `file` starts a program that is in a package."""
     if option.choice:
         return {file: option.choice.code.encode(errors="replace")}
     layout = packages.layout_of(option.file, reading.files, reading.called)
@@ -260,7 +260,7 @@ def _files_of(option: _Option, reading: _ReadState, file: str) -> dict[str, byte
 
 
 def _chosen(reading: _ReadState, target: ProgramFile, handed_out: frozenset[str]) -> _Option:
-    """Return the program `target` among the files, by the first rule that any of them fits."""
+    """Return the program `target` among the files, by the first rule that any file satisfies."""
     options = [_of_python(name, reading) for name in packages.programs(reading.files)]
     begun = [one for one in options if not python_code.is_empty(one.source) and digest_of(one.source) not in handed_out]
     options = begun or options
@@ -317,7 +317,7 @@ def _is_it(source: str, target: ProgramFile) -> bool:
 
 
 def _by_executable(reading: _ReadState, options: Sequence[_Option], target: ProgramFile) -> list[_Option]:
-    """Return the programs that are installed under the exercise's name, or launched as its node."""
+    """Return the programs that are installed under the exercise's name or launched as its node."""
     stem = target.file.removesuffix(".py")
     wanted = {stem, target.node} | {
         one.executable for one in packages.launched(reading.files) if one.name in (stem, target.node)
@@ -357,7 +357,7 @@ def _decided(options: Sequence[_Option], reading: _ReadState, target: ProgramFil
 
 
 def _notes(option: _Option, reading: _ReadState) -> tuple[str, ...]:
-    """Return what to tell of the choice: nothing if there was none."""
+    """Return notes on the choice; none if there was only one program."""
     notes = []
     others = [name for name in packages.programs(reading.files) if name != option.file]
     notebooks = [name for name in reading.files if kind_of(name) == "notebook" and name != option.file]
@@ -368,7 +368,7 @@ def _notes(option: _Option, reading: _ReadState) -> tuple[str, ...]:
     for package in sorted(packages.own_interfaces(reading.files)):
         if any(module.partition(".")[0] == package for module in used):
             notes.append(
-                f"Your program imports {package}, a package of messages of your own. The grader does not build it: use "
+                f"Your program imports {package}, your own package of messages. The grader does not build it. Use "
                 "the types that the task names."
             )
     return tuple(notes)
@@ -386,7 +386,7 @@ def _nothing(reading: _ReadState, target: ProgramFile) -> str:
 
 
 def starters(exercise: Exercise) -> frozenset[str]:
-    """Return the digests of the starter as it was handed out, if that is known."""
+    """Return the digests of the starter as it was handed out, if known."""
     course = exercise.folder.parent.parent
     handed_out = course / ".spinbook" / "base" / "exercises" / exercise.name / exercise.file_name
     texts = []

@@ -1,4 +1,4 @@
-"""What a file is, by its name and its first bytes: Python, a notebook, an archive, or another language."""
+"""Determines what a file is from its name and its first bytes: Python, a notebook, an archive, or another language."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ _SUFFIXES: dict[str, Kind] = {
     **dict.fromkeys((".cpp", ".cc", ".cxx", ".c++", ".hpp", ".hh", ".hxx"), "c++"),
 }
 
-#: What browsers, mail programs and editors put after a file's own suffix.
+#: What browsers, mail programs and editors append to a file's name.
 _ADDED = re.compile(
     r"(?:\.(?:txt|text|json|download|bin|zip\.zip|py\.py))+$|(?: \(\d+\)| - copy| copy)$", re.IGNORECASE
 )
 
-#: What a submission of each kind may have (bytes).
+#: The largest submission of each kind (bytes).
 MOST_BYTES_OF: dict[Kind, int] = {
     "python": 1_000_000,
     "notebook": 30_000_000,
@@ -39,7 +39,7 @@ _ARCHIVES = (b"PK\x03\x04", b"PK\x05\x06", b"\x1f\x8b", b"BZh", b"\xfd7zXZ\x00")
 
 
 def kind_of(name: str) -> Kind:
-    """Return the kind of a file by its name, in any case, also under what a browser added: `node.py.txt`."""
+    """Return the kind of a file by its name, ignoring case and what a browser appended: `node.py.txt`."""
     lower = name.rpartition("/")[2].strip().lower()
     while True:
         for suffix, kind in _SUFFIXES.items():
@@ -52,12 +52,12 @@ def kind_of(name: str) -> Kind:
 
 
 def can_be_read(name: str) -> bool:
-    """Return whether a file of this name can be a submission, or is refused for its language."""
+    """Return whether a file with this name is a submission, even one that is refused for its language."""
     return kind_of(name) != "other"
 
 
 def kind_of_content(content: bytes, kind: Kind) -> Kind:
-    """Return the kind of a file whose name may mislead: a notebook that was saved as .py, a zip as .ipynb."""
+    """Return the kind by a file's content, such as a notebook that was saved as .py, or a zip as .ipynb."""
     if content.startswith(_ARCHIVES):
         return "archive"
     if kind == "other" and content.lstrip()[:1] != b"{":

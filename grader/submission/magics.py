@@ -1,8 +1,8 @@
-"""IPython's own syntax in a cell: which lines are commands of the notebook, and what is left without them.
+"""Separates IPython's commands in a cell from its Python code.
 
 The rules are those of IPython's `inputtransformer2`: a command begins a statement, so a line that begins with `%` or
-`!` inside a string or a bracket, or that continues the line before, is Python. Line numbers stay: a line without a
-program in it becomes an empty one, or `pass` where a block needs a statement.
+`!` inside a string or a bracket, or that continues the line before, is Python. Line numbers do not change: a
+command becomes an empty line, or `pass` in a block, which may need a statement.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-#: What moves the end of a statement: text in quotes, comments, brackets, continued and ended lines.
+#: What determines where a statement ends: strings, comments, brackets, and continued lines.
 _TOKEN = re.compile(
     r"""
     (?P<text>(?:'''(?:\\.|(?!''').)*+(?:'''|\Z)) | (?:\"\"\"(?:\\.|(?!\"\"\").)*+(?:\"\"\"|\Z))
@@ -24,7 +24,7 @@ _COMMAND = re.compile(r"[ \t]*(?P<sign>%%?|!!?|\?\??)(?P<rest>.*)")
 _ASSIGNED = re.compile(r"(?P<target>[\w.,\[\]'\" \t]+=)[ \t]*(?:![^=]|%[ \t]*[A-Za-z])")
 _HELP = re.compile(r"[^'\"#]*[\w*\]]\?\??[ \t]*(?:#.*)?$")
 _TIMED = re.compile(r"%(?:time|prun)[ \t]+(?P<statement>[^-\s].*)$")
-#: No longer line (characters) is looked at for a command inside it: a pattern would take long.
+#: Longer lines (characters) are not searched for a command inside them: the patterns would take too long.
 _LONGEST = 500
 _CELL = re.compile(r"%%(?P<name>\w+)[ \t]*(?P<line>.*)")
 _PROMPT = re.compile(r"^(?:>>> ?|\.\.\. ?|In \[\d+\]: ?|[ ]*\.\.\.: ?)")
@@ -34,9 +34,9 @@ _AUTOMAGIC = re.compile(r"(?:pip|conda|mamba|uv|cd|ls|pwd|mkdir|cat|cp|mv|rm)(?:
 
 @dataclass(frozen=True)
 class Magic:
-    """What a cell begins with: `%%name line`, and the code below it. `name` is "" for an ordinary cell.
+    """A cell's magic, `%%name line`, and the code below it. `name` is "" for an ordinary cell.
 
-    `code` has as many lines as the cell: the one with the magic is empty.
+    `code` has as many lines as the cell; the line with the magic is empty.
     """
 
     name: str
@@ -66,7 +66,7 @@ def _without_prompts(lines: list[str]) -> list[str]:
 
 
 def without_commands(code: str, automagic: bool = False) -> str:
-    """Return the code without the notebook's commands. `automagic`: also without those that lack their `%`."""
+    """Return the code without the notebook's commands. With `automagic`, also without those that lack their `%`."""
     lines = code.split("\n")
     for first, last in _commands(code, automagic):
         text = "\n".join(lines[first : last + 1])
@@ -86,7 +86,7 @@ def _replacement(text: str) -> str:
 
 
 def _commands(code: str, automagic: bool) -> Iterator[tuple[int, int]]:
-    """Yield the first and the last line, from 0, of each command."""
+    """Yield the first and the last line of each command, counted from 0."""
     position, line, depth, begins = 0, 0, 0, True
     while position <= len(code):
         if begins:
@@ -107,7 +107,7 @@ def _commands(code: str, automagic: bool) -> Iterator[tuple[int, int]]:
 
 
 def _command(code: str, position: int, automagic: bool) -> int:
-    """Return how long the command is that begins here, 0 if a Python statement does."""
+    """Return the length of the command that begins here; 0 if it is a Python statement."""
     text = _line(code, position)
     if _COMMAND.match(text):
         length = len(text)

@@ -1,4 +1,4 @@
-"""Reads a notebook's file: its code cells, in any version of the format, or a sentence that says why not."""
+"""Reads the code cells of a notebook's file, in any version of the format."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _IN_THE_NOTEBOOK = ("", "time", "capture", "prun")
 
 @dataclass(frozen=True, eq=False)
 class NotebookCell:
-    """One code cell. `number` counts code cells from 1; `exercise` is the one that the chapter's cell is for, or "".
+    """One code cell. `number` counts code cells from 1; `exercise` is the exercise that the cell is for, or "".
 
-    `ran` is the number of the run that its outputs are from, and `checked` are the digests of the code that `%check`
-    judged in it, by exercise; a check that an older Spinbook saved has an empty digest.
+    `ran` is the execution count of its outputs. `checked` has the digests of the code that `%check` judged in this
+    cell, by exercise; the digest is empty if an older Spinbook saved the check.
     """
 
     number: int
@@ -35,12 +35,12 @@ class NotebookCell:
 
     @cached_property
     def magic(self) -> Magic:
-        """The cell's magic, and its code as it was typed."""
+        """The cell's magic, and its code as typed."""
         return cell_magic(self.source)
 
     @cached_property
     def code(self) -> str:
-        """The cell's Python without the notebook's commands, line by line; "" if it has another language."""
+        """The cell's Python code with the notebook's commands blanked out; "" if it is in another language."""
         if not self.is_python:
             return ""
         code = without_commands(self.magic.code)
@@ -53,14 +53,14 @@ class NotebookCell:
 
     @property
     def is_python(self) -> bool:
-        """Whether the cell holds Python at all."""
+        """Whether the cell contains Python at all."""
         if self.magic.name in ("script", "file", "writefile"):
             return "python" in self.magic.line or self.magic.line.rstrip().endswith(".py")
         return self.is_plain or self.magic.name in ("node", "part", "python", "python3")
 
     @property
     def name(self) -> str:
-        """The module or part that the cell is, by its magic: NAME of `%%node NAME`; "" for others."""
+        """The name of the module or part, from the magic: NAME of `%%node NAME`; "" for other cells."""
         if self.magic.name not in ("node", "part", "file", "writefile"):
             return ""
         words = [word for word in self.magic.line.split() if not word.startswith("-")]
@@ -68,7 +68,7 @@ class NotebookCell:
 
     @property
     def title(self) -> str:
-        """Its place and its first line, for people."""
+        """The cell's number and first line, for people."""
         first = next((line.strip() for line in self.source.split("\n") if line.strip()), "")
         return f'code cell {self.number} ("{first[:40]}")'
 
@@ -168,7 +168,7 @@ _SAID = re.compile(r"^Checked: the cell %%node (?P<stem>\w+) as you ran it at ",
 
 
 def _checked(outputs: Any) -> Iterator[tuple[str, str]]:
-    """Yield what the cell's `%check` judged: (exercise, digest), or (its module's name, "") from an older Spinbook."""
+    """Yield what the cell's `%check` judged: (exercise, digest), or (module, "") from an older Spinbook."""
     for output in outputs if isinstance(outputs, list) else ():
         if not isinstance(output, dict):
             continue
@@ -181,7 +181,7 @@ def _checked(outputs: Any) -> Iterator[tuple[str, str]]:
 
 
 def parses(code: str) -> bool:
-    """Return whether this is valid Python, as far as the grader's version knows."""
+    """Return whether this is valid Python in the grader's version."""
     from grader.submission.python_code import tree_of
 
     return tree_of(code) is not None

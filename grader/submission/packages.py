@@ -1,7 +1,7 @@
-"""ROS 2 packages as students write them: what they install, what they launch, and how a module of them is run.
+"""Reads ROS 2 packages as students write them: what they install and launch, and how to run a module of them.
 
 Sources: setuptools' documentation ("Entry Points"), "Developing a ROS 2 package" and "Creating a launch file" in the
-ROS 2 documentation, and ament_cmake_python's for `install(PROGRAMS …)`. Nothing of a submission is run to find out.
+ROS 2 documentation, and ament_cmake_python's for `install(PROGRAMS …)`. Nothing of a submission is run.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _ENTRY = re.compile(r"\s*(?P<name>[\w.-]+)\s*=\s*(?P<module>[\w.]+)\s*(?::\s*(?P
 _PACKAGE_NAME = re.compile(rb"<name>\s*([\w-]+)\s*</name>")
 _MANIFESTS = ("package.xml", "setup.py", "setup.cfg", "pyproject.toml")
 
-#: Python that is never a program of the student's.
+#: Python files that are never the student's program.
 _NOT_PROGRAMS = re.compile(r"(?:setup|conftest|__init__|test_\w*|\w*_test|\w*[._]launch)\.py", re.IGNORECASE)
 
 
@@ -38,7 +38,7 @@ class EntryPoint:
 
 @dataclass(frozen=True)
 class LaunchedNode:
-    """A node in a launch file: its executable, and the name that it gets there, if any."""
+    """A node in a launch file: its executable, and the name that the launch file gives it, if any."""
 
     executable: str
     name: str
@@ -60,7 +60,7 @@ def roots(files: Mapping[str, bytes]) -> list[str]:
 
 
 def entry_points(files: Mapping[str, bytes]) -> list[EntryPoint]:
-    """Return the executables that the packages install, as far as their modules are there."""
+    """Return the executables that the packages install, if their modules exist."""
     return list(dict.fromkeys(entry for root in roots(files) for entry in _entry_points(files, root)))
 
 
@@ -80,7 +80,7 @@ def _text(files: Mapping[str, bytes], root: str, name: str) -> str:
 
 
 def _of_setup(files: Mapping[str, bytes], root: str) -> Iterator[str]:
-    """Yield the strings of setup.py that have the form of an entry point: inside `entry_points` they all are."""
+    """Yield the strings in setup.py that have the form of an entry point."""
     tree = python_code.tree_of(_text(files, root, "setup.py"))
     for node in ast.walk(tree) if tree else ():
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and ":" in node.value:
@@ -111,7 +111,7 @@ def _of_cmake(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoint]:
 
 
 def launched(files: Mapping[str, bytes]) -> list[LaunchedNode]:
-    """Return the nodes that launch files start: those whose executable is written as text."""
+    """Return the nodes that launch files start, if their executable is a plain string."""
     found: list[LaunchedNode] = []
     for name in sorted(files):
         text = files[name].decode("utf-8", errors="replace")
@@ -138,7 +138,7 @@ def _launched_by_python(text: str) -> Iterator[LaunchedNode]:
 
 @dataclass(frozen=True)
 class Layout:
-    """How a module is run: the files by the paths that they have then, and the module's path and dotted name."""
+    """How a module is run: all files by path, and the module's path and dotted name."""
 
     files: Mapping[str, bytes]
     main: str
@@ -146,9 +146,9 @@ class Layout:
 
 
 def layout_of(file: str, files: Mapping[str, bytes], called: str = "") -> Layout:
-    """Return what belongs to a program: its package with its modules, and the packages that these import.
+    """Return what belongs to a program: its package, and the packages that it imports.
 
-    `called` is the name of the folder that was handed in, if it is known.
+    `called` is the name of the folder that was handed in, if known.
     """
     root = _import_root(file, files)
     inside = posixpath.relpath(file, root) if root else file
@@ -162,7 +162,7 @@ def layout_of(file: str, files: Mapping[str, bytes], called: str = "") -> Layout
         or "__init__.py" in chosen
         or _fits(missing, chosen, files[file])
     ):
-        # The content of a package's folder, without the folder.
+        # The content of a package's folder was handed in without the folder itself.
         chosen = {f"{missing}/{name}": data for name, data in chosen.items()}
         inside = f"{missing}/{inside}"
     chosen |= dict(_other_packages(chosen, files, root))
@@ -175,7 +175,7 @@ def _below(name: str, root: str) -> bool:
 
 
 def _import_root(file: str, files: Mapping[str, bytes]) -> str:
-    """Return the folder that has to be on Python's path: the one above the program's own package."""
+    """Return the folder that must be on Python's path: the one above the program's package."""
     own = folder = posixpath.dirname(file)
     while folder and f"{folder}/__init__.py" in files:
         folder = posixpath.dirname(folder)
@@ -192,7 +192,7 @@ def _is_imported(package: str, file: str, files: Mapping[str, bytes]) -> bool:
 
 
 def _unknown_package(file: str, files: Mapping[str, bytes]) -> str:
-    """Return a package that the program imports modules of, and that neither is here nor belongs to Python."""
+    """Return a package that the program imports modules of, and that is neither here nor installed."""
     there = {name.removesuffix(".py").rpartition("/")[2] for name in files if name.endswith(".py")}
     there |= {folder for name in files for folder in name.split("/")[:-1]}
     for module in sorted(python_code.imported(files[file].decode("utf-8", errors="replace"))):
@@ -226,7 +226,7 @@ def _has_package(root: str, files: Mapping[str, bytes]) -> bool:
 
 
 def own_interfaces(files: Mapping[str, bytes]) -> set[str]:
-    """Return the packages in it that define messages, services or actions."""
+    """Return the packages that define messages, services or actions."""
     found = set()
     for root in roots(files):
         manifest = _PACKAGE_NAME.search(files.get(posixpath.join(root, "package.xml"), b""))

@@ -1,6 +1,6 @@
-"""Where a line of a program is from, if the program is not one file as the student wrote it.
+"""Maps lines of an assembled program to the notebook's cells.
 
-Above each piece of a program that was put together from a notebook's cells stands a line that names the cell.
+In a program that was assembled from a notebook's cells, a comment above each piece names its cell.
 """
 
 from __future__ import annotations
@@ -9,17 +9,17 @@ import re
 
 _MARKED = re.compile(r"# --- code cell (?P<cell>\d{1,9}), from line (?P<line>\d{1,9}) ---")
 
-#: How a file begins that is not the student's: it starts a module of the submission.
+#: The first line of a file that Spinbook adds to start a module of the submission.
 LAUNCHER = "# Starts a module of the submission, as its installed executable would."
 
 
 def mark(cell: int, line: int) -> str:
-    """Return the line above a piece that begins in this line of this code cell."""
+    """Return the comment above a piece that begins at this line of this code cell."""
     return f"# --- code cell {cell}, from line {line} ---"
 
 
 def place_of(source: str, line: int) -> tuple[int, int]:
-    """Return (code cell, line in it) of a line of an assembled program; (0, line) of any other."""
+    """Return (code cell, line in it) for a line of an assembled program; (0, line) for any other program."""
     for above, text in enumerate(reversed(source.split("\n")[:line])):
         if match := _MARKED.fullmatch(text.strip()):
             return int(match["cell"]), int(match["line"]) + above - 1
@@ -27,10 +27,10 @@ def place_of(source: str, line: int) -> tuple[int, int]:
 
 
 def without_marks(code: str) -> str:
-    """Return a program without the lines that say where its pieces are from."""
+    """Return a program without the comments that name its cells."""
     return "\n".join(line for line in code.split("\n") if not _MARKED.fullmatch(line.strip()))
 
 
 def is_launcher(text: str) -> bool:
-    """Return whether a file is not the student's but starts what is."""
+    """Return whether a file is a launcher that Spinbook added, and not the student's."""
     return text.startswith(LAUNCHER)

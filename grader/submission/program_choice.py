@@ -1,4 +1,4 @@
-"""Chooses, of a notebook's cells, the program that a student means; or says that nobody can know."""
+"""Chooses the program that a student means among a notebook's cells, or says that it is ambiguous."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from grader.submission.problems import AmbiguousProgram, Unreadable
 
 @dataclass(frozen=True)
 class Choice:
-    """The program in a notebook, and what to tell about the way it was chosen."""
+    """The program in a notebook, and notes on how it was chosen."""
 
     code: str
     cells: tuple[int, ...]
@@ -25,12 +25,12 @@ class Choice:
 
 
 def digest_of(code: str) -> str:
-    """Return SHA-256 of a program as it counts for a comparison: the one in the record that `%check` leaves."""
+    """Return the SHA-256 of a program without insignificant blanks, as in the record that `%check` saves."""
     return hashlib.sha256(python_code.bare(without_marks(code)).encode(errors="replace")).hexdigest()
 
 
 def choose(notebook: Notebook, exercise: Exercise, target: ProgramFile, starters: frozenset[str]) -> Choice:
-    """Return the program `target` in a notebook. `starters` are digests of what was handed out.
+    """Return the program `target` in a notebook. `starters` are digests of the starters that were handed out.
 
     Raises `Unreadable` if no cell can be it, and `AmbiguousProgram` if several can.
     """
@@ -49,7 +49,7 @@ def choose(notebook: Notebook, exercise: Exercise, target: ProgramFile, starters
 
 
 def _candidates(cells: Sequence[NotebookCell], exercise: Exercise, target: ProgramFile) -> list[NotebookCell]:
-    """Return the cells that can be the program, by the first rule that any of them fits."""
+    """Return the cells that can be the program, by the first rule that any cell satisfies."""
     stem = target.file.removesuffix(".py")
     named = [one for one in cells if one.name == stem and one.magic.name != "part"]
     own = [one for one in cells if one.exercise == exercise.name and one.name in ("", stem) and not exercise.programs]
@@ -75,7 +75,7 @@ def _decided(
     target: ProgramFile,
     starters: frozenset[str],
 ) -> tuple[tuple[NotebookCell, AssembledProgram], str]:
-    """Return the cell that counts with its program, and why."""
+    """Return the cell that counts, with its program, and the reason."""
     if len({digest_of(program.code) for _, program in programs}) == 1:
         return programs[-1], ""
     if checked := _checked(programs, notebook, exercise, target):
@@ -112,7 +112,7 @@ def _checked(
     exercise: Exercise,
     target: ProgramFile,
 ) -> tuple[NotebookCell, AssembledProgram] | None:
-    """Return what `%check` judged last, by the record in its saved output; None if it does not say so."""
+    """Return the program that `%check` judged last, from the record in its saved output; None if unknown."""
     stem = target.file.removesuffix(".py")
     checks = [one for one in notebook.cells if one.checked and {exercise.name, stem} & one.checked.keys()]
     if not checks:
@@ -121,7 +121,7 @@ def _checked(
     digest = (last.checked or {}).get(exercise.name) or (last.checked or {}).get(stem) or ""
     if digest:
         return next((one for one in reversed(programs) if digest_of(one[1].code) == digest), None)
-    # An older Spinbook: it judged the cell with %%node that had been run last.
+    # An older Spinbook saved no record. It judged the %%node cell that had been run last.
     node = [one for one in programs if one[0].name == stem]
     if len({digest_of(program.code) for _, program in node}) == 1:
         return node[-1]
@@ -133,12 +133,12 @@ def _notes(cell: NotebookCell, program: AssembledProgram, candidates: Sequence[N
     notes = []
     others = [one for one in candidates if one.number not in program.cells and one.code.strip() != cell.code.strip()]
     if others:
-        reason = why or ("the others hold no program" if len(others) > 1 else "the other one holds no program")
+        reason = why or ("the others have no program" if len(others) > 1 else "the other one has no program")
         text = f"{len(others) + 1} cells of the notebook are for this exercise."
         notes.append(f"{text} Taken: {cell.title}, because {reason}.")
     if len(program.cells) > 1:
         numbers = ", ".join(map(str, program.cells))
-        notes.append(f"The program is put together from the code cells {numbers} of the notebook.")
+        notes.append(f"Your program consists of the code cells {numbers} of the notebook.")
     return notes
 
 

@@ -1,4 +1,4 @@
-"""What a piece of Python defines, uses and starts, by its syntax tree: nothing of it is run."""
+"""Finds what a piece of Python defines, uses and starts, from its syntax tree: nothing is run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from functools import lru_cache
 
 from grader.submission.unreadable import not_python
 
-#: Longer code (bytes) is not analysed, since its tree takes a hundred times as much memory.
+#: Longer code (bytes) is not analysed, because its tree takes a hundred times as much memory.
 LONGEST = 300_000
 
 _OF_MODULES = {"__name__", "__file__", "__doc__", "__package__", "__spec__", "__loader__", "__builtins__"}
@@ -23,7 +23,7 @@ ONLY_AST = ast.PyCF_ONLY_AST
 
 @contextmanager
 def quietly() -> Iterator[None]:
-    """Print no warnings about a student's code, such as those about its escapes."""
+    """Suppress warnings about a student's code, such as those about invalid escapes."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield
@@ -31,7 +31,7 @@ def quietly() -> Iterator[None]:
 
 @lru_cache(maxsize=64)
 def tree_of(code: str) -> ast.Module | None:
-    """Return the syntax tree; None for what is no Python of this version, and for code that is too long or too deep."""
+    """Return the syntax tree; None if the code is not valid in this Python, too long or nested too deeply."""
     try:
         encoded = code.encode()
         if len(encoded) > LONGEST or not_python(encoded.replace(b"\\\n", b"")):
@@ -43,7 +43,7 @@ def tree_of(code: str) -> ast.Module | None:
 
 
 def is_empty(code: str) -> bool:
-    """Return whether there is nothing to run: nothing but comments, strings and `pass`."""
+    """Return whether the code has only comments, strings and `pass`."""
     if not any(line.strip() and not line.strip().startswith("#") for line in code.split("\n")):
         return True
     tree = tree_of(code)
@@ -54,7 +54,7 @@ def is_empty(code: str) -> bool:
 
 
 def bare(code: str) -> str:
-    """Return the code as it counts for a comparison: without trailing blanks and the empty lines around it."""
+    """Return the code without trailing blanks and without empty lines around it, for comparisons."""
     return "\n".join(line.rstrip() for line in code.replace("\r\n", "\n").split("\n")).strip()
 
 
@@ -64,13 +64,13 @@ def defines(code: str, class_name: str) -> bool:
 
 
 def creates(code: str, node_name: str) -> bool:
-    """Return whether the code creates a node of this name."""
+    """Return whether the code creates a node with this name."""
     name = re.escape(node_name)
     return bool(re.search(rf"""(Node|__init__|create_node)\(\s*(?:node_name\s*=\s*)?['"]{name}['"]""", code))
 
 
 def bound(statements: Iterable[ast.stmt]) -> set[str]:
-    """Return the names that statements of a module give a value to."""
+    """Return the names that a module's statements bind."""
     return {name for statement in statements for name in _bound_by(statement)}
 
 
@@ -98,7 +98,7 @@ def is_guard(statement: ast.stmt) -> bool:
 
 
 def missing(code: str) -> set[str]:
-    """Return the names that the code uses and nothing binds; empty for what is no Python."""
+    """Return the names that the code uses but does not bind; empty if it is not valid Python."""
     if tree_of(code) is None:
         return set()
     try:
@@ -122,7 +122,7 @@ def _globals(table: symtable.SymbolTable) -> Iterator[str]:
 
 
 def starts(code: str) -> bool:
-    """Return whether running the code starts what it defines: by a `__main__` guard, a call, or by spinning."""
+    """Return whether running the code starts what it defines, by a `__main__` guard, a call, or spinning."""
     tree = tree_of(code)
     if tree is None:
         return True
@@ -141,7 +141,7 @@ def _is_definition(statement: ast.stmt) -> bool:
 
 
 def calls_module(code: str, module: str) -> bool:
-    """Return whether the code, as it runs, calls a function of this module for its effect: `rclpy.init()`."""
+    """Return whether the code calls a function of this module at its top level, such as `rclpy.init()`."""
     tree = tree_of(code)
     effects = [one.value for one in tree.body if isinstance(one, ast.Expr)] if tree else []
     calls = [one.func for one in effects if isinstance(one, ast.Call) and isinstance(one.func, ast.Attribute)]
@@ -149,7 +149,7 @@ def calls_module(code: str, module: str) -> bool:
 
 
 def definitions(code: str) -> set[str]:
-    """Return the names that the code gives to functions, classes and values; what it imports is not its own."""
+    """Return the names that the code gives to functions, classes and values; imports do not count."""
     tree = tree_of(code)
     return bound(one for one in tree.body if not isinstance(one, ast.Import | ast.ImportFrom)) if tree else set()
 

@@ -1,4 +1,4 @@
-"""Programs for a newer Python than the grader's: which version they need, said with both numbers.
+"""Says which Python version a program needs, if that is newer than the grader's.
 
 Source: "What's New In Python" 3.11 to 3.14.
 """
@@ -13,7 +13,7 @@ from grader.submission.unreadable import not_python
 
 _Version = tuple[int, int]
 
-#: Syntax -> the first version that reads it, and how it looks.
+#: The first version that can read a syntax, a pattern of the syntax, and its name.
 _SYNTAX: tuple[tuple[_Version, re.Pattern[str], str], ...] = (
     ((3, 14), re.compile(r"""(?<![\w'"])[tT][rR]?(?:"|')"""), 'a template string (t"…")'),
     ((3, 14), re.compile(r"^\s*except\*? +[\w.]+ *, *[\w., ]+:", re.MULTILINE), "`except A, B:` without parentheses"),
@@ -24,7 +24,7 @@ _SYNTAX: tuple[tuple[_Version, re.Pattern[str], str], ...] = (
     ((3, 11), re.compile(r"\[[^\]\n]*(?<=[\[,])\s*\*\w+[^\]\n]*\]\s*="), "a starred expression in an index"),
 )
 
-#: What Python has got since 3.10 -> its first version.
+#: Names that Python has added since 3.10, by the first version that has them.
 _ADDED: dict[_Version, str] = {
     (3, 11): "tomllib math.cbrt math.exp2 datetime.UTC enum.StrEnum enum.verify enum.member enum.nonmember "
     "enum.ReprEnum enum.EnumCheck enum.global_enum typing.Self typing.assert_never typing.assert_type "
@@ -54,7 +54,7 @@ _LACKS = (
 
 
 def running() -> _Version:
-    """Return the version of this Python, which runs the students' programs too."""
+    """Return the version of this Python, which also runs the students' programs."""
     return sys.version_info[0], sys.version_info[1]
 
 
@@ -63,7 +63,7 @@ def _in_words(version: _Version) -> str:
 
 
 def newer_syntax(source: str) -> tuple[str, ...]:
-    """Say which newer Python a program is written for, if this one can't read it; otherwise return nothing."""
+    """Return which newer Python a program is written for, if this one can't read it; otherwise nothing."""
     try:
         encoded = source.encode()
         if len(encoded) > python_code.LONGEST or not_python(encoded.replace(b"\\\n", b"")):
@@ -97,7 +97,7 @@ def _needs(line: int, what: str, version: _Version) -> str:
 
 
 def newer_name(message: str) -> str:
-    """Say which newer Python has what a program did not find, by the error's text; "" if none has."""
+    """Return which newer Python has the name that a program did not find, from the error's text; otherwise ""."""
     for pattern in _LACKS:
         if match := pattern.search(message):
             name = ".".join(filter(None, (match["module"], match["name"])))
@@ -108,7 +108,7 @@ def newer_name(message: str) -> str:
 
 
 def newer_than_this(version: str) -> str:
-    """Say so if a notebook or a record names a newer Python than this one, such as "3.13.1"; otherwise "" ."""
+    """Return a warning if a notebook or a record names a newer Python than this one, such as "3.13.1"; otherwise ""."""
     match = re.match(r"(\d+)\.(\d+)", version)
     if match and (int(match[1]), int(match[2])) > running():
         return f"It was written with Python {match[1]}.{match[2]}. The grader runs Python {_in_words(running())}."

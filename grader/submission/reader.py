@@ -1,4 +1,4 @@
-"""Reads a submission: a file, a folder, an upload or an installed executable; the text of it is read in `code`."""
+"""Reads a submission: a file, a folder, an upload or an installed executable. Its program is read in `code`."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class Submission:
     `digest` is the SHA-256 of what was handed in. `program` says how it is started, and is None if it can't be; then
     `problem` tells the student why, or `question` asks the instructor for a decision: then there is no score.
     `source` is its text, to quote lines from. `warning` tells the instructor what is unusual about it, such as an
-    upload that was changed; it costs no points. `notes` tell both which choice was made among what was handed in.
-    `newer_python` says that it was written with a newer Python, if it names one.
+    upload that was changed; it costs no points. `notes` tell both which program was chosen. `newer_python` says that
+    it was written with a newer Python, if it names one.
     """
 
     name: str
@@ -42,14 +42,14 @@ class Submission:
 
 @dataclass(frozen=True)
 class Executable:
-    """An installed Python executable: its script, the folders it needs to see, and where its modules are."""
+    """An installed Python executable: its script, the folders that it needs, and where its modules are."""
 
     script: Path
     folders: tuple[Path, ...]
     python_path: str
 
     def digest(self) -> str:
-        """SHA-256 of the script and of every Python file next to its modules."""
+        """The SHA-256 of the script and of every Python file next to its modules."""
         total = hashlib.sha256(self.script.read_bytes())
         for folder in self.python_path.split(os.pathsep):
             for file in sorted(Path(folder).rglob("*.py")):
@@ -58,7 +58,7 @@ class Executable:
 
 
 def find(given: str) -> Executable | str:
-    """The executable that `package/executable` names, or a sentence that says why there is none."""
+    """Return the executable that `package/executable` names, or a sentence that says why there is none."""
     package, _, name = given.partition("/")
     prefixes = [Path(prefix) for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
     for prefix in prefixes:
@@ -77,23 +77,23 @@ def _described(prefix: Path, script: Path) -> Executable:
     folders = [prefix]
     for folder in list(modules):
         for link in folder.glob("*.egg-link"):
-            # Where `colcon build --symlink-install` left the modules in the build and source folders.
+            # `colcon build --symlink-install` leaves the modules in the build and source folders.
             target = Path(link.read_text(encoding="utf-8").splitlines()[0])
             modules.append(target)
             folders += [target, *(entry.resolve().parent for entry in target.iterdir() if entry.is_symlink())]
     return Executable(script, tuple(folders), os.pathsep.join(map(str, modules)))
 
 
-#: The suffixes by which a class's files are collected, and the limit of each (bytes).
+#: The suffixes of the files that are collected for a class, and the size limit for each (bytes).
 MOST_BYTES = {suffix: MOST_BYTES_OF[kind_of(suffix)] for suffix in (".py", ".ipynb", ".zip")}
 
 
 class NoSubmission(Exception):
-    """Raised when there is nothing to grade under the name that was given: a mistake in the command's usage."""
+    """Raised if there is nothing to grade under a name, because the command was used wrongly."""
 
 
 def read(given: str, exercise: Exercise) -> Submission:
-    """The submission that `given` names: a file, a folder, or `package/executable` of an installed package.
+    """Return the submission that `given` names: a file, a folder, or `package/executable` of an installed package.
 
     A file is Python, a notebook, or an archive; one that can't be read is a submission with a `problem`. Raises
     `NoSubmission` if there is none.
@@ -122,7 +122,7 @@ def is_one(folder: Path, exercise: Exercise) -> bool:
 
 
 def of_content(name: str, content: bytes, exercise: Exercise) -> Submission:
-    """The submission in a file with this name and content."""
+    """Return the submission in a file with this name and content."""
     if kind_of_content(content, kind_of(name)) == "archive":
         return of_upload(name, content, exercise)
     try:
@@ -132,7 +132,7 @@ def of_content(name: str, content: bytes, exercise: Exercise) -> Submission:
 
 
 def of_source(name: str, code: bytes, exercise: Exercise, digest: str = "") -> Submission:
-    """A submission of this Python source. It runs under the exercise's file name, whatever it was called."""
+    """Return the submission of this Python source. It always runs under the exercise's file name."""
     try:
         return of_code(name, code_of_python(code, exercise), exercise, digest or _digest(code))
     except Unreadable as error:
@@ -141,7 +141,7 @@ def of_source(name: str, code: bytes, exercise: Exercise, digest: str = "") -> S
 
 
 def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:
-    """The submission in an archive. `warning` says what in it does not match its record; it is graded anyway."""
+    """Return the submission in an archive. `warning` says what in it does not match its record; it is graded anyway."""
     try:
         upload = unpack(content)
     except Unreadable as error:
@@ -158,7 +158,7 @@ def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:
 
 
 def _code(upload: Upload, exercise: Exercise) -> Code:
-    """Return the program: the file that the record names for it, which nobody has to look for."""
+    """Return the program: the file that the record names, if it does."""
     own = upload.files.get(exercise.file_name)
     if upload.has_record and own is not None:
         beside = {name: data for name, data in upload.files.items() if kind_of(name) != "notebook"}
@@ -171,7 +171,7 @@ def _code(upload: Upload, exercise: Exercise) -> Code:
 def _warning(upload: Upload, exercise: Exercise) -> str:
     faults = list(upload.faults)
     if not upload.has_record and exercise.file_name in upload.files and len(upload.files) == 2:
-        faults.append(f"{RECORD} is missing: `spinbook submit` has not written this file")
+        faults.append(f"{RECORD} is missing: this file was not written by `spinbook submit`")
     if upload.record and upload.record.get("exercise") != exercise.name:
         faults.append(f"it was handed in for the exercise {upload.record.get('exercise')!r}")
     text = "; ".join(faults)
@@ -179,7 +179,7 @@ def _warning(upload: Upload, exercise: Exercise) -> str:
 
 
 def _folder(given: str, path: Path, exercise: Exercise) -> Submission:
-    """The submission in a folder: a package, a workspace, or some files."""
+    """Return the submission in a folder: a package, a workspace, or some files."""
     try:
         contents = folder_contents(path)
     except Unreadable as error:
@@ -195,7 +195,7 @@ def _folder(given: str, path: Path, exercise: Exercise) -> Submission:
 
 
 def of_code(name: str, code: Code, exercise: Exercise, digest: str = "") -> Submission:
-    """The submission of a program that has been read."""
+    """Return the submission of a program that has been read."""
     digest = digest or _digest(code.source.encode(errors="replace"))
     program = ProgramSpec(code.main, code.files)
     newer = newer_than_this(code.python)

@@ -1,4 +1,4 @@
-"""Several programs in one text: each begins with a line `# file: NAME.py`."""
+"""Splits a text with several programs: each begins with a line `# file: NAME.py`."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from collections.abc import Mapping
 
 _BEGIN = re.compile(r"# file: (?P<name>[a-z_][a-z0-9_]*\.py)\s*")
 
-#: Each is as long as the whole, by its empty lines.
+#: With its empty lines in front, each program is nearly as long as the whole text.
 MOST_FILES = 20
 
 
 def files_in(source: str) -> int:
-    """Return how many programs a text has."""
+    """Return the number of programs in a text."""
     return sum(1 for line in source.splitlines() if _BEGIN.fullmatch(line))
 
 
 def parts(source: str) -> dict[str, str]:
-    """Return the programs in a text, by their names. What stands before the first one belongs to none.
+    """Return the programs in a text, by name. The text before the first one belongs to none of them.
 
-    Each has as many empty lines in front as it has lines before it, so that line numbers are those of the whole file.
+    Empty lines replace the text before a program, so its line numbers are those of the whole file.
     """
     found: dict[str, list[str]] = {}
     current: list[str] | None = None
@@ -32,6 +32,6 @@ def parts(source: str) -> dict[str, str]:
 
 
 def joined(files: Mapping[str, bytes]) -> str:
-    """Return several files as one."""
+    """Return several files as one text."""
     texts = (f"# file: {name}\n{code.decode(errors='replace').rstrip()}\n" for name, code in files.items())
     return "\n\n".join(texts)

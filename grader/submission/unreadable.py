@@ -1,22 +1,24 @@
-"""Says why Python can't read a file, where Python itself says it unclearly, or takes all memory."""
+"""Says why Python can't read a file, if Python's own message is unclear or Python would run out of memory."""
 
 from __future__ import annotations
 
 import re
 
-#: How the ways to save text begin that are not UTF-8 (Unicode 15, chapter 23.8, "Byte Order Mark").
+#: The byte order marks of UTF-16 (Unicode 15, chapter 23.8, "Byte Order Mark").
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
 def not_python(code: bytes) -> str:
-    """Say why Python can't read a file, if Python's own message is unclear; otherwise empty."""
+    """Return why Python can't read a file, if Python's own message is unclear; otherwise an empty text."""
     if code.startswith(UTF_16):
         return (
             "Your file is saved as UTF-16, which Python can't read. Save it as UTF-8: in VS Code, click UTF-16 below."
         )
     if b"\0" in code:
         line = code[: code.index(b"\0")].count(b"\n") + 1
-        return f"Line {line} of your file holds a NUL byte, so it is not a text file. Save your code as text, in UTF-8."
+        return (
+            f"Line {line} of your file contains a NUL byte, so it is not a text file. Save your code as text, in UTF-8."
+        )
     deepest = max(map(_nested, code.splitlines()), default=0)
     if deepest > DEEPEST:
         return f"A line of your file nests {deepest:,} operators or brackets. Python can't read such deep nesting."
@@ -27,8 +29,8 @@ def not_python(code: bytes) -> str:
 DEEPEST = 5_000
 
 
-#: Text in quotes; up to the end of the line if they are not closed. It can be read in one way only: otherwise a line
-#: of backslashes would take forever.
+#: Text in quotes, up to the end of the line if they are not closed. The alternatives exclude each other, so that
+#: a line of backslashes does not take exponential time.
 _QUOTED = re.compile(rb"""(['"])(?:\\.|(?!\1)[^\\])*(?:(?P<end>\1)|\\?$)""", re.DOTALL)
 
 

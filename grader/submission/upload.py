@@ -1,7 +1,7 @@
 """The one file that a student uploads: a zip with the code, the notebook it came from, and a record of both.
 
-`submission.json`, the record, holds the SHA-256 of every other file and a digest of itself, so that a damaged or edited
-upload is noticed. That is not a signature: anybody can write another record. So nothing in the record decides a grade.
+`submission.json`, the record, has the SHA-256 of every other file and a digest of itself, so that a damaged or edited
+upload is noticed. It is not a signature: anyone can write another record. So no grade depends on the record.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from grader.submission.archive import Contents, unpacked
 FORMAT = "spinbook-submission 1"
 RECORD = "submission.json"
 
-#: The same content gives the same bytes: every entry has this date, the earliest that a zip can name.
+#: The same content gives the same bytes: every entry has this date, the earliest that a zip can contain.
 _DATE = (1980, 1, 1, 0, 0, 0)
 
 
 @dataclass(frozen=True)
 class Upload:
-    """An upload, read. `faults` says what in it has changed since it was written, and is empty if everything matches.
+    """The contents of an upload. `faults` says what has changed since it was written.
 
-    `contents` are its files without the record. `record` is empty if it can't be read, or if there is none: then it was
-    packed by hand, and not by `spinbook submit`.
+    `contents` are its files without the record. `record` is empty if it can't be read or is missing, because the
+    upload was packed by hand and not by `spinbook submit`.
     """
 
     record: dict[str, Any]
@@ -39,12 +39,12 @@ class Upload:
 
     @property
     def files(self) -> dict[str, bytes]:
-        """The contents by name; what could not be read is left out."""
+        """The contents by name, without files that could not be read."""
         return self.contents.files
 
 
 def pack(record: Mapping[str, Any], files: Mapping[str, bytes]) -> bytes:
-    """The upload's bytes. `record` must be plain JSON; the digests are added to it."""
+    """Return the upload's bytes. `record` must be plain JSON; the digests are added to it."""
     whole = {**record, "format": FORMAT, "files": {name: _sha256(files[name]) for name in sorted(files)}}
     whole["digest"] = record_digest(whole)
     text = json.dumps(whole, indent=2, ensure_ascii=False, sort_keys=True) + "\n"
@@ -60,9 +60,9 @@ def pack(record: Mapping[str, Any], files: Mapping[str, bytes]) -> bytes:
 
 
 def unpack(content: bytes) -> Upload:
-    """What is in an upload. Nothing is written to disk. Raises `Unreadable`."""
+    """Return what is in an upload. Nothing is written to disk. Raises `Unreadable`."""
     contents = unpacked(content)
-    # Some platforms put a folder around what was handed in.
+    # Some platforms add a folder around the files.
     place = min((name for name in contents.files if name.rpartition("/")[2] == RECORD), key=len, default="")
     folder = place[: -len(RECORD)]
     packed = contents.files.pop(place, None)
@@ -76,7 +76,7 @@ def unpack(content: bytes) -> Upload:
 
 
 def record_digest(record: Mapping[str, Any]) -> str:
-    """SHA-256 of a record without its `digest`. With the digests of the files in it, it covers everything."""
+    """Return the SHA-256 of a record without its `digest`. It covers the files by their digests."""
     kept = {key: value for key, value in record.items() if key != "digest"}
     return _sha256(json.dumps(kept, sort_keys=True, separators=(",", ":")).encode())
 
@@ -92,7 +92,7 @@ def _record(content: bytes) -> dict[str, Any]:
 
 def _differences(record: dict[str, Any], files: Mapping[str, bytes], damaged: list[str]) -> list[str]:
     if record.get("format") != FORMAT:
-        return [f"{RECORD} can't be read, or another version of Spinbook has written it"]
+        return [f"{RECORD} can't be read, or was written by another version of Spinbook"]
     listed = record.get("files")
     listed = listed if isinstance(listed, dict) else {}
     faults = [f"{name} has been added" for name in sorted(set(files) - set(listed))]

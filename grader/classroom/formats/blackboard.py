@@ -20,7 +20,7 @@ SOURCE = "Blackboard"
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation]:
-    """Understand names as Blackboard gives them. What all have before the user's name is the assignment's."""
+    """Return how to read Blackboard's names. The part before the user's name is the assignment's, the same in all."""
     before = [match["before"] for parts in export.files if (match := NAME.fullmatch(parts[-1]))]
     texts = {match["before"]: export.text(*parts) for parts in export.files if (match := _own(parts))}
     common = _assignment(before)
@@ -49,12 +49,12 @@ def _own(parts: Parts) -> re.Match[str] | None:
 
 
 def _assignment(before: list[str]) -> str:
-    """Return what every name begins with, up to an underscore: the assignment's name may have some itself."""
+    """Return the beginning that all names share, up to an underscore. The assignment's name may contain underscores."""
     split = [name.split("_") for name in before]
     if not split:
         return ""
     most = min(len(words) for words in split) - 1
-    if len({tuple(words) for words in split}) == 1:  # one student: the assignment's is all but the last word
+    if len({tuple(words) for words in split}) == 1:  # one student: the assignment's name is all but the last word
         return "".join(f"{word}_" for word in split[0][:-1])
     same = 0
     while same < most and len({words[same] for words in split}) == 1:

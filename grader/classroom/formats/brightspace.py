@@ -25,7 +25,7 @@ SOURCE = "Brightspace"
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation]:
-    """Understand names of folders as Brightspace gives them."""
+    """Return how to read the names that Brightspace gives to folders."""
 
     def understand(parts: Parts) -> Interpretation:
         if parts == ("index.html",):
@@ -57,7 +57,7 @@ def _time(text: str, export: Export) -> Time:
 
 
 def of_row(row: Mapping[str, str]) -> Student | None:
-    """Return the student in a row of Brightspace's grades; its export of submissions has another number."""
+    """Return the student in a row of Brightspace's grades; its export of submissions uses a different number."""
     if not {"OrgDefinedId", "Username"} <= row.keys():
         return None
     name = f"{row.get('First Name', '')} {row.get('Last Name', '')}".strip()

@@ -1,7 +1,7 @@
 """Canvas: NAME[_LATE]_USER_UPLOAD_FILE in one folder, and its gradebook.
 
-Source of the names: canvas-lms, lib/content_zipper.rb: the name in small letters without spaces, or the group's;
-`LATE`; the user's number, or `anon_` and a key in anonymous marking; the upload's number. A file of a name that the
+Source of the names: canvas-lms, lib/content_zipper.rb: the name in lower case without spaces, or the group's;
+`LATE`; the user's number, or `anon_` and a key in anonymous grading; the upload's number. A file with a name that the
 user has used before gets `-1`, `-2`, as in Attachment.make_unique_filename. The zip's entries have the date of the
 download.
 Source of the table: canvas-lms, lib/gradebook_exporter.rb and gradebook_importer.rb.
@@ -38,7 +38,7 @@ AGAIN = re.compile(r"(?P<stem>.+)-(?P<number>\d{1,3})(?P<suffix>(?:\.[^.]+)*)")
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation]:
-    """Understand names as Canvas gives them."""
+    """Return how to read Canvas's names."""
     first: dict[str, set[str]] = defaultdict(set)
     for parts in export.files:
         if match := NAME.fullmatch(parts[-1]):
@@ -64,7 +64,7 @@ def _user(match: re.Match[str]) -> str:
 
 
 def _attempt(file: str, others: set[str]) -> tuple[str, str]:
-    """Return which attempt a file is, and its name; `-1` counts only if the file without it, or another, is there."""
+    """Return a file's attempt and name. `-1` counts as an attempt only if there is another file of the same name."""
     again = AGAIN.fullmatch(file)
     stem = f"{again['stem']}{again['suffix']}" if again else file
     same = [other for other in others if other == stem or _without_number(other) == stem]
@@ -87,12 +87,12 @@ def of_row(row: Mapping[str, str]) -> Student | None:
 
 
 def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None) -> str:
-    """Return what Canvas exports and imports.
+    """Return the table in the format that Canvas exports and imports.
 
-    The name Canvas has for a student comes from `Student.lms`; Canvas finds students by ID, otherwise by SIS User ID,
-    SIS Login ID, name. The assignment's column is the one of `lms` with a name as Canvas gives to assignments,
-    "Name (1234)", or otherwise the exercise's title, from which Canvas creates a new assignment. Without a score the
-    cell stays empty, and Canvas leaves the grade as it is.
+    Canvas finds students by ID, otherwise by SIS User ID, SIS Login ID or name, which come from `Student.lms`. The
+    assignment's column is the one in `lms` that is called like an assignment, "Name (1234)". If there is none, it is
+    the exercise's title, from which Canvas creates a new assignment. Without a score the cell is empty, and Canvas
+    leaves the grade as it is.
     """
     known = [name for entry in entries for name in entry.student.lms]
     assignment = next((name for name in known if re.fullmatch(r".+ \(\d+\)", name)), exercise.title)

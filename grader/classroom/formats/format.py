@@ -12,17 +12,17 @@ from grader.classroom.times import UNKNOWN, Time
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Entry, Student
 
-#: A file's place in the export: its folders, and its own name.
+#: A file's path in the export, as its parts.
 Parts = tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Upload:
-    """What a file's place says: whose it is, which attempt, its place in what the student handed in, and when.
+    """What a file's path says: whose it is, which attempt, its path inside the submission, and when it was submitted.
 
-    A student's `id` is a text that no other student of the export has. `attempt` is empty if there is only one;
-    attempts are in the order of these texts. What is `aside` counts only if there is nothing else of the student: a
-    text that was typed on the platform, or a time stamp.
+    A student's `id` is unique in the export. `attempt` is empty if there is only one; attempts are sorted by these
+    texts. A file that is `aside`, such as a text typed on the platform or a time stamp, counts only if the student
+    handed in nothing else.
     """
 
     students: tuple[Student, ...]
@@ -32,18 +32,18 @@ class Upload:
     aside: bool = False
 
 
-#: An upload; the reason why a file is not one, if the instructor is to know it; None if a file does not fit.
+#: An upload; or the reason why the file is not one, which the instructor reads; or None if the name does not fit.
 Interpretation = Upload | str | None
 
-#: The platform wrote this itself.
+#: For files that the platform wrote itself: left out without a message.
 OWN = ""
 
 
 @dataclass(frozen=True)
 class Export:
-    """The files of a class, by their places. `root` is the name of the folder or zip that they are in.
+    """The files of a class, by path. `root` is the name of the folder or zip that contains them.
 
-    `zone` is the time zone of times that have none, None for this machine's.
+    `zone` is the time zone of times that have none (None: this machine's).
     """
 
     files: Mapping[Parts, File]
@@ -52,7 +52,7 @@ class Export:
     zone: tzinfo | None
 
     def text(self, *parts: str) -> str:
-        """Return the text of a file; empty if there is none."""
+        """Return the text of a file, or an empty text if there is no such file."""
         file = self.files.get(parts)
         if not file or file.path.is_symlink() or not file.path.is_file():
             return ""
@@ -71,12 +71,12 @@ class ExportTable:
 
 @dataclass(frozen=True)
 class Format:
-    """A platform, or another way to keep submissions.
+    """A platform's format, or another way to organise submissions.
 
-    `read` returns how to understand a place in an export, or None if the export is not of this format. `inside` are
-    folders of the export that hold the submissions, `beside` what may be next to them. `of_row` returns the student in
-    a row of the platform's own list of students, named as in its export, or None for another table. `dates` says where
-    the dates of submissions can come from if the export has none.
+    `read` returns a function that interprets a path, or None if the export does not have this format. `inside` names
+    the folders that contain the submissions, `beside` what may be next to them. `of_row` returns the student in a row
+    of the platform's own list of students, named as in its export, or None for another table. `dates` says where the
+    dates of submissions can come from if the export has none.
     """
 
     name: str
@@ -90,7 +90,7 @@ class Format:
 
 
 def person(unique: str, name: str = "", email: str = "", **lms: str) -> Student:
-    """Return a student as an export names them; names are in Unicode's form NFC."""
+    """Return a student as an export names them, with names in Unicode's form NFC."""
     return Student(normal(unique), normal(name), email, lms)
 
 

@@ -22,7 +22,7 @@ FOLDER = re.compile(r"submission_\d+")
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation] | None:
-    """Understand the folders that the export's own list has."""
+    """Return how to read the folders that the export's own list names."""
     try:
         listed = yaml.load(export.text(METADATA), Loader=yaml.BaseLoader)
     except yaml.YAMLError:

@@ -23,7 +23,7 @@ SOURCE = "ILIAS"
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation] | None:
-    """Understand names of folders as ILIAS gives them; no two students have one number."""
+    """Return how to read ILIAS's folder names. Each student has a number of their own."""
     folders = {_own(parts)[0] for parts in export.files if _own(parts)}
     numbers = [match["number"] for folder in folders if (match := FOLDER.fullmatch(folder))]
     if not numbers or len(set(numbers)) < len(numbers):

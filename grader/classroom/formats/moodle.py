@@ -1,8 +1,8 @@
 """Moodle: NAME_NUMBER_assignsubmission_file/, and its grading worksheet.
 
 Source of the names: mod/assign/classes/downloader.php, earlier mod/assign/locallib.php: a folder per student, with an
-underscore at the end before Moodle 4, or one folder of files. A team's is called `Team_NUMBER`, earlier
-`Team-NAME_NUMBER` per member. files/classes/local/archive_writer/zip_writer.php writes no file's date. Source of the
+underscore at the end before Moodle 4, or one folder of files. A team's folder is called `Team_NUMBER`, in earlier
+versions `Team-NAME_NUMBER` per member. files/classes/local/archive_writer/zip_writer.php writes no dates. Source of the
 table: mod/assign/feedback/offline/importgradeslib.php.
 """
 
@@ -24,10 +24,10 @@ WORKSHEET = ("Identifier", "Full name")
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation]:
-    """Understand names of folders, or of files, as Moodle gives them."""
+    """Return how to read the names that Moodle gives to folders or files."""
     names = {match["name"] for parts in export.files if (match := NAME.fullmatch(parts[0]))}
     teams = {name.partition("-")[0] for name in names}
-    # Earlier versions put a team's name before each member's: then all names have one, and some have the same.
+    # Earlier versions put the team's name before each member's: then every name has one, and some share theirs.
     in_teams = all("-" in name for name in names) and 2 * len(teams) <= len(names)
 
     def understand(parts: Parts) -> Interpretation:
@@ -59,9 +59,9 @@ def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = N
     """Return Moodle's offline grading worksheet, ready to upload.
 
     Moodle finds students by Identifier, "Participant 1234567", which is only in Moodle's own download or a table: it is
-    empty if neither had it, and Moodle then does not find the student. It leaves out a row whose grade is above the
-    maximum, so extra credit is cut off there, which the comment says; and a row without a grade, so a fault of ours
-    changes nothing. Columns of a worksheet that was read are returned as they were.
+    empty if neither had it, and Moodle then does not find the student. Moodle ignores rows whose grade is above the
+    maximum, so extra credit is cut off, and the comment says so. It also ignores rows without a grade, so a fault of
+    ours changes nothing. Columns of a worksheet that was read are returned unchanged.
     """
     columns = ["Identifier", "Full name", "Email address", "Status", "Grade", "Maximum Grade"]
     columns += ["Grade can be changed", "Last modified (submission)", "Last modified (grade)", "Feedback comments"]
@@ -91,7 +91,7 @@ def unknown_to_moodle(entries: Sequence[Entry]) -> int:
 
 
 def _comment(entry: Entry) -> str:
-    """Return what a student reads on a platform, as the HTML that Moodle expects in comments."""
+    """Return the feedback comment, as the HTML that Moodle expects."""
     grade, final = entry.grade, entry.final
     if final is None:
         return ""

@@ -29,7 +29,7 @@ TIMESTAMP = "timestamp.txt"
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation] | None:
-    """Understand places if the folder is called so, or if it has folders with the exercise's name."""
+    """Return how to read the paths, if the folder is `submitted` or has folders with the exercise's name."""
     assignments = {parts[1] for parts in export.files if len(parts) > 2}
     if export.root != SUBMITTED and export.exercise.name not in assignments:
         return None
@@ -55,9 +55,9 @@ def _time(export: Export, student: str, assignment: str) -> Time:
 
 
 def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None) -> str:
-    """Return what `nbgrader export` writes: its columns, times in UTC.
+    """Return the table that `nbgrader export` writes, with times in UTC.
 
-    `late_submission_penalty` is what was taken for lateness, `raw_score` the score before that.
+    `late_submission_penalty` is the points lost for lateness, `raw_score` the score before that.
     """
     header = ["assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email", "raw_score"]
     rows: list[list[Cell]] = []

@@ -16,7 +16,7 @@ NOT_WORK = (".csv", ".tsv", ".xls", ".xlsx", ".ods", ".md", ".yml", ".yaml", ".t
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation]:
-    """Understand every name as a student's."""
+    """Return how to read the paths: every name is a student's."""
 
     def understand(parts: Parts) -> Interpretation:
         if len(parts) == 1 and parts[0].lower().endswith(NOT_WORK):
@@ -30,7 +30,7 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
 
 
 def without_suffix(name: str) -> str:
-    """Return the student's name in that of a file."""
+    """Return the student's name from a file's name."""
     return normal(SUFFIX.sub("", name) or name)
 
 

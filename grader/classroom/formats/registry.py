@@ -26,7 +26,7 @@ PLATFORMS: tuple[Format, ...] = (
     ilias.FORMAT,
 )
 
-#: What anything is that no platform wrote.
+#: The format of a folder that no platform wrote.
 PLAIN = per_student.FORMAT
 
 FORMATS = {form.name: form for form in (*PLATFORMS, PLAIN)}

@@ -1,7 +1,7 @@
 """Sakai: a folder `Last, First(login)` per student, with timestamp.txt and the attachments in a folder.
 
 Source: sakai, AssignmentServiceImpl.java, zipSubmissions and zipGroupSubmissions. A group's folder has members.txt,
-"Last, First(login); Last, First(login)". Names of folders depend on the language, those of Sakai's own files do not.
+"Last, First(login); Last, First(login)". Names of folders depend on the language; names of Sakai's own files do not.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ OF_ALL = re.compile(r"grades\.(csv|xls|xlsx)|.*\.html")
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation] | None:
-    """Understand folders that are called as Sakai calls them, or have a list of members."""
+    """Return how to read folders with names of Sakai's form, or with a list of members."""
     folders = {parts[0] for parts in export.files if len(parts) > 1}
     if not any(FOLDER.fullmatch(folder) or export.text(folder, MEMBERS) for folder in folders):
         return None

@@ -80,7 +80,7 @@ def test_what_is_half_a_platforms_is_asked_and_every_name_listed(tmp_path: Path)
 def test_a_format_that_nothing_fits_is_refused(tmp_path: Path) -> None:
     source = folder(tmp_path / "class", ["anna.py", "bert.py"])
     with pytest.raises(
-        SubmissionsError, match=re.escape("--format sakai: no name here is one of a download from Sakai")
+        SubmissionsError, match=re.escape("--format sakai: no file here has a name as in a download from Sakai")
     ):
         collected(source, format="sakai")
 

@@ -308,6 +308,4 @@ def test_messages_of_their_own_are_named(exercise: Exercise) -> None:
     }
     assert "my_msgs" not in str(of_content("ws.zip", zipped(files), exercise).notes)
     files["src/my_robot/my_robot/beat_node.py"] = f"from my_msgs.msg import Beat\n{IN_PACKAGE}"
-    assert "imports my_msgs, a package of messages of your own" in str(
-        of_content("ws.zip", zipped(files), exercise).notes
-    )
+    assert "imports my_msgs, your own package of messages" in str(of_content("ws.zip", zipped(files), exercise).notes)

@@ -103,7 +103,7 @@ def test_what_is_not_there_is_a_matter_of_usage(given: str, exercise: Exercise) 
     ("content", "message"),
     [
         ("import rclpy\n".encode("utf-16"), "Your file is saved as UTF-16, which Python can't read."),
-        (b"import rclpy\nx = 1\0\n", "Line 2 of your file holds a NUL byte, so it is not a text file."),
+        (b"import rclpy\nx = 1\0\n", "Line 2 of your file contains a NUL byte, so it is not a text file."),
         (b"x = " + b"-" * 200_000 + b"1\n", "A line of your file nests 200,000 operators or brackets."),
         (b"x = " + b"+".join([b"1"] * 100_000) + b"\n", "A line of your file nests 99,999 operators or brackets."),
     ],
@@ -134,7 +134,7 @@ def test_a_long_line_with_a_quote_that_is_not_closed_is_read(tmp_path: Path, exe
 def test_half_of_a_character_in_a_notebook_is_reported_with_its_line(tmp_path: Path, exercise: Exercise) -> None:
     submission = read(notebook(tmp_path, (CELL + "name = '\ud83e'\n", {})), exercise)
     assert submission.program is None
-    assert submission.problem.startswith("Line 4 of the exercise's cell holds '\\ud83e', half of a character.")
+    assert submission.problem.startswith("Line 4 of the exercise's cell contains '\\ud83e', half of a character.")
 
 
 @pytest.fixture
