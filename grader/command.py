@@ -142,7 +142,7 @@ def grade(
     if bool(submission) == bool(mistake):
         raise click.UsageError("Give a SUBMISSION, or --mistake NAME for one of the exercise's usual mistakes.")
     leave_cpus_to_workers()
-    wanted: dict[str, Any] = {
+    options: dict[str, Any] = {
         "isolation": Isolation(isolation) if isolation else None,
         "seed": seed,
         "pace": 1.0 if real_time else None,
@@ -150,7 +150,7 @@ def grade(
     try:
         if to_be_compiled():
             click.echo("Compiling the grader's middleware, once ...", err=True)
-        found = load(_folder(exercise))
+        loaded = load(_folder(exercise))
         if out and not mistake:
             class_options = {
                 "jobs": jobs,
@@ -166,14 +166,14 @@ def grade(
                 "replace": yes,
                 "publish": publish,
             }
-            sys.exit(_class(found, Path(submission), out, wanted, class_options))
-        is_class = submission.endswith(".csv") or (Path(submission).is_dir() and not is_one(Path(submission), found))
+            sys.exit(_class(loaded, Path(submission), out, options, class_options))
+        is_class = submission.endswith(".csv") or (Path(submission).is_dir() and not is_one(Path(submission), loaded))
         if not mistake and is_class:
             raise click.UsageError(f"{submission}: to grade a class, give a folder for the results with --out.")
-        handed_in = _mistake(mistake, found) if mistake else read(submission, found)
+        handed_in = _mistake(mistake, loaded) if mistake else read(submission, loaded)
         with WorkerPool() as workers:
-            result = _graded(found, handed_in, wanted, workers)
-            _show(result, found, json_, verbose)
+            result = _graded(loaded, handed_in, options, workers)
+            _show(result, loaded, json_, verbose)
     except NoSubmission as error:
         raise click.UsageError(str(error)) from None
     except ExerciseError as error:
@@ -182,7 +182,7 @@ def grade(
         _stop(str(error))
     except HostFault as error:
         _stop(f"The machine or the grader is at fault, not the submission: {error}")
-    _write(result, found, plot, bag)
+    _write(result, loaded, plot, bag)
     sys.exit(OUR_FAULT if result.outcome == "host-error" else NOT_FULL_MARKS if not result.full_marks else FULL_MARKS)
 
 
@@ -196,16 +196,16 @@ def _mistake(name: str, exercise: Exercise) -> Submission:
         raise click.UsageError(str(error)) from None
 
 
-def _options(wanted: dict[str, Any]) -> Options:
+def _options(options: dict[str, Any]) -> Options:
     from grader.grading.grade import Options
 
-    return Options(**wanted)
+    return Options(**options)
 
 
 def _class(
-    exercise: Exercise, submissions: Path, out: Path, wanted: dict[str, Any], class_options: dict[str, Any]
+    exercise: Exercise, submissions: Path, out: Path, options: dict[str, Any], class_options: dict[str, Any]
 ) -> int:
-    """Grade a class. The imports are here, so that a single submission is graded sooner."""
+    """Grade a class. The imports are here so that a single submission is graded sooner."""
     from rich.console import Console
 
     from grader.classroom.class_run import grade_class
@@ -217,7 +217,7 @@ def _class(
 
     if class_options["format"] not in ("", *FORMATS):
         raise click.UsageError(f"--format {class_options['format']}: there are {', '.join(FORMATS)}.")
-    class_request = ClassRequest(submissions, out, _options(wanted), **class_options)
+    class_request = ClassRequest(submissions, out, _options(options), **class_options)
     try:
         return grade_class(exercise, class_request, Console(soft_wrap=False, highlight=False))
     except NotWritable as error:
@@ -226,11 +226,11 @@ def _class(
         raise click.UsageError(str(error)) from None
 
 
-def _graded(exercise: Exercise, submission: Submission, wanted: dict[str, Any], workers: WorkerPool) -> Grade:
-    """Grade one submission. The imports run while the worker starts, which takes longer."""
+def _graded(exercise: Exercise, submission: Submission, options: dict[str, Any], workers: WorkerPool) -> Grade:
+    """Grade one submission. Import while the worker starts, which takes longer."""
     from grader.grading.grading import grading_of
 
-    return grading_of(exercise, _options(wanted), workers).grade(submission)
+    return grading_of(exercise, _options(options), workers).grade(submission)
 
 
 def _show(result: Grade, exercise: Exercise, as_json: bool, verbose: bool) -> None:

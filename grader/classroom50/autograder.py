@@ -1,8 +1,7 @@
 """Grades the repository in the current folder with Spinbook. Classroom 50's runner starts this once per submission.
 
-It needs only Python's standard library: setup.sh installs everything else next to this file. Exits with 0 once
-result.json is written, whatever the score, and with 1 if nothing could be graded because of a fault that is not the
-student's.
+It needs only Python's standard library: setup.sh installs everything else next to this file. It exits with 0 once
+result.json is written, whatever the score, and with 1 if a fault that is not the student's prevented grading.
 """
 
 import subprocess

@@ -11,10 +11,10 @@ from grader.exercise.loading import find, load
 from grader.gradescope.command import author_errors, autograder_files, isolation_option
 from grader.sandbox.program import Isolation
 
-#: For a repository without Classroom 50: where the folder that this command writes is a private repository.
+#: For a repository without Classroom 50. The folder that this command writes must then be a private repository.
 WORKFLOW = """\
-# Put this into .github/workflows/ of the repository to grade. The folder that has autograder.py in it is a private
-# repository of yours here, read with a token (Settings > Secrets > Actions): students must not be able to read it.
+# Put this into .github/workflows/ of the repository to grade. The folder with autograder.py must be a private
+# repository of yours, read with a token (Settings > Secrets > Actions): students must not be able to read it.
 name: Grade @EXERCISE@
 on: [push, workflow_dispatch]
 permissions:
@@ -51,7 +51,7 @@ def classroom50(exercise: str, out: Path | None, isolation: Isolation | None) ->
     Classroom 50: copy the contents of the folder to CLASSROOM/autograders/ASSIGNMENT/ of your organization's repository
     classroom50. Its runner starts autograder.py for each submission, which writes result.json (classroom50/result/v1).
 
-    GitHub Actions alone: make the folder a private repository, and put its github-workflow.yml into the students'.
+    GitHub Actions alone: make the folder a private repository, and put its github-workflow.yml into each student's.
 
     The folder holds the solution and the hidden checks. Classroom 50 publishes it with GitHub Pages, where anybody who
     finds the address can read it.
@@ -59,9 +59,9 @@ def classroom50(exercise: str, out: Path | None, isolation: Isolation | None) ->
     Exit codes: 0 written, 2 wrong usage, 3 the exercise is at fault.
     """
     with author_errors():
-        found = load(find(exercise, Path.cwd()))
-        files = _files(found, isolation)
-    folder = out or Path(f"{found.name}-classroom50")
+        loaded = load(find(exercise, Path.cwd()))
+        files = _files(loaded, isolation)
+    folder = out or Path(f"{loaded.name}-classroom50")
     for name, content in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(content)

@@ -1,7 +1,7 @@
 """Grades a repository: `python -m grader.classroom50.run EXERCISE_FOLDER REPOSITORY [ISOLATION]`.
 
-Writes result.json and release-body.md into REPOSITORY, as Classroom 50's runner expects, and the same text into the
-summary of a job of GitHub Actions. Exits with 1, without writing either, if the machine or the exercise is at fault.
+It writes result.json and release-body.md into REPOSITORY, as Classroom 50's runner expects, and the same text into the
+summary of a job of GitHub Actions. It exits with 1, and writes neither, if the machine or the exercise is at fault.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
-from grader.gradescope.run import keep_beside, submission
+from grader.gradescope.run import cache_next_to_course, submission
 from grader.grading.grade import Grade, Options
 from grader.grading.grading import grading_of
 from grader.report.feedback import ShownCheck, shown_checks
@@ -28,7 +28,7 @@ from groundwork.files import write_if_changed
 
 def main(folder: Path, repository: Path, isolation: str = "") -> int:
     """Grade what is in `repository`; return the exit code."""
-    keep_beside(folder)
+    cache_next_to_course(folder)
     try:
         exercise = load(folder)
         grade = _grade(exercise, repository, isolation)
@@ -64,15 +64,17 @@ def _fault(text: str) -> int:
 #: https://github.com/foundation50/classroom50/wiki/Advanced-Autograding, "The result.json contract".
 SCHEMA = "classroom50/result/v1"
 
-#: Scores are whole numbers there. If an exercise gives fractions of points, every number is a hundred times as large.
+#: Classroom 50's scores are whole numbers: if an exercise gives fractions of points, all are multiplied by this.
 HUNDREDTHS = 100
 
 LONGEST_TEXT = 5_000
 
 
 def result(grade: Grade, environment: Mapping[str, str]) -> dict[str, Any]:
-    """Return the content of result.json. It has only title and hint of hidden checks, like the feedback page.
-    `environment` is what the runner sets; in other jobs of GitHub Actions, missing values are made from `GITHUB_*`.
+    """Return the content of result.json.
+
+    Of hidden checks it has only title and hint, like the feedback page. `environment` is what the runner sets; in other
+    jobs of GitHub Actions, missing values are made from `GITHUB_*`.
     """
     scale = (
         1 if all(float(v.points).is_integer() and float(v.earned).is_integer() for v in grade.verdicts) else HUNDREDTHS

@@ -9,10 +9,10 @@
     +        self.publish(2 + message.data)
     ```
 
-The diff is a unified one, as `diff -u` and git write it, so editors and GitHub show its colors. A person writes it by
-hand, too: the numbers behind `@@` may be missing, and lines of context are needed only where the removed lines stand in
-the base more than once. Libraries that apply patches (whatthepatch, patch-ng, unidiff) refuse a hunk without right
-numbers, or take the nearest place that fits, which may be another one after the base has changed. Here an edit has one
+The diff is a unified one, as `diff -u` and git write it, so editors and GitHub show its colors. It can be written by
+hand: the numbers after `@@` may be missing, and lines of context are needed only if the base contains the removed lines
+more than once. Libraries that apply patches (whatthepatch, patch-ng, unidiff) refuse a hunk without the right numbers,
+or use the nearest place that fits, which may be the wrong one after the base has changed. Here an edit fits exactly one
 place, or is an error.
 """
 
@@ -28,7 +28,7 @@ from markdown_it import MarkdownIt
 
 from grader.exercise.exercise import ExerciseError
 
-#: `@@`, perhaps git's numbers, and perhaps a line of the base below which the edit is.
+#: `@@`, optionally git's numbers, and optionally a line of the base that is above the edit.
 _HUNK = re.compile(r"^@@(?: -(\d+)\S* \+\d+\S* @@)?(.*)$")
 
 
@@ -36,8 +36,8 @@ _HUNK = re.compile(r"^@@(?: -(\d+)\S* \+\d+\S* @@)?(.*)$")
 class Hunk:
     """One place of a diff: lines `old` of the base become `new`.
 
-    `line` is that of the diff's file, `start` the first line of the base if the diff says it; both count from 1.
-    `below` is a text: the place is the first that fits at or below the line of the base with this text.
+    `line` is its line in the file of edits, `start` the first line in the base if the diff says it; both count from 1.
+    With `below`, the place is the first that fits at or below the base's line with this text.
     """
 
     line: int
@@ -49,7 +49,7 @@ class Hunk:
 
 @dataclass(frozen=True)
 class Edit:
-    """One program of the file: its name, what its section says besides the diff, and the diff.
+    """One program of the file: its name, the text of its section except the diff, and the diff.
 
     `base` is the file that the diff changes, as the diff names it (`--- right/other.py`), relative to the file of
     edits; empty if it names none. `line` is that of the section's heading, counted from 1.
@@ -98,15 +98,15 @@ class Edit:
             raise self._error(f"the diff fits {base} in lines {numbers}", fix, hunk.line)
         raise self._error(*_no_place(hunk, lines, base), hunk.line)
 
-    def _error(self, found: str, fix: str, line: int | None = None) -> ExerciseError:
-        return ExerciseError(self.file, f"{self.name}: {found}", fix, line or self.line)
+    def _error(self, problem: str, fix: str, line: int | None = None) -> ExerciseError:
+        return ExerciseError(self.file, f"{self.name}: {problem}", fix, line or self.line)
 
 
 def read_edits(file: Path) -> tuple[Edit, ...]:
     """Return the programs of a Markdown file: one for each heading of the second level.
 
     Raises:
-        ExerciseError: if two have the same name, or a name is no plain word.
+        ExerciseError: if two have the same name, or a name is not valid.
     """
     text = file.read_text(encoding="utf-8")
     lines = text.splitlines()
@@ -190,6 +190,6 @@ def _refuse_odd_names(edits: Sequence[Edit]) -> None:
             fix = "A heading is the program's name: letters, digits and underscores."
             raise ExerciseError(edit.file, f"“{edit.name}” can't be the name of a program", fix, edit.line)
         if edit.name in lines:
-            found = f"there are two programs called {edit.name}; the other is in line {lines[edit.name]}"
-            raise ExerciseError(edit.file, found, "Give each its own name.", edit.line)
+            problem = f"there are two programs called {edit.name}; the other is in line {lines[edit.name]}"
+            raise ExerciseError(edit.file, problem, "Give each its own name.", edit.line)
         lines[edit.name] = edit.line

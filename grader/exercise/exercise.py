@@ -18,7 +18,7 @@ Role = Literal["service", "client", "action", "action_client"]
 
 @dataclass(frozen=True)
 class Qos:
-    """Quality of service of one end of a topic: keep the last `depth` messages."""
+    """Quality of service of one endpoint of a topic: keep the last `depth` messages."""
 
     reliability: Reliability = "reliable"
     durability: Durability = "volatile"
@@ -27,7 +27,7 @@ class Qos:
 
 @dataclass(frozen=True)
 class Elements:
-    """What one element of a message's lists is `called`, such as a wheel; the list `named_by` has their names."""
+    """What one element of a message's lists is `called`, such as a wheel; the list `named_by` contains their names."""
 
     called: str
     named_by: str
@@ -35,10 +35,10 @@ class Elements:
 
 @dataclass(frozen=True)
 class Topic:
-    """One topic of the student's program, seen from the program.
+    """One topic of the student's program, as the program sees it.
 
-    `name` begins with a slash, `type` is written `package/msg/Name`. `units` gives the unit of a field, such as
-    `{"x": "m"}`. `depth`, `reliability` and `durability` are what the task asks for.
+    `name` begins with a slash, `type` is written `package/msg/Name`. `units` gives the unit of a field, such as `{"x":
+    "m"}`. `depth`, `reliability` and `durability` are what the task asks for.
     """
 
     name: str
@@ -52,7 +52,7 @@ class Topic:
 
     @property
     def qos(self) -> Qos:
-        """The QoS that the task asks for."""
+        """Return the QoS that the task asks for."""
         return Qos(self.reliability, self.durability, self.depth)
 
 
@@ -68,9 +68,10 @@ class ServiceOrAction:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of the student's node. `type` is one of rclpy's, in lower case, such as "double" or "string_array".
+    """A parameter of the student's node.
 
-    `range` are the lowest and the highest value that the task allows.
+    `type` is one of rclpy's, in lower case, such as "double" or "string_array". `range` is the lowest and the highest
+    value that the task allows.
     """
 
     name: str
@@ -89,7 +90,7 @@ class ProgramFile:
     class_name: str = ""
 
 
-#: What a student's copy of an exercise has instead of scenarios and a solution: see `grader.grading.public`.
+#: The file that a student's copy has instead of scenarios and a solution: see `grader.grading.public`.
 PUBLIC_FILE = "public.json"
 
 #: The name of the grader's own node, which has the reference publishers, servers and clients.
@@ -98,13 +99,13 @@ REFERENCE_NODE = "reference"
 
 @dataclass(frozen=True)
 class Exercise:
-    """One folder of `exercises/`, read.
+    """One folder of `exercises/`, as data.
 
-    `task` is the text for the student, in Markdown. `points` is the sum of all checks' points.
-    `solution_folder` holds the author's solution, and is None in a student's copy of the course. With `public_only` the
-    hidden checks are left out, as in a student's copy. `programs` are the several programs in one submission, if it
-    has any; `class_name` and `node_name` are then those of the first. `advice` maps the name of an exception, such as
-    "KeyError", to a sentence for students whose program ended with it.
+    `task` is the text for the student, in Markdown. `points` is the sum of all checks' points. `solution_folder` holds
+    the author's solution, and is None in a student's copy of the course. With `public_only` the hidden checks are left
+    out, as in a student's copy. `programs` are the programs of a submission with several; `class_name` and `node_name`
+    are then those of the first. `advice` maps the name of an exception, such as "KeyError", to a sentence for students
+    whose program ended with it.
     """
 
     name: str
@@ -126,70 +127,70 @@ class Exercise:
 
     @property
     def scenarios_file(self) -> Path:
-        """The file that declares the scenarios."""
+        """Return the file that declares the scenarios."""
         return self.folder / "scenarios.py"
 
     @property
     def check_files(self) -> tuple[Path, ...]:
-        """The public checks, then the hidden ones where they are present and count."""
+        """Return the public checks, then the hidden ones if they are present and count."""
         names = ("checks.py",) if self.public_only else ("checks.py", "hidden_checks.py")
         return tuple(file for file in (self.folder / name for name in names) if file.exists())
 
     @property
     def public_file(self) -> Path:
-        """What the student's copy has instead of scenarios and a solution."""
+        """Return the file that a student's copy has instead of scenarios and a solution."""
         return self.folder / PUBLIC_FILE
 
     def public(self) -> Exercise:
-        """The same exercise with the public checks only."""
+        """Return the same exercise with the public checks only."""
         return replace(self, public_only=True)
 
     @property
     def solution_file(self) -> Path | None:
-        """The author's solution, from which the starter is made and which every check must pass."""
+        """Return the author's solution, from which the starter is made and which must pass every check."""
         return self.solution_folder / "solution.py" if self.solution_folder else None
 
     @property
     def inputs(self) -> tuple[Topic, ...]:
-        """The topics that the node subscribes to."""
+        """Return the topics that the node subscribes to."""
         return tuple(topic for topic in self.topics if topic.direction == "subscribe")
 
     @property
     def outputs(self) -> tuple[Topic, ...]:
-        """The topics that the node publishes."""
+        """Return the topics that the node publishes."""
         return tuple(topic for topic in self.topics if topic.direction == "publish")
 
     @property
     def element_name(self) -> str:
-        """The name of one element of the published lists."""
+        """Return the name of one element of the published lists."""
         return next((topic.elements.called for topic in self.outputs if topic.elements), "element")
 
     @property
     def services(self) -> tuple[ServiceOrAction, ...]:
-        """The services that the program serves."""
-        return tuple(one for one in self.endpoints if one.role == "service")
+        """Return the services that the program serves."""
+        return tuple(endpoint for endpoint in self.endpoints if endpoint.role == "service")
 
     @property
     def clients(self) -> tuple[ServiceOrAction, ...]:
-        """The services that the program calls."""
-        return tuple(one for one in self.endpoints if one.role == "client")
+        """Return the services that the program calls."""
+        return tuple(endpoint for endpoint in self.endpoints if endpoint.role == "client")
 
     @property
     def actions(self) -> tuple[ServiceOrAction, ...]:
-        """The actions that the program serves."""
-        return tuple(one for one in self.endpoints if one.role == "action")
+        """Return the actions that the program serves."""
+        return tuple(endpoint for endpoint in self.endpoints if endpoint.role == "action")
 
     @property
     def action_clients(self) -> tuple[ServiceOrAction, ...]:
-        """The actions that the program sends goals to."""
-        return tuple(one for one in self.endpoints if one.role == "action_client")
+        """Return the actions that the program sends goals to."""
+        return tuple(endpoint for endpoint in self.endpoints if endpoint.role == "action_client")
 
 
 class ExerciseError(Exception):
     """Raised before any student is graded, when an exercise can't be used as its author wrote it.
 
-    `problem` says what is in the file, `fix` what was expected and what to do. `line` counts from 1, and is None if it
-    is about the whole file.
+    `problem` says what is in the file, `fix` what was expected and what to do. `line` counts from 1, and is None if the
+    problem is about the whole file.
     """
 
     def __init__(self, file: Path, problem: str, fix: str, line: int | None = None) -> None:

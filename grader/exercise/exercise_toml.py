@@ -21,7 +21,7 @@ from grader.exercise.exercise import (
 )
 from interface_compiler import prefixes, shipped
 
-#: Types of parameters, as rcl_interfaces/msg/ParameterType has them.
+#: Types of parameters: those of rcl_interfaces/msg/ParameterType.
 PARAMETER_TYPES = {
     "bool": (bool,),
     "integer": (int,),
@@ -30,7 +30,7 @@ PARAMETER_TYPES = {
     **{f"{name}_array": (list,) for name in ("byte", "bool", "integer", "double", "string")},
 }
 
-#: A table that concerns classes only: grader/classroom/deadline.py reads it.
+#: A table for grading a class: grader/classroom/deadline.py reads it.
 DEADLINE = "deadline"
 
 #: The keys of exercise.toml, of its tables, and whether a table's key is required.
@@ -59,16 +59,18 @@ _PYTHON_FILE = re.compile(r"[a-z_][a-z0-9_]*\.py")
 
 @dataclass(frozen=True)
 class TomlTable:
-    """One table of exercise.toml: its `kind` such as "subscribe", its number among those, and its entries."""
+    """One table of exercise.toml: its `kind` such as "subscribe", its number among those of the kind, and its
+    entries.
+    """
 
     file: Path
     kind: str
     number: int
     entries: dict[str, Any]
 
-    def fault(self, key: str, found: str, fix: str) -> NoReturn:
-        """Raise what is wrong with the value of `key`, with its line."""
-        raise ExerciseError(self.file, found, fix, line_of(self.file, self.kind, self.number, key))
+    def fault(self, key: str, problem: str, fix: str) -> NoReturn:
+        """Raise `ExerciseError` for the value of `key`, with its line."""
+        raise ExerciseError(self.file, problem, fix, line_of(self.file, self.kind, self.number, key))
 
     def see_keys(self) -> None:
         """Raise `ExerciseError` for an unknown key, or for a missing one."""
@@ -86,21 +88,21 @@ class TomlTable:
         return f"in [[{self.kind}]]" if self.kind else "here"
 
     def text(self, key: str, default: str = "") -> str:
-        """A text."""
+        """Return a text."""
         value = self.entries.get(key, default)
         if not isinstance(value, str):
             self.fault(key, f"{key} = {value!r}", f'Give {key} as a text, such as {key} = "…".')
         return value
 
     def one_of(self, key: str, choice: tuple[str, ...], default: str) -> Any:
-        """One of some texts."""
+        """Return one of some texts."""
         value = self.entries.get(key, default)
         if value not in choice:
             self.fault(key, f"{key} = {value!r}", f"Give one of: {', '.join(choice)}.")
         return value
 
     def name(self, key: str) -> str:
-        """The full name of a topic, a service or an action."""
+        """Return the full name of a topic, a service or an action."""
         value = self.text(key)
         if not value.startswith("/"):
             self.fault(key, f"{key} = {value!r}", f"Write the full name of the {self._what}, beginning with '/'.")
@@ -113,7 +115,7 @@ class TomlTable:
         )
 
     def type(self, kind: str, example: str) -> str:
-        """The type of an interface of this kind ("msg", "srv", "action"), which must be there."""
+        """Return the type of an interface of this kind ("msg", "srv", "action"). It must be installed."""
         value = self.text("type")
         if not re.fullmatch(rf"[a-z][a-z0-9_]*/{kind}/[A-Z][A-Za-z0-9]*", value):
             self.fault("type", f"type = {value!r}", f"Write a type as {example!r}.")
@@ -130,11 +132,11 @@ class TomlTable:
         if (self.file.parent / PUBLIC_FILE).exists():
             return (
                 "It comes with the handout. In the handout's folder: .venv/bin/pip install -r requirements.txt. "
-                "If it is still missing then, send this message to whoever gave you the handout."
+                "If it is still missing then, send this message to your instructor."
             )
         if remedy := shipped.how_to_add(package):
             return remedy
-        return "If the course defines it, compile it: spinbook build. If not, install it, or look at its name."
+        return "If the course defines it, compile it: spinbook build. If not, install it, or check its name."
 
     def units(self) -> dict[str, str]:
         """Return the unit of each field."""
@@ -149,18 +151,18 @@ class TomlTable:
 
 
 def tables(entries: dict[str, Any], kind: str, file: Path) -> list[TomlTable]:
-    """Every `[[kind]]`, with its keys checked."""
-    given = entries.get(kind, [])
-    if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
+    """Return every `[[kind]]`, with its keys checked."""
+    items = entries.get(kind, [])
+    if not isinstance(items, list) or not all(isinstance(item, dict) for item in items):
         raise ExerciseError(file, f"{kind} is not a list of tables", f"Write [[{kind}]] above each.")
-    found = [TomlTable(file, kind, number, one) for number, one in enumerate(given)]
-    for table in found:
+    all_tables = [TomlTable(file, kind, number, item) for number, item in enumerate(items)]
+    for table in all_tables:
         table.see_keys()
-    return found
+    return all_tables
 
 
 def topics(entries: dict[str, Any], file: Path) -> tuple[Topic, ...]:
-    """The topics that the program subscribes to and publishes."""
+    """Return the topics that the program subscribes to and publishes."""
     return tuple(_topic(table) for direction in ("subscribe", "publish") for table in tables(entries, direction, file))
 
 
@@ -190,18 +192,18 @@ def _elements(table: TomlTable) -> Elements | None:
 
 
 def endpoints(entries: dict[str, Any], file: Path) -> tuple[ServiceOrAction, ...]:
-    """The services and actions that the program serves or calls."""
-    found = []
+    """Return the services and actions that the program serves or calls."""
+    declared = []
     for role in get_args(Role):
         kind, example = ("action", "example_interfaces/action/Fibonacci"), ("srv", "std_srvs/srv/SetBool")
         interface = kind if role.startswith("action") else example
         for table in tables(entries, role, file):
-            found.append(ServiceOrAction(table.name("name"), table.type(*interface), role, table.units()))
-    return tuple(found)
+            declared.append(ServiceOrAction(table.name("name"), table.type(*interface), role, table.units()))
+    return tuple(declared)
 
 
 def parameters(entries: dict[str, Any], file: Path) -> tuple[Parameter, ...]:
-    """The parameters of the program's node."""
+    """Return the parameters of the program's node."""
     return tuple(_parameter(table) for table in tables(entries, "parameter", file))
 
 
@@ -211,8 +213,8 @@ def _parameter(table: TomlTable) -> Parameter:
         table.fault("name", f"name = {name!r}", "Write the parameter's name, such as max_speed.")
     default = table.entries.get("default")
     if default is not None and type(default) not in PARAMETER_TYPES[kind]:
-        found = f"default = {default!r}, but the parameter {name} is of type {kind}"
-        table.fault("default", found, "Write the default as that type, such as 1.0 for a double.")
+        problem = f"default = {default!r}, but the parameter {name} is of type {kind}"
+        table.fault("default", problem, "Write the default as that type, such as 1.0 for a double.")
     limits = table.entries.get("range")
     if limits is not None and not (isinstance(limits, list) and len(limits) == 2):
         table.fault("range", f"range = {limits!r}", "Give the lowest and the highest value: range = [0.0, 10.0].")
@@ -220,26 +222,27 @@ def _parameter(table: TomlTable) -> Parameter:
 
 
 def programs(entries: dict[str, Any], file: Path) -> tuple[ProgramFile, ...]:
-    """The files of a submission of several programs."""
-    found = []
+    """Return the files of a submission with several programs."""
+    declared = []
     for table in tables(entries, "program", file):
         name = table.text("file")
         if not _PYTHON_FILE.fullmatch(name):
             table.fault("file", f"file = {name!r}", "Give a Python file name, such as 'leader.py'.")
-        found.append(ProgramFile(name, table.text("node"), table.text("class")))
-    return tuple(found)
+        declared.append(ProgramFile(name, table.text("node"), table.text("class")))
+    return tuple(declared)
 
 
 def line_of(file: Path, kind: str, number: int, key: str) -> int | None:
     """Return the line of `key` in table `number` (from 0) of this kind.
 
-    Without a key, or if the key is missing, it is the line of the table's header. A key on top may be a table itself.
+    Without a key, or if the key is missing, return the line of the table's header. A key at the top may itself be a
+    table.
     """
     header: int | None = None
     here, count = "", -1
     for index, line in enumerate(file.read_text(encoding="utf-8").splitlines(), start=1):
-        if found := re.match(r"\s*\[\[?\s*([A-Za-z_]+)", line):
-            here = found[1]
+        if match := re.match(r"\s*\[\[?\s*([A-Za-z_]+)", line):
+            here = match[1]
             if not kind and here == key:
                 return index
             count += here == kind

@@ -22,10 +22,10 @@ COURSE = "course.toml"
 
 
 def load(folder: Path | str) -> Exercise:
-    """The exercise in `folder`, which is in a course's `exercises/`. From then on, the course's own message types, as
-    compiled last, can be imported here and in the sandbox.
+    """Return the exercise in `folder`, which is in a course's `exercises/`.
 
-    Raises `ExerciseError` when a file is missing, can't be read or lacks an entry.
+    From then on, the course's own message types, as compiled last, can be imported here and in the sandbox. Raises
+    `ExerciseError` if a file is missing, can't be read or lacks an entry.
     """
     folder = Path(folder).resolve()
     use_near(folder, COURSE)
@@ -63,7 +63,7 @@ def load(folder: Path | str) -> Exercise:
 
 
 def _main_program(top: TomlTable, parts: tuple[ProgramFile, ...]) -> tuple[str, str, str]:
-    """The file that is handed in; class and node of the only program, or of the first of several."""
+    """Return the name of the submitted file, and class and node of the only program, or of the first of several."""
     if parts and "file" not in top.entries:
         fix = 'Give the name of a submission that is one file with all programs, such as file = "line.py", at the top.'
         top.fault("", "file is missing", fix)
@@ -111,7 +111,7 @@ class NoExercise(Exception):
 
 
 def find(name: str, start: Path) -> Path:
-    """The folder that `name` means: a path, or a name in the exercises/ of `start` or of a folder above it.
+    """Return the folder that `name` means: a path, or a name in the exercises/ of `start` or of a folder above it.
 
     Raises `NoExercise`.
     """

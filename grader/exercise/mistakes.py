@@ -31,7 +31,7 @@ class Mistake:
     """One usual mistake, as a whole program.
 
     `summary` says in a sentence what is wrong. `breaks` is the sentence of the task that it breaks, empty if it names
-    none; `caught_by` are the checks that it names. `line`, counted from 1, is where `file` says so.
+    none. `caught_by` are the checks that it names. `line`, counted from 1, is the line of `file` that names them.
     """
 
     name: str
@@ -44,7 +44,7 @@ class Mistake:
 
 
 class NoMistake(LookupError):
-    """Raised when an exercise has no mistake with the name that somebody asked for; the text lists its mistakes."""
+    """Raised when an exercise has no mistake with the requested name. The text lists its mistakes."""
 
 
 def mistakes_of(exercise: Exercise) -> tuple[Mistake, ...]:
@@ -62,7 +62,7 @@ def mistakes_of(exercise: Exercise) -> tuple[Mistake, ...]:
 
 
 def each_mistake(exercise: Exercise) -> Iterator[Mistake | ExerciseError]:
-    """Yield every usual mistake, and in place of one that can't be read what is wrong with it."""
+    """Yield every usual mistake; for one that can't be read, yield the error instead."""
     folder = exercise.solution_folder
     if folder is None:
         return

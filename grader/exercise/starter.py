@@ -1,4 +1,4 @@
-"""The starter is the solution without the code between its markers."""
+"""Makes the starter: the solution without the code between its markers."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class MarkerError(ValueError):
 
 
 def starter(source: str) -> str:
-    """`source` without the lines from each `# BEGIN SOLUTION` to its `# END SOLUTION`.
+    """Return `source` without the lines from each `# BEGIN SOLUTION` to its `# END SOLUTION`.
 
     Everything else stays, so the author's `# TODO` comments above a marker guide the student. A body that would be
-    empty gets a `pass`. Raises `MarkerError` when a marker lacks its partner, when there is none at all, or when the
-    rest is not valid Python.
+    empty gets a `pass`. Raises `MarkerError` if a marker lacks its partner, if there are no markers, or if the rest is
+    not valid Python.
     """
     kept: list[str] = []
     begun: tuple[int, str] | None = None
@@ -72,7 +72,7 @@ _PLACEHOLDER = "\0"
 
 
 def _closed(lines: list[str]) -> list[str]:
-    """`lines` without placeholders, and with a `pass` for each removed block whose body has no statement left."""
+    """Return `lines` without placeholders, with a `pass` for each removed block whose body has no statement left."""
     result: list[str] = []
     for index, line in enumerate(lines):
         if not line.startswith(_PLACEHOLDER):

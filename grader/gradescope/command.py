@@ -1,4 +1,4 @@
-"""`spinbook gradescope`: the zip to upload to Gradescope as an autograder."""
+"""The command `spinbook gradescope`: writes the zip to upload to Gradescope as an autograder."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from interface_compiler import activation
 from interface_compiler.prefix_builder import DEFINITIONS
 from interface_compiler.wheel import record, zipped
 
-#: Where this software's own source is: the folder with pyproject.toml.
+#: The root of this software's source: the folder with pyproject.toml.
 SOURCE = Path(__file__).parents[2]
 
 #: The parts of it that the container needs.
@@ -42,9 +42,9 @@ class NoSource(Exception):
 
 
 def bundle(exercise: Exercise, isolation: Isolation | None = None) -> bytes:
-    """The zip's bytes, the same each time for the same content.
+    """Return the zip's bytes, the same each time for the same content.
 
-    Of the solutions it has only `solution.py`, which a student could read only by breaking out of the sandbox.
+    Of the solutions it contains only `solution.py`, which a student could read only by breaking out of the sandbox.
     `isolation` is the level at which students' programs run, None for the strongest that works in the container. Raises
     `NoSource`, and `ExerciseError` if there is no solution.
     """
@@ -69,7 +69,7 @@ def autograder_files(exercise: Exercise, isolation: Isolation | None = None) -> 
 
 
 def _source() -> dict[str, bytes]:
-    """Return a checkout, as far as the container needs it."""
+    """Return the files of a checkout that the container needs."""
     files = {name: (SOURCE / name).read_bytes() for name in NEEDED}
     for package in PACKAGES:
         for file in _within(SOURCE / package):
@@ -93,7 +93,7 @@ def _script(file: str, exercise: Exercise, isolation: Isolation | None) -> str:
 
 
 def _files(exercise: Exercise) -> Iterator[tuple[str, Path]]:
-    """The files of the course itself, with their names in the container."""
+    """Yield the files of the course itself, with their names in the container."""
     for file in _within(exercise.folder):
         yield f"exercises/{exercise.name}/{file.relative_to(exercise.folder)}", file
     yield f"solutions/{exercise.name}/solution.py", solution_file(exercise)
@@ -107,7 +107,7 @@ def _files(exercise: Exercise) -> Iterator[tuple[str, Path]]:
 
 
 def _within(folder: Path) -> list[Path]:
-    """The files below `folder`, without caches and hidden files."""
+    """Return the files below `folder`, without caches and hidden files."""
     files = [file for file in folder.rglob("*") if file.is_file() and file.suffix != ".pyc"]
     kept = [file for file in files if not any(part.startswith(".") for part in file.relative_to(folder).parts)]
     return sorted(file for file in kept if "__pycache__" not in file.parts)
@@ -131,7 +131,7 @@ isolation_option = click.option(
 
 @contextmanager
 def author_errors() -> Iterator[None]:
-    """End the command with the right exit code when an exercise can't be bundled: 2 wrong usage, 3 the exercise."""
+    """End the command with the right exit code if an exercise can't be bundled: 2 wrong usage, 3 the exercise."""
     try:
         yield
     except (NoExercise, NoSource) as error:
@@ -175,7 +175,7 @@ class NotInstalled(Exception):
 
 
 def installed_wheel() -> tuple[str, bytes]:
-    """Return the name and the content of the wheel from which this software is installed, made again from its files.
+    """Return the name and the content of the wheel that this software was installed from, rebuilt from its files.
 
     A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Recording installed projects"). Raises
     `NotInstalled`.
@@ -198,16 +198,16 @@ def installed_wheel() -> tuple[str, bytes]:
 
 def pins() -> list[str]:
     """Return the installed versions, such as `numpy==2.3.1`, of everything that the wheel may need."""
-    found: dict[str, str] = {}
+    versions: dict[str, str] = {}
     waiting = [NAME]
     while waiting:
         name = re.sub(r"[-_.]+", "-", waiting.pop()).lower()  # PEP 503, "Normalized Names"
-        if name in found:
+        if name in versions:
             continue
         try:
             distribution = metadata.distribution(name)
         except metadata.PackageNotFoundError:
             continue
-        found[name] = distribution.version
+        versions[name] = distribution.version
         waiting += [match[0] for line in distribution.requires or () if (match := re.match(r"[\w.-]+", line))]
-    return sorted(f"{name}=={version}" for name, version in found.items() if name != NAME)
+    return sorted(f"{name}=={version}" for name, version in versions.items() if name != NAME)

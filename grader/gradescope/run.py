@@ -1,7 +1,7 @@
 """Grades one submission in Gradescope's container: `python -m grader.gradescope.run EXERCISE_FOLDER ROOT [ISOLATION]`.
 
-ROOT is `/autograder` there: it holds `submission/` and `submission_metadata.json`, and gets `results/results.json`.
-What is printed Gradescope shows to instructors alone.
+On Gradescope, ROOT is `/autograder`. It contains `submission/` and `submission_metadata.json`, and
+`results/results.json` is written there. Gradescope shows the output of this program only to instructors.
 
 `python -m grader.gradescope.run prepare EXERCISE_FOLDER [ISOLATION]` prepares the container while it is built.
 """
@@ -28,17 +28,18 @@ from grader.workers.pool import HostFault, WorkerPool
 from groundwork.files import write_if_changed
 
 
-def keep_beside(exercise: Path) -> None:
-    """Let this process keep it next to the course that the exercise's folder is in, unless `SPINBOOK_CACHE` is set."""
+def cache_next_to_course(exercise: Path) -> None:
+    """Use a cache next to the course that contains the exercise's folder, unless `SPINBOOK_CACHE` is set."""
     os.environ.setdefault("SPINBOOK_CACHE", str(exercise.resolve().parents[1] / "cache"))
 
 
 def prepare(folder: Path, isolation: str = "") -> None:
-    """Spin the solution and prove the exercise by it. A fault of the exercise's ends the build, with status 1.
+    """Run the solution, and test the exercise with it. A fault of the exercise ends the build, with status 1.
 
-    No sandbox ends nothing: a build may allow less than a run. Each submission then tells it, without a score.
+    A missing sandbox does not end the build, which may be allowed less than a run. If it is missing for a submission
+    too, the result says so, without a score.
     """
-    keep_beside(folder)
+    cache_next_to_course(folder)
     try:
         exercise = load(folder)
         with WorkerPool() as workers:
@@ -51,8 +52,8 @@ def prepare(folder: Path, isolation: str = "") -> None:
 
 
 def main(folder: Path, root: Path, isolation: str = "") -> None:
-    """Grade what is in `root/submission`. Whatever goes wrong on our side is reported, without a score."""
-    keep_beside(folder)
+    """Grade what is in `root/submission`. A fault of ours is reported, without a score."""
+    cache_next_to_course(folder)
     try:
         text = gradescope_results(_entry(load(folder), root, isolation))
     except (ExerciseError, SandboxUnavailable, HostFault) as error:
@@ -78,13 +79,13 @@ def _entry(exercise: Exercise, root: Path, isolation: str) -> Entry:
 
 
 def submission(folder: Path, exercise: Exercise) -> Submission:
-    """What a student has uploaded: its only file, or the program among several."""
+    """Return what a student has uploaded: the only file, or the program among several files."""
     files = [file for file in folder.rglob("*") if file.is_file() and not file.is_symlink()]
     return read(str(files[0] if len(files) == 1 else folder), exercise)
 
 
 def _metadata(file: Path) -> tuple[Student, datetime | None]:
-    """Who handed in, and when, as far as Gradescope tells."""
+    """Return the student, and the time of the submission, as far as Gradescope says."""
     student, submitted = Student("student"), None
     with contextlib.suppress(OSError, ValueError, KeyError, TypeError, IndexError, AttributeError):
         text: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))

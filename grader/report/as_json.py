@@ -20,7 +20,7 @@ from grader.report.printable import printable
 
 
 def as_json(grade: Grade) -> str:
-    """The grade as JSON text: every field but the recordings, with the keys always in one order."""
+    """Return the grade as JSON text: every field but the recordings, always in the same order."""
     entries = {
         field.name: getattr(grade, field.name)
         for field in dataclasses.fields(grade)
@@ -31,7 +31,7 @@ def as_json(grade: Grade) -> str:
 
 
 def _finite(value: Any) -> Any:
-    """JSON has no word for NaN and infinity."""
+    """Replace NaN and infinity, which JSON can't express."""
     if isinstance(value, float) and not math.isfinite(value):
         return None
     if isinstance(value, dict):
@@ -41,8 +41,8 @@ def _finite(value: Any) -> Any:
     return value
 
 
-#: The folder in a class's results that holds one folder per student. Nothing that a student is called can be the name
-#: of a file of ours beside it: a file `index.html.py` is from a student `index.html`.
+#: The folder in a class's results that holds one folder per student. Without it, a student's name could be that of one
+#: of our files: a submission `index.html.py` is from a student `index.html`.
 STUDENTS = "students"
 
 
@@ -52,9 +52,9 @@ def folder_of(results: Path, student_id: str) -> Path:
 
 
 def to_json(entry: Entry, key: str = "") -> str:
-    """`entry` as a text from which `from_json` makes an equal one, but for recordings.
+    """Return `entry` as a text from which `from_json` makes an equal one, except for recordings.
 
-    `key` tells what the grade depends on, so that it is not made again while that is the same.
+    `key` is a digest of what the grade depends on. While it stays the same, the grade is not made again.
     """
     entries: dict[str, Any] = {
         "student": vars(entry.student),
@@ -70,7 +70,9 @@ def to_json(entry: Entry, key: str = "") -> str:
 
 
 def from_json(text: str) -> tuple[Entry, str]:
-    """The entry and the key that `to_json` wrote. Raises ValueError, KeyError or TypeError where it did not."""
+    """Return the entry and the key that `to_json` wrote. Raises ValueError, KeyError or TypeError for any other
+    text.
+    """
     entries = json.loads(text)
     submitted = entries["submitted"]
     entry = Entry(
@@ -100,10 +102,11 @@ VISIBLE, AFTER_PUBLISHED, HIDDEN = "visible", "after_published", "hidden"
 
 
 def gradescope_results(entry: Entry) -> dict[str, Any]:
-    """What Gradescope gets: public checks visible at once, hidden ones when grades are published, stdout never.
+    """Return the results for Gradescope: public checks visible at once, hidden ones when grades are published.
 
-    Of hidden checks it gets as little as the feedback page shows (`grader.report.feedback`), because students read it
-    once grades are published. A fault of ours has no score and no tests: Gradescope then records no score.
+    The output is never visible to students. Hidden checks contain as little as the feedback page shows
+    (`grader.report.feedback`), because students read them once grades are published. A fault of ours has no score and
+    no tests: Gradescope then records no score.
     """
     grade = entry.grade
     if entry.final is None:
@@ -120,7 +123,7 @@ def gradescope_results(entry: Entry) -> dict[str, Any]:
 
 
 def no_score(message: str) -> dict[str, Any]:
-    """What Gradescope gets if nothing could be graded because of a fault of ours: a text, and no score."""
+    """Return the results for Gradescope if a fault of ours prevented grading: a text, and no score."""
     text = f"This could not be graded, and that is not your fault. Tell your instructor.\n{message}"
     return {"output": _text(text), "output_format": "text", "stdout_visibility": HIDDEN}
 

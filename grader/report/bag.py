@@ -13,10 +13,10 @@ from grader.recording.events import Event
 from grader.recording.recording import Fields, ReceivedMessage, Recording, SentMessage
 from interface_compiler import prefixes
 
-#: The solution's answers are also in the bag, with this name before the topic's.
+#: The solution's messages are also in the bag, with this name before the topic's.
 REFERENCE = "/reference"
 
-#: Calls, goals, parameters and ends of programs are on this topic, as JSON in a text each.
+#: Each call, goal, parameter and end of a program is a message on this topic, as JSON text.
 EVENTS, TEXT = "/spinbook/events", "std_msgs/msg/String"
 
 
@@ -67,7 +67,7 @@ def _as_json(event: Event) -> str:
 
 
 def _learn(types: Any, kind: str) -> None:
-    """Types that rosbags does not know are described by the packages that have them."""
+    """Register a type that rosbags does not know, from the package that defines it."""
     from rosbags.typesys import get_types_from_msg
 
     if kind in types.fielddefs:
@@ -75,16 +75,16 @@ def _learn(types: Any, kind: str) -> None:
     package, _, name = kind.partition("/")
     prefix = prefixes.prefix_of(package, prefixes.installed())
     assert prefix
-    found: dict[str, Any] = get_types_from_msg(prefixes.definitions_of(package, prefix)[f"{name}.msg"], kind)
-    types.register(found)
-    for _, (node, detail) in found[kind][1]:
+    learned: dict[str, Any] = get_types_from_msg(prefixes.definitions_of(package, prefix)[f"{name}.msg"], kind)
+    types.register(learned)
+    for _, (node, detail) in learned[kind][1]:
         inner, what = detail[0] if node.name not in ("BASE", "NAME") else (node, detail)
         if inner.name == "NAME":
             _learn(types, what)
 
 
 def _message(types: Any, kind: str, fields: Fields) -> Any:
-    """A message as rosbags has it: every field given, sequences of numbers as arrays."""
+    """Return a message as rosbags represents it: with every field, and with sequences of numbers as arrays."""
     import numpy as np
 
     values: Fields = {}

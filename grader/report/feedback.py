@@ -28,7 +28,7 @@ SIGNS: dict[Status, tuple[str, str]] = {
 
 @dataclass(frozen=True)
 class ShownCheck:
-    """One check as a student sees it; hidden ones without `finding`. `needs` are titles of checks to fix first."""
+    """One check as a student sees it; hidden ones have no `finding`. `needs` are titles of checks to fix first."""
 
     title: str
     status: Status
@@ -43,7 +43,7 @@ class ShownCheck:
 
     @property
     def text(self) -> str:
-        """The same in a few lines of plain text, without title and points."""
+        """Return the same in a few lines of plain text, without title and points."""
         lines = [self.finding.text] if self.finding else []
         if self.needs:
             lines.append("Can't be judged until this is right: " + " ".join(self.needs))
@@ -53,13 +53,13 @@ class ShownCheck:
 
 
 def shown_checks(grade: Grade) -> tuple[ShownCheck, ...]:
-    """Every check of `grade`, in order, with what a student may know of it."""
+    """Return every check of `grade`, in order, with what a student may know about it."""
     titles = {verdict.name: verdict.title for verdict in grade.verdicts}
     return tuple(_shown_check(verdict, grade, titles) for verdict in grade.verdicts)
 
 
 def _shown_check(verdict: Verdict, grade: Grade, titles: dict[str, str]) -> ShownCheck:
-    # Where the first scenario broke off, that is the message; each check would repeat it.
+    # If the first scenario broke off, the message says so, and each check would repeat it.
     telling = grade.outcome == "graded"
     sign, word = SIGNS[verdict.status]
     failed = verdict.status == "failed" and telling
@@ -112,13 +112,13 @@ HEADLINES: dict[Outcome, tuple[str, str]] = {
     "missing": ("Nothing was handed in", "There is no submission of yours, so there are no points."),
     "undecided": (
         "Not graded yet",
-        "Several submissions of yours are there. Your instructor decides which one counts.",
+        "There are several submissions of yours. Your instructor decides which one counts.",
     ),
 }
 
 
 def advice(grade: Grade, exercise: Exercise) -> Advice | None:
-    """The message for an outcome other than a plain grade; None for a plain grade."""
+    """Return the message for an outcome other than a plain grade; None for a plain grade."""
     headline, meaning = HEADLINES[grade.outcome]
     if not headline:
         return None
@@ -132,7 +132,7 @@ def advice(grade: Grade, exercise: Exercise) -> Advice | None:
             f"{again}, with a publisher in another terminal.",
         ),
         "timed-out": (
-            "Look for a loop without an end, for a sleep in a callback, and for a missing rclpy.spin(node).",
+            "Look for an endless loop, for a sleep in a callback, and for a missing rclpy.spin(node).",
             f"{again}, with a publisher in another terminal. It must answer each message at once.",
         ),
         "over-limit": (
@@ -148,12 +148,12 @@ def advice(grade: Grade, exercise: Exercise) -> Advice | None:
 
 LINES, LONGEST_LINE = 40, 400
 
-#: Colours and other orders to a terminal (ECMA-48): they say nothing on a page.
+#: Colours and other terminal control sequences (ECMA-48), which mean nothing on a page.
 ORDERS = re.compile(r"\x1b(\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(\x07|\x1b\\)?|[ -~])")
 
 
 def tail(log: str) -> tuple[str, int]:
-    """The last 40 lines of `log`, each of 400 characters at most, and how many lines before them are left out."""
+    """Return the last 40 lines of `log`, each of 400 characters at most, and the number of lines before them."""
     lines = [line.rstrip() for line in log.rstrip().split("\n")]
     kept = [_readable(line[: 10 * LONGEST_LINE]) for line in lines[-LINES:]]
     return "\n".join(kept), len(lines) - len(kept)
@@ -167,10 +167,10 @@ KINDS: dict[str, str] = {"late": "Late", "override": "Changed by your instructor
 
 
 def feedback_page(entry: Entry, exercise: Exercise, plot_svg: str | None) -> str:
-    """The page that tells one student the score, every check, and what to do next, as one HTML file.
+    """Return the page that shows one student the score, every check, and what to do next, as one HTML file.
 
     It needs no network and runs no script. `plot_svg` is what `feedback_plot` drew, or None for a page without a plot.
-    It shows no more of hidden checks than `grader.report.feedback` allows. Everything that a student can choose (names,
+    The page shows no more of hidden checks than this module allows. Everything that a student can choose (names,
     messages, output) is shown only as text.
     """
     grade = entry.grade
@@ -206,11 +206,11 @@ def _share(entry: Entry) -> float:
 
 
 def _picture(svg: str) -> str:
-    """As an image an SVG can neither run anything nor load anything, whatever is in it."""
+    """Return the SVG as an image: that way it can neither run nor load anything, whatever it contains."""
     return "data:image/svg+xml;base64," + base64.b64encode(svg.encode("utf-8", "replace")).decode()
 
 
 def _description(svg: str) -> str:
-    """The picture's own description in <desc>."""
-    found = re.search(r"<desc[^>]*>([^<]*)</desc>", svg)
-    return unescape(found[1]).strip() if found else "Your node's output drawn over the solution's."
+    """Return the picture's own description in <desc>."""
+    match = re.search(r"<desc[^>]*>([^<]*)</desc>", svg)
+    return unescape(match[1]).strip() if match else "Your node's output drawn over the solution's."

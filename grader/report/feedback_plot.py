@@ -15,13 +15,13 @@ from grader.report.pages import template
 #: (seconds after the scenario's start, value)
 Point = tuple[float, float]
 
-#: The highest value that is drawn, and how many curves are.
+#: The highest value that is drawn, and the largest number of curves.
 HIGHEST, MOST = 1e9, 24
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """The field that is drawn. `element` is what one value is called; the list `named_by` has their names."""
+    """The field that is drawn. `element` is the word for one value; the list `named_by` contains the names of all."""
 
     field: str
     unit: str
@@ -33,8 +33,8 @@ class Quantity:
 class Curve:
     """One element. Values that are not finite are left out of `expected` and `got`, but count as wrong.
 
-    `first_wrong` is the first point that differs from the solution, at the node's value; if it has none, or none that
-    can be drawn, at the solution's.
+    `first_wrong` is the first point that differs from the solution, at the node's value. If the node has no value
+    there, or none that can be drawn, it is at the solution's.
     """
 
     element: str
@@ -106,7 +106,9 @@ WIDTH, LEFT, RIGHT, HEIGHT, GAP, TOP, BOTTOM = 500, 52, 8, 80, 34, 52, 12
 
 @dataclass(frozen=True)
 class Panel:
-    """One element: where its panel begins, its two lines, the ends of its axis, and the first wrong point, if any."""
+    """One element: the position of its panel, its two lines, the ends of its axis, and the first wrong point, if
+    any.
+    """
 
     element: str
     top: float
@@ -119,11 +121,11 @@ class Panel:
 
 
 def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
-    """The plot as SVG text; None where the node published nothing that can be drawn, or nothing was recorded.
+    """Return the plot as SVG text; None if nothing was recorded, or the node published nothing that can be drawn.
 
-    None also for a node that fails checks and whose curves agree with the solution's: its fault is not in the picture.
-    Drawn is the scenario of the first public check that failed, or else the first scenario, which all public checks
-    may show. A hidden check's scenario is never drawn.
+    Return None also for a node that fails checks although its curves agree with the solution's: its fault is not in the
+    picture. The plot shows the scenario of the first public check that failed, otherwise the first scenario, which all
+    public checks may show. It never shows a hidden check's scenario.
     """
     scenario = _scenario(grade)
     if grade.outcome != "graded" or scenario is None:
@@ -155,7 +157,7 @@ def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
 def picture(grade: Grade, exercise: Exercise) -> str | None:
     """Return the plot, or None if there is nothing to draw or it can't be drawn.
 
-    Its numbers are a student's: a page without a picture is better than no page.
+    The numbers come from a student's node and may be anything: a page without a picture is better than no page.
     """
     try:
         return feedback_plot(grade, exercise)
@@ -200,7 +202,7 @@ def _line(points: list[Point]) -> str:
 
 
 def _marks(start: float, end: float) -> list[float]:
-    """About five round times from `start` to `end`."""
+    """Return about five round times from `start` to `end`."""
     rough = (end - start) / 5 or 1.0
     power = 10.0 ** (len(f"{rough:.0f}") - 1) if rough >= 1 else 0.1
     step = next((step * power for step in (1, 2, 5, 10) if step * power >= rough), 10 * power)
@@ -209,7 +211,7 @@ def _marks(start: float, end: float) -> list[float]:
 
 
 def _description(drawn: tuple[Curve, ...], field: str, called: str, end: float) -> str:
-    """The plot in words."""
+    """Describe the plot in words."""
     wrong = [curve for curve in drawn if curve.first_wrong]
     alone = drawn[0].element == field
     names = called if len(drawn) == 1 else f"{called}s"

@@ -1,4 +1,4 @@
-"""Renders the grader's pages: each one file that needs no network and runs no script but our own."""
+"""Renders the grader's pages. Each is one file that needs no network and runs no script but our own."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ LONGEST_TEXT = 4000
 
 
 def render(page: str, script: str = "", **values: Any) -> str:
-    """The page that the template `page` (a path below grader/) makes of `values`.
+    """Return the page that the template `page` (a path below grader/) makes from `values`.
 
     Every text is escaped, loses its control and direction-changing characters, and is cut after 4000 characters. The
-    page has the shared style sheet and `script` in it, and its policy forbids everything else: other scripts and
-    styles, every request, forms.
+    page contains the shared style sheet and `script`. Its policy forbids everything else: other scripts and styles,
+    every request, forms.
     """
     style = _style()
     policy = {
@@ -45,7 +45,7 @@ def render(page: str, script: str = "", **values: Any) -> str:
 
 
 def template(name: str) -> Template:
-    """A template by its path below grader/. Whatever it shows is escaped and harmless."""
+    """Return a template by its path below grader/. Whatever it shows is escaped and harmless."""
     return _environment().get_template(name)
 
 
@@ -76,17 +76,17 @@ def _style() -> str:
 
 
 def _allowed(text: str) -> str:
-    """The hash of this text for a content security policy (CSP level 2, hash sources)."""
+    """Return the hash of this text for a content security policy (CSP level 2, hash sources)."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
 def points(value: float) -> str:
-    """Points without needless digits: 81, 80.5, 33.33."""
+    """Return points without needless digits: 81, 80.5, 33.33."""
     return f"{round(value, 2):.2f}".rstrip("0").rstrip(".")
 
 
 def moment(value: datetime | None) -> str:
-    """A point in time for people, in its own time zone: 21 Nov 2026, 23:59 +01:00."""
+    """Return a point in time for people, in its own time zone: 21 Nov 2026, 23:59 +01:00."""
     if value is None:
         return ""
     months = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")

@@ -17,7 +17,7 @@ from grader.report.feedback_plot import Curve, Point, Quantity, curves, drawn_qu
 from grader.report.printable import printable
 from groundwork.files import write_if_changed
 
-#: The same picture each time: no date in it, and identifiers made from a fixed salt.
+#: The same grade gives the same file: no date, and identifiers made from a fixed salt.
 SETTINGS: dict[Any, Any] = {"svg.hashsalt": "spinbook", "svg.fonttype": "none", "font.family": "sans-serif"}
 
 

@@ -1,4 +1,4 @@
-"""A grade as text, on a terminal and in self-checks."""
+"""Shows a grade as text, on a terminal and in self-checks."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from grader.sandbox.program import Isolation
 
 
 def points_so_far(grade: Grade) -> str:
-    """How many of the checks that could be judged here passed: "8 of 8 public checks, 50 of 50 points"."""
+    """Return how many of the checks that can be judged here passed: "8 of 8 public checks, 50 of 50 points"."""
     passed = sum(verdict.status == "passed" for verdict in grade.verdicts)
     return f"{passed} of {len(grade.verdicts)} public checks, {grade.score:g} of {grade.points:g} points"
 
 
 def hidden_checks_to_come(grade: Grade) -> str:
-    """What is judged later; empty if all checks are public."""
+    """Return what is judged later; empty if all checks are public."""
     count = grade.hidden_checks
     if not count:
         return ""
@@ -28,7 +28,7 @@ def hidden_checks_to_come(grade: Grade) -> str:
 
 
 def self_check_standing(grade: Grade) -> str:
-    """Says that this is not a grade, and how the code ran."""
+    """Return that this is not a grade, and how the code ran."""
     text = "This is a self-check, not your grade."
     if grade.isolation == Isolation.NONE.value:
         text += " Your code ran without a sandbox, and no grade of record is made that way."
@@ -36,7 +36,7 @@ def self_check_standing(grade: Grade) -> str:
 
 
 def self_check_lines(grade: Grade) -> list[str]:
-    """All of it, a line each."""
+    """Return the whole result of a self-check, as lines."""
     return [
         line for line in (f"{points_so_far(grade)}.", hidden_checks_to_come(grade), self_check_standing(grade)) if line
     ]
@@ -51,7 +51,7 @@ SIGNS: dict[Status, tuple[str, str]] = {
 
 
 def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = False) -> None:
-    """Print a grade: every check with its points, and for what failed why, and where to look."""
+    """Print a grade: every check with its points, and for each failed one why, and where to look."""
     console.print(Text(printable(f"{exercise.title}: {grade.submission}"), style="bold"), soft_wrap=True)
     if grade.message:
         console.print(Text(printable(f"{grade.outcome}: {grade.message}"), style="red"), soft_wrap=True)
