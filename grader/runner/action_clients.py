@@ -1,4 +1,4 @@
-"""Goals for the student's action server. Recorded are the raw status and feedback, and every response."""
+"""Sends goals to the student's action server, and records the raw status, the feedback and every response."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CANCEL, STATUS = "action_msgs/srv/CancelGoal", "action_msgs/msg/GoalStatusArray"
 
 @dataclass
 class SentGoal:
-    """A goal that was sent, and the numbers of the requests for it."""
+    """A goal that was sent, and the numbers of its requests."""
 
     step: SendGoal
     number: int
@@ -72,7 +72,7 @@ class ScriptedActionClient:
                 goal.cancels.append((at, made))
 
     def react(self, now: int) -> bool:
-        """Request the result of each goal that has been accepted since. Return whether there was one."""
+        """Request the results of newly accepted goals. Return whether there were any."""
         asked = False
         for goal in self._goals:
             if goal.accepted is None and goal.request is not None and goal.request in self._send.answers:
@@ -172,14 +172,14 @@ class Goals:
         self._clients[step.action].send(step, number)
 
     def cancel(self, step: CancelStep) -> None:
-        """Ask to cancel."""
+        """Request to cancel a goal, or all goals."""
         if isinstance(step, CancelAll):
             self._clients[step.action].cancel(step.at, 0)
         else:
             self._clients[self._actions[step.number]].cancel(step.at, step.number)
 
     def react(self, now: int) -> bool:
-        """Continue with each goal. Return whether there was anything to do."""
+        """Continue with each action's goals. Return whether there was anything to do."""
         went_on = [client.react(now) for client in self._clients.values()]
         return any(went_on)
 

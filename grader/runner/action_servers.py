@@ -24,7 +24,7 @@ from rmw_lockstep.qos import TRANSIENT_LOCAL
 #: What rcl gives the status topic (rcl_action_qos_profile_status_default).
 STATUS_QOS = QosPolicies(depth=1, durability=TRANSIENT_LOCAL)
 
-#: The bytes before a request's own fields: CDR's header, and the goal's id, which the client draws at random.
+#: The bytes before a request's own fields: the CDR header and the goal's id, which the client chooses at random.
 _HEADER_AND_ID = 4 + 16
 
 
@@ -89,7 +89,7 @@ class ScriptedActionServer:
         self._servers = self._publishers = None
 
     def react(self, now: int) -> bool:
-        """Take the requests that arrived, and plan what follows. Return whether there were any."""
+        """Take the requests that arrived, and plan the answers. Return whether there were any."""
         if self._servers is None:
             return False
         found = False
@@ -164,7 +164,7 @@ class ScriptedActionServer:
     # --- what happens to a goal
 
     def _plan(self, goal: RunningGoal, at: int, act: Any) -> None:
-        """Plan `act`; it is dropped if the goal has ended or the server is gone by then."""
+        """Plan `act`; it is skipped if the goal has ended or the server is gone by then."""
 
         def when_due(now: int) -> None:
             if self._servers is not None and goal.finished is None:

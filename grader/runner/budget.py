@@ -11,7 +11,7 @@ from pathlib import Path
 
 from grader.runner.program import CannotContinue, RunningProgram
 
-#: The longest time between two looks that counts (s): a grader that did not run itself saw nothing.
+#: The longest time between two looks that counts (s): longer gaps mean that the grader itself did not run.
 LONGEST_LOOK_S = 0.025
 
 #: The limit for one step of a run, far above what any correct program needs.
@@ -19,16 +19,16 @@ CPU_S, BLOCKED_S = 3.0, 3.0
 
 
 class ProgramExited(Exception):
-    """Raised when the student's program has ended by itself."""
+    """Raised if the student's program has ended by itself."""
 
 
 class HostStalled(Exception):
-    """Raised when the machine, and not the program, made no progress."""
+    """Raised if the machine, and not the program, made no progress."""
 
 
 @dataclass(frozen=True)
 class Allowance:
-    """What one step may take, in seconds of CPU time and of time blocked, and the messages for taking more."""
+    """The CPU time and blocked time that one step may take (s), and the messages for taking more."""
 
     busy: str
     blocked: str
@@ -55,7 +55,7 @@ class Budget:
 
     @property
     def used(self) -> float:
-        """Seconds of this step that the program has computed or was blocked for, up to the last look."""
+        """The seconds that the program computed or was blocked in this step, up to the last look."""
         return self.blocked + self._cpu
 
     @property
@@ -63,13 +63,13 @@ class Budget:
         return 0.0 if self._cpu_start is None else self._student.cpu_seconds() - self._cpu_start
 
     def look(self) -> None:
-        """Count the time since the last look; to be called every 20 ms.
+        """Count the time since the last look. Call this every 20 ms.
 
-        Most steps end before the second call, and nothing is read before that.
+        The first call reads nothing, as most steps end before the second.
 
         Raises:
             ProgramExited: if the program has ended.
-            CannotContinue: if the step takes more than it may.
+            CannotContinue: if the step exceeds its allowance.
         """
         now = time.monotonic()
         passed = min(now - self._looked, LONGEST_LOOK_S)
@@ -94,7 +94,7 @@ class Budget:
             raise CannotContinue("timed-out", allowance.busy)
 
     def check_the_host(self) -> None:
-        """Raise `HostStalled` when this machine ran too little for a limit in wall time to mean anything."""
+        """Raise `HostStalled` if this machine ran too little for a wall-time limit to mean anything."""
         real = time.monotonic() - self._began
         if self._seen < real / 2:
             raise HostStalled(f"this machine was frozen or overloaded: it ran for {self._seen:.0f} s of {real:.0f} s")
@@ -105,11 +105,11 @@ SUPERVISOR = b"(lockstep"
 
 
 def ran(pids: Collection[int]) -> int | None:
-    """Return how long the threads of these processes have run (ns); None if one runs, could, or waits for the disk."""
+    """Return how long the processes' threads have run (ns); None if one is running, ready or waiting for the disk."""
     total = 0
     for thread in (thread for pid in pids for thread in _threads(pid)):
         with contextlib.suppress(OSError):  # it has just ended
-            # The state follows the program's name, which may hold any character but ends with the last bracket.
+            # The state follows the program's name, which may contain any character but ends with the last bracket.
             name, _, rest = (thread / "stat").read_bytes().rpartition(b") ")
             if name.endswith(SUPERVISOR):
                 continue

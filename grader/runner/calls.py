@@ -1,4 +1,4 @@
-"""Calls of the student's services, and of the services that set and read parameters."""
+"""Calls the student's services, and the services that set and read parameters."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from grader.runner.message import message_class
 from grader.scenario.scenario import GetParameter, Request, Scenario, SetParameter
 from rmw_lockstep.hub import HubClient
 
-#: What `Calls` carries out.
+#: The steps that `Calls` carries out.
 CallStep: TypeAlias = Request | SetParameter | GetParameter
 
 SET, GET = "rcl_interfaces/srv/SetParameters", "rcl_interfaces/srv/GetParameters"
@@ -64,7 +64,7 @@ class Calls:
         return max(made.step.at, self._ends.at(made.client.moments[made.number]))
 
     def calls(self) -> tuple[Call, ...]:
-        """Return all calls of the student's services, in the order in which they were made."""
+        """Return all calls of the student's services, in order."""
         return tuple(self._call(made, made.step) for made in self._made if isinstance(made.step, Request))
 
     def _call(self, made: PendingCall, step: Request) -> Call:

@@ -18,7 +18,7 @@ def serialized(kind: Any, fields: Fields) -> bytes:
 
 
 def deserialized(cdr: bytes, kind: Any) -> Any:
-    """Return what a program sent as a message of the class `kind`. Raises `CannotContinue` if the bytes are not one."""
+    """Return bytes from a program as a message of the class `kind`. Raises `CannotContinue` if they are not one."""
     try:
         return deserialize_message(cdr, kind)
     except Exception as error:  # made-up bytes can raise anything
@@ -26,7 +26,7 @@ def deserialized(cdr: bytes, kind: Any) -> Any:
 
 
 def fields_of(cdr: bytes, kind: Any) -> Fields:
-    """Return what a program sent as plain fields.
+    """Return bytes from a program as plain fields.
 
     Raises:
         CannotContinue: for bytes that are not a message of class `kind`.

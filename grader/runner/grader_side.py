@@ -1,6 +1,6 @@
-"""What the grader's side of a run works with: the two clocks, the hub and its node, and the schedule of what is to do.
+"""The grader's side of a run: the two clocks, the hub and its node, and the schedule.
 
-Simulated time is what ROS 2 shows, the computer's time what Python shows. The grader is a simulator that runs at 80 %
+ROS 2 shows simulated time, Python shows the computer's time. The grader is a simulator that runs at 80 %
 of real time, as simulators do. So a program that measures time with the computer's clock is off by the factor 1.25,
 visibly and in every run; and a program that is fast enough in real life is fast enough here.
 """
@@ -25,7 +25,7 @@ PACES: dict[ComputerTime, tuple[int, int]] = {"apart": (5, 4), "simulated": (1, 
 
 #: The least time on the computer's clock between two messages (ns), however close they are in simulated time: a
 #: simulator slows down when much happens, and so does not run ahead of a node that looks for one message every few
-#: milliseconds. Besides, no two messages then have the same time.
+#: milliseconds. It also gives every message a time of its own.
 BETWEEN_MESSAGES = 10_000_000
 
 #: Compatible with whatever a student's publisher offers.
@@ -48,7 +48,7 @@ class Clocks:
         self._earliest = 0
 
     def set(self, at: int, now: int, stage: int, *, message: bool = False) -> None:
-        """Continue both clocks from here, from number `stage` on, which may be a message."""
+        """Continue both clocks from here, from number `stage` on, which may be the number of a message."""
         self._stages.append(stage)
         self._moments.append((at, now))
         self._earliest = now + BETWEEN_MESSAGES if message else max(now, self._earliest)
@@ -94,24 +94,24 @@ class GraderSide:
     clocks: Clocks
 
     def at(self, moment: Moment | DeliveredMessage) -> int:
-        """Return the simulated time of a moment (ns); anything before simulated time begins counts as its beginning."""
+        """Return the simulated time of a moment (ns); moments before it begins count as its beginning."""
         return max(START, self.clocks.simulated(moment.now, moment.stage))
 
 
 @dataclass
 class Schedule:
-    """What to do at which simulated time; at the same moment, in the order in which it was planned."""
+    """What to do at which simulated time. Actions at the same moment run in the order in which they were planned."""
 
     _entries: list[tuple[int, int, Callable[[int], None]]] = field(default_factory=list)
     _numbers: count[int] = field(default_factory=count)
 
     @property
     def due(self) -> int | None:
-        """When the next thing is to be done (ns)."""
+        """The time of the next action (ns)."""
         return self._entries[0][0] if self._entries else None
 
     def plan(self, at: int, act: Callable[[int], None]) -> None:
-        """Call `act` at that time; `act` gets the time."""
+        """Call `act` at that time, with the time."""
         heapq.heappush(self._entries, (at, next(self._numbers), act))
 
     def act(self, now: int) -> bool:

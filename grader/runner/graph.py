@@ -13,7 +13,7 @@ from rmw_lockstep.qos import INFINITE, KEEP_ALL
 #: Topics that every node has.
 OWN_TO_ROS = ("/rosout", "/parameter_events")
 
-#: How the service is called by which an action takes goals.
+#: The name of the service through which an action takes goals, below the action's name.
 SEND_GOAL = "/_action/send_goal"
 
 _KINDS: dict[int, EndPointKind] = {
@@ -73,6 +73,6 @@ def _limit(nanoseconds: int) -> int | None:
 
 
 def deaf_to_the_clock(hub: Hub) -> list[str]:
-    """Return the nodes that don't take their time from /clock. rclpy subscribes to it when `use_sim_time` is true."""
+    """Return the nodes that do not take their time from /clock. rclpy subscribes to it when `use_sim_time` is true."""
     listening = {one.node for one in hub.graph.of_program("/clock", SUBSCRIPTION)}
     return [node.full_name for node in hub.graph.program_nodes() if node.id not in listening]

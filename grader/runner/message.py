@@ -1,6 +1,6 @@
 """Converts between ROS messages and plain fields.
 
-It needs nothing of a run: pages load it without the rest of the grader.
+It is independent of runs, because pages load it without the rest of the grader.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def to_fields(message: Any) -> Fields:
 
 @functools.cache
 def _names(kind: Any) -> tuple[str, ...]:
-    """Return the names of a message type's fields, of which the type itself gives a new copy each time."""
+    """Return the names of a message type's fields; cached, because the type makes a new copy each time."""
     return tuple(kind.get_fields_and_field_types())
 
 

@@ -1,4 +1,4 @@
-"""The one order that messages and requests have, however the threads that sent them shared the machine."""
+"""Sorts messages and requests into an order that does not depend on how threads were scheduled."""
 
 from __future__ import annotations
 
@@ -47,8 +47,7 @@ def place_of(number: int, one: DeliveredMessage) -> Place:
 def unordered_sources(heard: Sequence[tuple[int, DeliveredMessage]]) -> set[Source]:
     """Return the subscriptions and nodes for which any thread but the main one published, or several processes.
 
-    It could be one thread or several: how many of a pool's threads get something to do is chance, so they count as
-    several.
+    One thread other than the main one counts as several, because chance decides how many threads of a pool work.
     """
     return {(number, one.node) for number, one in heard if not one.ordered}
 

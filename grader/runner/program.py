@@ -1,4 +1,4 @@
-"""What a runner is given to run, what it needs to know about the student's program, and why it can't go on."""
+"""The runner's task, the student's program as the runner sees it, and the exception that ends a run."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ class RunningProgram(Protocol):
 class Task:
     """One program, to be run through one scenario.
 
-    `file_name` and `source` are the student's, and `files` all files of several, to name lines in messages. `pace` is
-    1.0 for real time, and None for as fast as possible.
+    `file_name` and `source` are the student's; `files` has all files of several. Messages quote lines of them. `pace`
+    is 1.0 for real time, and None for as fast as possible.
     """
 
     exercise: Exercise
@@ -68,7 +68,7 @@ class Task:
 
 
 class CannotContinue(Exception):
-    """Raised inside a runner when the student's program can't be run any further; `message` is for the student."""
+    """Raised inside a runner if the student's program can't continue; `message` is for the student."""
 
     def __init__(self, outcome: RunOutcome, message: str) -> None:
         super().__init__(message)

@@ -1,4 +1,4 @@
-"""How a student's program ends, by itself, on Ctrl-C or by the hub, and what the student reads about it."""
+"""Determines how a student's program ended, and what the student reads about it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ OTHER_CLASS = re.compile(r'__convert_from_py: Assertion .strncmp\("(?:\w+\.)+(?P
 
 _RESULT = "An action's execute callback has to return a Result, such as `return {action}.Result()`."
 
-#: The beginning of an error's last line -> what to do about it.
+#: What to do about an error, by the beginning of its last line.
 _PARAMETERS = {
     "rclpy.exceptions.ParameterNotDeclaredException": "Declare it first, in __init__: self.declare_parameter(…).",
     "rclpy.exceptions.InvalidParameterTypeException": (
@@ -79,7 +79,7 @@ MAY_TAKE_S = 2.0
 
 
 def cut_short(student: RunningProgram, sources: Mapping[str, str], met: bool, when: str) -> Ending:
-    """Return the ending of a program that ended by itself, `when`; `met` is whether it had become ready."""
+    """Return the ending of a program that ended by itself, `when`; `met` is whether it was ready by then."""
     exit_ = student.poll() or student.kill()
     log = student.output().text
     why, line = of_exit(exit_, log, sources)
@@ -100,7 +100,7 @@ def interrupted(hub: Hub, budget: Budget, student: RunningProgram, sources: Mapp
 
     The signal wakes the program in ways that the hub does not see. So the computer's clock goes on only while none of
     its threads runs or could run, as fast as a real clock: a program that waits for a time waits as long as it would
-    in real life, and on a busy machine no time passes before it has done what the signal asks for.
+    in real life, and on a busy machine no time passes before it has reacted to the signal.
     """
     before = student.output().text
     student.interrupt()
@@ -147,6 +147,6 @@ _MESSAGES = {
 
 
 def message_of_violation(violation: Violation) -> str:
-    """Return one sentence for the student."""
+    """Return a message for the student."""
     message = _MESSAGES[violation.reason]
     return message.format(found=violation.found, limit=violation.limit, text=violation.text)

@@ -1,4 +1,4 @@
-"""The reference publishers, over the hub."""
+"""The reference publishers, which publish over the hub."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ def prepare_messages(scenario: Scenario) -> None:
 
 
 def _serialized(scenario: Scenario) -> dict[int, bytes]:
-    """Its messages by their identity: a stream may have one message several times."""
+    """Return its messages by identity, because a stream may contain the same message several times."""
     return {id(one): serialized(message_class(one.type), one.fields) for one in scenario.messages}
 
 
 class ReferencePublishers:
     """Publishes a scenario's messages, in order, when asked to.
 
-    All publishers exist from the beginning, so that the student's node knows each of them before it publishes; one
-    that is replaced by another is removed when the other begins.
+    All publishers exist from the beginning, so that the student's node has discovered each of them before it
+    publishes. A publisher that is replaced is removed when its successor begins.
     """
 
     def __init__(self, node: HubNode, scenario: Scenario) -> None:

@@ -14,11 +14,11 @@ from grader.runner.program import CannotContinue
 from grader.scenario.scenario import SECOND
 from rmw_lockstep.hub import SERVER, Hub, HubNode
 
-#: Importing large libraries takes CPU time; nothing that a node needs takes this much. A student with an endless loop
-#: waits this long for the check to say so.
+#: Importing large libraries takes CPU time, but nothing that a node needs takes this much. A student with an endless
+#: loop waits this long for the message.
 START_CPU_S = 6.0
 
-#: How long a program may sleep before it makes a node, or spins it, by the computer's clock (ns).
+#: How long a program may sleep before it creates a node or spins it, by the computer's clock (ns).
 LONGEST = 10 * SECOND
 
 #: How long to wait for the subscriptions of a node that spins (ns).
@@ -44,7 +44,7 @@ def wait_until_up(hub: Hub, connected: Callable[[], bool], has_nodes: Callable[[
     returns whether the program has created any.
 
     Raises:
-        CannotContinue: when there will be no node.
+        CannotContinue: if there will be no node.
     """
     try:
         _wait_until_up(hub, connected, has_nodes)
@@ -75,7 +75,7 @@ class Parameters:
         self._hub, self._node = hub, node
 
     def call(self, service: str, type_name: str, request: bytes, until: int) -> bool:
-        """Call a service, and let time pass up to `until` for the answer (ns). Return whether one arrived."""
+        """Call a service, and let time pass until it answers, at most to `until` (ns). Return whether it did."""
         client = self._node.client(service, type_name)
         try:
             if client.call(request) is None:
@@ -92,7 +92,7 @@ class Parameters:
             client.close()
 
     def use_sim_time(self, until: int) -> bool:
-        """Make every node take its time from /clock that doesn't yet. Return whether all do then."""
+        """Make every node take its time from /clock. Return whether all of them do."""
         value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=True)
         request = SetParameters.Request(parameters=[Parameter(name="use_sim_time", value=value)])
         for node in deaf_to_the_clock(self._hub):

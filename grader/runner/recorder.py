@@ -20,7 +20,7 @@ MOST_MESSAGES = 5_000
 
 
 def recorded_topics(task: Task) -> tuple[tuple[str, str], ...]:
-    """Return names and types of what the exercise's program publishes; a remapping or a namespace adds others."""
+    """Return names and types of the topics to record, with those that a remapping or a namespace adds."""
     namespace, found = task.scenario.namespace.rstrip("/"), {}
 
     def full(name: str) -> str:
@@ -36,7 +36,7 @@ def recorded_topics(task: Task) -> tuple[tuple[str, str], ...]:
 
 @dataclass(frozen=True)
 class RecordedTopic:
-    """What one of the grader's subscriptions receives; `subscriber` is its name if it is one of the scenario's own."""
+    """The messages of one of the grader's subscriptions; `subscriber` is its name if it belongs to the scenario."""
 
     topic: str
     type: str
@@ -55,7 +55,7 @@ class Recorder:
     ) -> None:
         """`topics` are names and types. What arrives before `earliest` (ns) is recorded as if it had arrived then.
 
-        What arrives from a process that is `ours` is not recorded.
+        Messages from a process that is `ours` are not recorded.
         """
         self._node, self._earliest, self._ours = node, earliest, ours
         self._listening: list[RecordedTopic] = []
@@ -71,7 +71,7 @@ class Recorder:
         self._own[name] = self._subscribe(RecordedTopic(topic, type_name, name), qos)
 
     def leave(self, name: str) -> None:
-        """Remove it."""
+        """Remove a subscriber of the scenario's own."""
         if name in self._own:
             self._own.pop(name).close()
 

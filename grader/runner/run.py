@@ -33,7 +33,7 @@ from rmw_lockstep.hub import Hub, HubLimits, Violation
 #: How long simulated time continues after the last message, for what a node does by timer (ns).
 AFTERWARDS = SECOND // 2
 
-#: A program that waits for less than this is considered about to go on (ns of the computer's time).
+#: A program that waits for less than this is considered about to continue (ns of the computer's time).
 SOON = 3 * SECOND
 
 ENDLESS = "Your node used {0:g} s of computing time on one message and did not finish. Is there an endless loop?"
@@ -82,7 +82,7 @@ def run(
 
 
 class ScenarioRun:
-    """One run: the hub's ends of the graph around one program."""
+    """One run: the grader's endpoints around one program."""
 
     def __init__(self, task: Task, student: RunningProgram, hub: Hub) -> None:
         self._task, self._student, self._hub = task, student, hub
@@ -121,16 +121,16 @@ class ScenarioRun:
         return self._team is not None and self._team.is_companions(process)
 
     def _remember_end_points(self) -> None:
-        """Keep what a program had before it crashed, not what was left when it had taken most of it down itself."""
+        """Remember the endpoints before a crash, because a program that crashes may have removed some by its end."""
         found = end_points(self._hub.graph, self._is_ours)
         if len(found) >= len(self._end_points):
             self._end_points = found
 
     def run(self, began: float) -> Recording:
-        """Do the whole run, from the first sign of the program to its end."""
+        """Do the whole run, from the program's start to its end."""
         ending = self._ending()
         self._end_points = self._end_points or end_points(self._hub.graph, self._is_ours)
-        self._student.kill()  # before the last look at what has arrived: it may never stop publishing
+        self._student.kill()  # before taking the last messages: it may never stop publishing
         ending, received = self._take_everything(ending)
         return Recording(
             scenario=self._task.scenario.name,
@@ -192,7 +192,7 @@ class ScenarioRun:
             self._budget.check_the_host()
 
     def _take_everything(self, ending: Ending) -> tuple[Ending, tuple[ReceivedMessage, ...]]:
-        """Return everything that the program published before its end, which may be too much after all."""
+        """Return everything that the program published, and the ending, which changes if that exceeds a limit."""
         try:
             self._hub.drain()
         except Violation as violation:
@@ -211,7 +211,7 @@ class ScenarioRun:
         self._budget.begin(STEP)
         self._sim_time = self._parameters.use_sim_time(hub.now + SOON)
         self._nodes = nodes(hub.graph, self._is_ours)
-        self._is_up = self._script is not None  # whose timers fire as soon as there is a clock
+        self._is_up = self._script is not None  # timers fire as soon as there is a clock
         self._set_clock(START)
         hub.wait_until_idle()
         self._is_up = True
@@ -233,11 +233,11 @@ class ScenarioRun:
 
     def _publish(self, message: Message) -> None:
         if not self._publishers.has_subscriber(message):
-            self._hub.wait_until_idle()  # only then is it known whether the program subscribes
+            self._hub.wait_until_idle()  # before that, the program's subscriptions are not known
         self._clocks.set(message.at, self._hub.now, self._publishers.publish(message), message=True)
 
     def _carry_out(self, script: Script) -> None:
-        """Let time pass to the end, at the scenario's rate, and do each thing at its time."""
+        """Let time pass to the end, at the scenario's rate, and publish and do each step at its time."""
         scenario, began = self._task.scenario, time.monotonic()
         content = deque(one for one in scenario.content if one.at >= START)
         end = (
@@ -279,18 +279,18 @@ class ScenarioRun:
             script.do(one)
 
     def _settle(self, script: Script) -> None:
-        """Wait until the program has nothing left to do, and nothing of ours follows from what it did."""
+        """Wait until neither the program nor the grader's side has anything left to do."""
         self._hub.wait_until_idle()
         while script.act(self._clocks.at):
             self._hub.wait_until_idle()
 
     def _allowance(self, at: int) -> Allowance:
-        """Return what the program may take until simulated time `at`: it may compute for as long as time passes."""
+        """Return the allowance until simulated time `at`: the program may compute for as long as time passes."""
         passes = (self._clocks.computer(at) - self._hub.now) / SECOND
         return STEP if passes < 1.0 else replace(STEP, cpu_s=STEP.cpu_s + passes)
 
     def _go_to(self, at: int) -> None:
-        """Advance both clocks to the simulated time `at`; what was due before that happens first."""
+        """Advance both clocks to the simulated time `at`, after doing everything that is due before."""
         self._hub.advance(self._clocks.computer(at))
         if at > self._clocks.at:
             self._set_clock(at)

@@ -1,4 +1,4 @@
-"""Does what a scenario says besides messages: the grader's side of services, actions, parameters and worlds."""
+"""Carries out a scenario's steps besides messages: services, actions, parameters and worlds."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class Script:
 
     @property
     def due(self) -> int | None:
-        """When the next thing is to be done that is not a step (ns of simulated time)."""
+        """The time of the next scheduled action that is not a step (ns of simulated time)."""
         return self._schedule.due
 
     def do(self, step: Step) -> None:
@@ -113,7 +113,7 @@ class Script:
         self._recorder.leave(name)
 
     def act(self, now: int) -> bool:
-        """Do what is due, and what follows from what the program did. Return whether there was anything."""
+        """Do what is due, and react to what the program did. Return whether there was anything to do."""
         try:
             took = [peer.react(now) for peer in self._servers.values()]
             return any([*took, self._goals.react(now), self._schedule.act(now)])

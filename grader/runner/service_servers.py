@@ -19,12 +19,12 @@ from rmw_lockstep.hub import HubServer, PendingRequest
 
 
 class AuthorFault(Exception):
-    """Raised when the author's code, which runs inside the grader, fails; the text names it."""
+    """Raised if the author's code, which runs inside the grader, fails; the text names it."""
 
 
 @dataclass
 class ServiceExchange:
-    """A request that arrived, and the answer as soon as there is one."""
+    """A request that arrived, and its answer, if any yet."""
 
     asked: PendingRequest
     at: int
@@ -50,7 +50,7 @@ class ServiceServer:
             self._server = self._ends.node.server(self.name, self._declared.type)
 
     def close(self) -> None:
-        """Stop the server, and drop every answer that it had not sent yet."""
+        """Stop the server, and drop every answer that it has not sent yet."""
         if self._server is not None:
             self._server.close()
             self._server = None

@@ -24,7 +24,7 @@ class ProgramsTogether:
 
 
 class Team:
-    """All programs of a run. To its owner it is one program, which ends when one of the student's ends by itself."""
+    """All programs of a run, as one program. It ends when one of the student's programs ends by itself."""
 
     def __init__(self, hub: Hub, folder: Path, scenario: Scenario, programs: Mapping[str, Start],
                  companions: Sequence[Start]) -> None:  # fmt: skip
@@ -67,7 +67,7 @@ class Team:
             self._hub.pause()
 
     def _see(self) -> None:
-        """Make the hub wait for each of them."""
+        """Make the hub wait for each program's processes."""
         self._hub.mains = {one.pid for one in (*self._running.values(), *self._companions)}
 
     def is_companions(self, process: int) -> bool:

@@ -1,4 +1,4 @@
-"""Finds, in what a program has printed, the error that ended it."""
+"""Finds the error that ended a program in its output."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ HEADER = "Traceback (most recent call last):"
 _FRAME = re.compile(r'^[ \t]*File "(?P<file>[^"]+)", line (?P<line>\d{1,9})', re.MULTILINE)
 _ERROR = re.compile(r"[A-Za-z_][\w.]*(:|$)")
 
-#: An error's last line is as long as the student likes; more of it than this helps nobody.
+#: An error's last line is as long as the student likes; more characters than this do not help.
 _LONGEST_ERROR = 500
 
-#: In how many folders inside each other a student's file can be, for its lines to be named.
+#: At most this many folders above a student's file are compared with a traceback's path.
 _DEEPEST = 20
 
-#: How the traceback of an exception begins that nothing has caught in the main thread: in the module itself.
+#: The beginning of the traceback of an uncaught exception in the main thread: it starts in the module itself.
 _OF_THE_PROGRAM = re.compile(re.escape(HEADER) + r'\n[ \t]*File "[^"]+", line \d{1,9}, in <module>\n')
 
 #: The text of a SyntaxError has no header.
@@ -48,8 +48,8 @@ class LastError:
 def last_error(log: str, sources: Mapping[str, str]) -> LastError | None:
     """Return the last error in `log`, or None if there is none. `sources` are the student's files: path -> text.
 
-    An error of the program itself comes before one that another thread printed after it, as rclpy does for the goal
-    that was under way.
+    An error in the main thread takes precedence over one that another thread printed later, as rclpy does for a goal in
+    progress.
     """
     start = _beginning(log)
     if start < 0:
@@ -67,7 +67,7 @@ def last_error(log: str, sources: Mapping[str, str]) -> LastError | None:
 
 
 def _own(path: str, sources: Mapping[str, str]) -> str:
-    """Return which of the student's files this is; "" if it is none of them."""
+    """Return which of the student's files a path means; "" if none."""
     parts = path.rsplit("/", _DEEPEST)
     return next((file for i in range(len(parts)) if (file := "/".join(parts[i:])) in sources), "")
 

@@ -1,7 +1,7 @@
 """Makes a student's namespaces with bubblewrap, which holds them open until the student's process has entered them.
 
-The program that bubblewrap itself runs is `cat`: it answers when everything is mounted, and ends (and everything with
-it) when this end of its pipe is closed, for whatever reason.
+The program that bubblewrap itself runs is `cat`. It answers when everything is mounted. When this end of its pipe is
+closed, for any reason, it ends, and everything else in the namespaces with it.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def build(root: bytes, user_namespace: int) -> Namespaces:
         raise OSError("bubblewrap (bwrap) is not installed")
     texts = {_FIRST_TEXT + at: _memory_file(text.encode()) for at, text in enumerate(filesystem.TEXTS.values())}
     filters = [_memory_file(seccomp.program())] if seccomp.supported() else []
-    # Not on the command line, which the student can read and which would show what is hidden.
+    # Not on the command line: the student can read it, and it would show the hidden paths.
     arguments = _memory_file(root)
     information, information_end = os.pipe()
     command = [
@@ -78,14 +78,14 @@ def build(root: bytes, user_namespace: int) -> Namespaces:
     for holder in (init, *own_processes):
         _starve(holder)
     _join(init, user_namespace)
-    syscalls.unshare(syscalls.CLONE_NEWNET)  # not by bubblewrap, which brings loopback up
+    syscalls.unshare(syscalls.CLONE_NEWNET)  # here and not by bubblewrap, which would enable loopback
     return Namespaces(init, own_processes, builder)
 
 
 def _start(command: list[str], passed: Mapping[int, int]) -> Builder:
-    """Run bubblewrap with pipes to it, with the inheritable descriptors, and with others: our number for each of its.
+    """Run bubblewrap with pipes to it, the inheritable descriptors, and `passed`: its descriptors to ours.
 
-    By posix_spawn, which does not copy this process's memory as a fork does. Python's own descriptors are not
+    Use posix_spawn, which does not copy this process's memory as fork does. Python's own descriptors are not
     inheritable.
     """
     input_at, input_to = os.pipe()
@@ -97,14 +97,14 @@ def _start(command: list[str], passed: Mapping[int, int]) -> Builder:
         command,
         {"PATH": "/usr/bin:/bin"},
         file_actions=[(os.POSIX_SPAWN_DUP2, ours, number) for number, ours in (*enumerate(ends), *passed.items())],
-        setsigdef=(signal.SIGPIPE, signal.SIGXFSZ),  # which Python ignores
+        setsigdef=(signal.SIGPIPE, signal.SIGXFSZ),  # Python ignores them
     )
     for end in ends:
         os.close(end)
     return Builder(pid, input_to, output_at, errors_at)
 
 
-# Most steps are the same for every program; the hub's socket lies elsewhere in each run.
+# Most steps are the same for every program; only the hub's socket is at another path in each run.
 @lru_cache(maxsize=1024)
 def _encoded(step: Mount) -> bytes:
     return b"".join(os.fsencode(option) + b"\0" for option in _options(step))
@@ -129,7 +129,7 @@ def _options(step: Mount) -> tuple[str, ...]:
 
 
 def _starve(holder: int) -> None:
-    """Leave a process nothing to use: without root it belongs to the student's user, who might take it over."""
+    """Take away a process's resources: without root it belongs to the student's user, who might take it over."""
     for which in (resource.RLIMIT_NPROC, resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE):
         resource.prlimit(holder, which, (0, 0))
     resource.prlimit(holder, resource.RLIMIT_AS, (_HOLDER_BYTES, _HOLDER_BYTES))

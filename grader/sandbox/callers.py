@@ -1,8 +1,8 @@
-"""Lets rclpy's logger find out faster which line has called it.
+"""Lets rclpy's logger find its caller's line faster.
 
 At each call, rclpy asks for the source file of each frame up to the program's own, and resolves every symlink on the
-way to it: 0.27 ms, as much as everything else that a node does about a message. A code object's file stays the same, so
-one look at each is enough: with that, a call takes 0.02 ms.
+way to it: 0.27 ms, as much as the rest of a node's work for a message. A code object's file never changes, so
+looking once is enough: a call then takes 0.02 ms.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _LOGGER = "rclpy.impl.rcutils_logger"
 
 
 def remember_files() -> None:
-    """Let rclpy's logger look only once at each file; do nothing if it asks in a way that is not known here."""
+    """Make rclpy's logger resolve each file only once; do nothing if its code is not as expected."""
     try:
         logger: Any = importlib.import_module(_LOGGER)
     except ImportError:
@@ -30,19 +30,19 @@ def remember_files() -> None:
 
 
 def _like(module: types.ModuleType, **instead: object) -> types.ModuleType:
-    """Return a module with the names of another one, except for some."""
+    """Return a copy of a module with some names replaced."""
     found = types.ModuleType(module.__name__, module.__doc__)
     found.__dict__.update(module.__dict__ | instead)
     return found
 
 
 def _getframeinfo(frame: types.FrameType, context: int = 1) -> inspect.Traceback:
-    """Do what `inspect.getframeinfo` does, without the lines of the source."""
+    """Return the same as `inspect.getframeinfo`, without the lines of the source."""
     code = frame.f_code
     if code.co_filename not in _files:
         _files[code.co_filename] = inspect.getsourcefile(code) or code.co_filename
     return inspect.Traceback(_files[code.co_filename], frame.f_lineno, code.co_name, None, None)
 
 
-# The source file of each code object's file name.
+# Source file by the code object's file name.
 _files: dict[str, str] = {}

@@ -16,7 +16,7 @@ _DESCRIPTORS = 1024
 
 @dataclass(frozen=True)
 class StartRequest:
-    """What a runner requests.
+    """A runner's request to start a program.
 
     Attributes:
         program: what to run.
@@ -73,7 +73,7 @@ def confine(
         os.setresuid(user, user, user)
     syscalls.drop_capabilities()
     syscalls.prctl(syscalls.PR_SET_NO_NEW_PRIVS, 1)
-    syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)  # lost with the change of user; without it /proc/self is closed
+    syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)  # the change of user clears it, and /proc/self would be unreadable
     if isolation is Isolation.LANDLOCK:
         hidden = (*filesystem.own_packages(), *start.program.hidden)
         landlock.restrict(paths, start.program.readonly, hidden)
@@ -91,7 +91,7 @@ def _take_output(output: int, keep_open: int) -> None:
 
 
 def _reset_signals() -> None:
-    """Reset the signals to what a Python has that has just been started from a shell."""
+    """Reset the signals to those of a Python that was just started from a shell."""
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGCHLD, signal.SIGQUIT):
         signal.signal(number, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.default_int_handler)

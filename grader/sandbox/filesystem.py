@@ -1,4 +1,4 @@
-"""What a sandbox shows of the file system: the mounts that build its root."""
+"""The file system inside a sandbox: the mounts that build its root."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from interface_compiler import activation
 HOME = "/home/student"
 USER_ID = 1000
 
-# Users that systemd reserves for services without a user of their own; no files belong to them.
+# Users that systemd reserves for services with dynamic users; no files belong to them.
 _FIRST, _COUNT = 61184, 4336
 
 
@@ -108,7 +108,7 @@ def mounts(readonly: tuple[Path, ...], hidden: tuple[Path, ...], scratch_bytes: 
 
 
 def with_hub(plan: tuple[Mount, ...], hub: Path) -> tuple[Mount, ...]:
-    """Return the steps that also show the hub's socket: always in the same place, wherever it is outside."""
+    """Return the steps that also show the hub's socket, always at the same path inside."""
     made = {"/", *(step.path for step in plan)}
     folders = (Mount("folder", str(folder)) for folder in reversed(Path(HUB).parents) if str(folder) not in made)
     *others, seal = plan
@@ -137,7 +137,7 @@ class _MountPlan:
 
 
 def write_file(folder: Path, name: str, content: bytes) -> None:
-    """Write a submission's file, which everybody may read, and the folders that it is in."""
+    """Write a submission's file, readable by every user, and its parent folders."""
     path = folder / name
     for parent in reversed(list(path.relative_to(folder).parents)[:-1]):
         (folder / parent).mkdir(exist_ok=True)
@@ -147,7 +147,7 @@ def write_file(folder: Path, name: str, content: bytes) -> None:
 
 
 def environment(program: ProgramSpec, paths: Paths) -> dict[str, str]:
-    """Return a program's whole environment: what Python and ROS 2 need, its private folders, and what it was given."""
+    """Return a program's whole environment: the variables of Python, of ROS 2 and of its folders, and its own."""
     needed = {name: os.environ[name] for name in (*RUNTIME_VARIABLES, "LD_PRELOAD") if name in os.environ}
     hub = {"RMW_LOCKSTEP_SOCKET": paths.hub} if paths.hub else {}
     return {
@@ -185,7 +185,7 @@ RUNTIME_VARIABLES = (
 
 
 def ros_prefixes() -> tuple[Path, ...]:
-    """Return where a sourced ROS 2 is installed (/opt/ros/…): nothing if ROS 2 came from PyPI into this environment.
+    """Return where a sourced ROS 2 is installed (/opt/ros/…); nothing if ROS 2 was installed from PyPI.
 
     An instructor's own workspace, sourced on top of it, is not part of it.
     """
@@ -223,7 +223,7 @@ def own_packages() -> tuple[Path, ...]:
 
 
 def _masks(hidden: Iterable[Path], shown: Iterable[Path]) -> Iterator[Path]:
-    """Yield where hidden files and folders would be visible: under each name by which a shown folder has them."""
+    """Yield the paths at which hidden files and folders would be visible below a shown folder."""
     to_hide = [path.resolve() for path in hidden if path.exists()]
     for source in shown:
         real = _real(source)
@@ -239,12 +239,12 @@ def _is_inside(path: Path, folders: Iterable[Path]) -> bool:
 
 @cache
 def _real(folder: Path) -> Path:
-    """Return where a folder of an installation really is: none moves while a grader runs."""
+    """Return the real path of an installation's folder; cached, as none moves while a grader runs."""
     return folder.resolve()
 
 
 def _without_nested(paths: Iterable[Path]) -> Iterator[Path]:
-    """Yield the folders without those inside another one, which are therefore shown anyway."""
+    """Yield the folders, without those inside another one, which are shown anyway."""
     ordered = sorted(set(paths), key=lambda path: len(path.parts))
     for at, path in enumerate(ordered):
         if not any(path.is_relative_to(earlier) and not path.is_symlink() for earlier in ordered[:at]):

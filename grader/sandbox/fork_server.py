@@ -1,4 +1,4 @@
-"""Starts students' programs in 25 ms, while a new Python takes 150 ms: the client of the fork server."""
+"""The client of the fork server, which starts a student's program in 25 ms; a new Python takes 150 ms."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class SandboxedProgram:
         return self._monitor.exit
 
     def poll(self) -> ProcessExit | None:
-        """Return the same as `exit`."""
+        """Return how the node's process ended; None while it runs."""
         return self._monitor.exit
 
     def wait(self, timeout_s: float) -> ProcessExit | None:
@@ -93,7 +93,7 @@ class SandboxedProgram:
         return (self.pid, *self._monitor.others)
 
     def at_limit(self) -> bool:
-        """Return whether it is being ended for a limit; looks at once, as the monitor may be late."""
+        """Return whether it is being killed for a limit. This checks now, because the monitor may be late."""
         return self._monitor.at_limit()
 
     def processes(self) -> int:
@@ -101,7 +101,7 @@ class SandboxedProgram:
         return len(self._monitor.members())
 
     def kill(self) -> ProcessExit:
-        """Kill every process of it, daemons too, and return when all are dead. A second call returns the same.
+        """Kill all its processes, including daemons, and return when all are dead. A second call returns the same.
 
         Raises:
             SandboxError: if one of its processes does not die.
@@ -114,7 +114,7 @@ class SandboxedProgram:
         return self._monitor.exit or ProcessExit(None, int(signal.SIGKILL), None)
 
     def __enter__(self) -> SandboxedProgram:
-        """Return itself: it runs already."""
+        """Return itself. It is running already."""
         return self
 
     def __exit__(
@@ -137,16 +137,16 @@ PRELOAD = (
     "std_msgs.msg",
     "geometry_msgs.msg",
     "sensor_msgs.msg",
-    "type_description_interfaces.msg",  # of a service that each node has
+    "type_description_interfaces.msg",  # for a service that each node has
     "type_description_interfaces.srv",
 )
 
 
 class ForkServer:
-    """Starts students. One serves a whole worker: create it before the runners are forked; each of them may use it."""
+    """Starts students' programs. One serves a whole worker: create it before the runners fork; they share it."""
 
     def __init__(self, preload: Sequence[str] = PRELOAD) -> None:
-        """StartRequest the process that students are forked from; it imports while the caller goes on.
+        """Start the process that students are forked from. It imports the modules while the caller continues.
 
         Args:
             preload: the modules to import beforehand; those that are not installed are left out.
@@ -206,7 +206,7 @@ class ForkServer:
         self._zygote.close()
 
     def __enter__(self) -> ForkServer:
-        """Do nothing: it has been started already."""
+        """Return itself. It has been started already."""
         return self
 
     def __exit__(
@@ -223,9 +223,9 @@ class _Zygote:
         self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         environment = {name: os.environ[name] for name in filesystem.RUNTIME_VARIABLES if name in os.environ}
         environment |= variables(environment)
-        # One thread: a child forked from several could hang. And sets have the same order in each run of a submission.
+        # One thread: a child forked from several could hang. A fixed hash seed: sets have the same order in each run.
         environment |= {"OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1"}
-        # Address space is limited, and by default each thread may reserve 64 MiB of it, more so on more cores.
+        # Address space is limited, and by default many threads would reserve 64 MiB of it each.
         environment |= {"MALLOC_ARENA_MAX": "4"}
         self._owner = os.getpid()
         command = [sys.executable, "-m", "grader.sandbox.zygote", str(theirs.fileno()), *preload]

@@ -1,7 +1,7 @@
-"""Fills the gaps in the C library's heap, so that a fork puts what is new side by side.
+"""Fills the gaps in the C library's heap, so that a fork allocates new memory in one place.
 
-After many modules have been imported, free memory is in small pieces between what stays. A fork that used these would
-write to hundreds of pages that it shares with its parent, and the kernel would copy each of them: 3 µs for a page.
+After many imports, free memory consists of small gaps between objects that stay. A fork that used them would write to
+hundreds of pages that it shares with its parent, and the kernel would copy each of them: 3 µs per page.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class _Statistics(ctypes.Structure):
 
 
 def fill_gaps() -> None:
-    """Take every free piece below the end of the heap, and keep it; do nothing with another C library than glibc."""
+    """Allocate every free piece below the end of the heap, and never free it. Works with glibc only."""
     with contextlib.suppress(AttributeError):
         library = ctypes.CDLL(None)
         library.mallinfo2.restype = _Statistics
@@ -39,7 +39,7 @@ def fill_gaps() -> None:
 
 
 def _take_all(library: ctypes.CDLL, size: int, end: int) -> None:
-    """Take pieces of `size` bytes until the first that is beyond the former end."""
+    """Allocate pieces of `size` bytes until one is beyond the former end."""
     while (piece := library.malloc(ctypes.c_size_t(size))) and piece < end:
         pass
     library.free(ctypes.c_void_p(piece))

@@ -1,8 +1,8 @@
-"""How well a student's program is isolated from this machine, and which levels this machine offers.
+"""Finds out which levels of isolation work on this machine, and chooses one.
 
-Which levels have been tried and work is kept until something changes that this depends on: a trial takes as long as the
-runs of four scenarios. What is kept makes no start less safe: each start makes a new sandbox, and where a step of
-that fails nothing runs. What did not work is not kept.
+A trial takes as long as four scenarios, so the levels that worked are remembered until something changes that they
+depend on. This makes no start less safe: each start makes a new sandbox, and if that fails, nothing runs. Levels that
+did not work are tried again each time.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from groundwork.files import cached, write_if_changed
 
 _TRIAL_S = 30.0
 
-#: What decides on this machine whether a process may make namespaces, and which process this is: proc(5), and
-#: user_namespaces(7). The first differs each time that the machine is started.
+#: The files that determine whether a process may make namespaces, and which process this is: proc(5),
+#: user_namespaces(7). The first one changes at each boot.
 _FILES = (
     "/proc/sys/kernel/random/boot_id",
     "/proc/sys/user/max_user_namespaces",
@@ -39,15 +39,15 @@ _STATUS = ("Uid", "Gid", "CapEff", "CapBnd", "NoNewPrivs", "Seccomp", "Seccomp_f
 
 
 def available() -> dict[Isolation, str | None]:
-    """Return None for each level that works here, otherwise the reason in words. Tries them by starting programs."""
+    """Return None for each level that works here, otherwise the reason. This starts a program at each level."""
     return {level: _tried(level) for level in Isolation}
 
 
 def choose(wanted: Isolation | None = None) -> Isolation:
-    """Return the level to use: the wanted one, or the strongest that works here. Never NONE unless it is wanted.
+    """Return the level to use: `wanted`, or the strongest that works here. It is NONE only if that is `wanted`.
 
     Raises:
-        SandboxUnavailable: if the wanted level, or without a wish every level, does not work here.
+        SandboxUnavailable: if `wanted`, or without it every level, does not work here.
     """
     if wanted is not None:
         reason = _reason_against(wanted)
@@ -68,7 +68,7 @@ def choose(wanted: Isolation | None = None) -> Isolation:
 
 
 def _reason_against(level: Isolation) -> str | None:
-    """None if the level works, or has worked under the same circumstances; otherwise the reason in words."""
+    """Return None if the level works, or has worked under the same circumstances; otherwise the reason."""
     if has_worked(level):
         return None
     reason = _tried(level)
@@ -100,21 +100,21 @@ def _tried(level: Isolation) -> str | None:
 
 
 def has_worked(level: Isolation) -> bool:
-    """Whether a trial of this level has worked, under all the same circumstances."""
+    """Return whether a trial of this level has worked under the same circumstances."""
     try:
         return _file(level).exists()
-    except OSError:  # another user's folder: it is tried each time
+    except OSError:  # another user's folder: try each time
         return False
 
 
 def _keep(level: Isolation) -> None:
     """Remember that a trial has worked."""
-    with contextlib.suppress(OSError):  # where nothing can be kept, it is tried each time
+    with contextlib.suppress(OSError):  # if nothing can be stored, try each time
         write_if_changed(_file(level), "")
 
 
 def forget() -> None:
-    """Try every level again the next time: a sandbox could not be made that ought to work."""
+    """Try every level again next time, because a level that had worked has failed."""
     shutil.rmtree(cached("sandbox"), ignore_errors=True)
 
 
@@ -132,7 +132,7 @@ def _circumstances() -> Iterator[str]:
     yield repr([resource.getrlimit(which) for which in (resource.RLIMIT_NPROC, resource.RLIMIT_AS)])
     yield repr((sys.executable, sys.version))
     for name in sorted({*filesystem.RUNTIME_VARIABLES} - {"PATH"}):
-        yield f"{name}={sorted(os.environ.get(name, '').split(os.pathsep))}"  # ROS's wheels give theirs in any order
+        yield f"{name}={sorted(os.environ.get(name, '').split(os.pathsep))}"  # ROS wheels add entries in any order
     bubblewrap = shutil.which("bwrap")
     for file in (*sorted(Path(__file__).parent.glob("*.py")), *([Path(bubblewrap)] if bubblewrap else [])):
         found = file.stat()

@@ -51,7 +51,7 @@ def keeps_signals_inside() -> bool:
 
 
 def student_user() -> int:
-    """Return the user to run a student's program: as root a user of no other process, as root's number is not limited.
+    """Return the user for a student's program. For root it is an unused one: the kernel limits no root processes.
 
     Raises:
         OSError: as root, if that user cannot reach Python.
@@ -73,7 +73,7 @@ def restrict(paths: Paths, readonly: Sequence[Path], hidden: Sequence[Path]) -> 
     Args:
         paths: its own folders.
         readonly: what else it may read.
-        hidden: what it may not read, although it is inside something that it may; it sees the names in there.
+        hidden: what it may not read, although it is inside something that it may; the names remain visible.
 
     Raises:
         OSError: if the kernel has no Landlock.

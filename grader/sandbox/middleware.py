@@ -17,12 +17,12 @@ from rmw_lockstep.ros import installed_ros
 
 
 class MiddlewareUnavailable(SandboxUnavailable):
-    """Raised when the grader's middleware is not available on this machine."""
+    """Raised if the grader's middleware is not available on this machine."""
 
 
 @cache
 def require_middleware() -> None:
-    """Make sure that the grader's middleware is there. Compiles it at the first call, if need be.
+    """Make sure that the grader's middleware is available. The first call compiles it if necessary.
 
     Raises:
         MiddlewareUnavailable: if it is neither installed nor can be compiled here.
@@ -43,7 +43,7 @@ def to_be_compiled() -> bool:
 
 
 def variables(of: Mapping[str, str]) -> dict[str, str]:
-    """Return what a process needs in its environment to load the middleware, given its environment without that.
+    """Return the variables that a process needs to load the middleware, given its other environment.
 
     Raises:
         MiddlewareUnavailable: if it has not been compiled.
@@ -55,7 +55,7 @@ def variables(of: Mapping[str, str]) -> dict[str, str]:
 
 
 def choosable() -> bool:
-    """Return whether `RMW_IMPLEMENTATION` chooses the middleware. PyPI's wheels are bound to theirs by its file name.
+    """Return whether `RMW_IMPLEMENTATION` chooses the middleware. PyPI's wheels load theirs by a fixed file name.
 
     With those, rcl ends the process if the variable names another one than was loaded.
     """
@@ -84,9 +84,9 @@ def connect(hub: str) -> None:
 
 
 def load_type_support(name: str) -> None:
-    """Import a module of message or service types, and load their compiled support, and the middleware's for messages.
+    """Import a module of message or service types, and load their compiled type support.
 
-    What can't be loaded is left out: it fails in the same way when it is used.
+    Failures are ignored: they occur again when the type is used.
     """
     try:
         module = importlib.import_module(name)

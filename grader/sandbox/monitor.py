@@ -42,7 +42,7 @@ class ProgramOutput:
 
 
 class OutputBuffer:
-    """Takes pieces of output as they arrive and keeps at most 128 KiB of them."""
+    """Collects pieces of output and keeps at most 128 KiB of them."""
 
     def __init__(self) -> None:
         self._head = bytearray()
@@ -83,8 +83,7 @@ class ProcessExit:
     limit: str | None
 
 
-# What Python's last line says when the kernel has refused more. A program that prints it without need only harms
-# itself: it gets no points for it.
+# The last line that Python prints if the kernel refused more. A program that only pretends gets no points.
 _LAST_WORDS = {
     "MemoryError": "memory",
     "std::bad_alloc": "memory",
@@ -97,7 +96,7 @@ _LAST_WORDS = {
 
 
 class Monitor:
-    """A thread in the runner for one student."""
+    """A thread in the runner that watches one student's program."""
 
     def __init__(
         self, control: socket.socket, output: int, limits: Limits, pid: int, init: int, own_processes: frozenset[int]
@@ -150,7 +149,7 @@ class Monitor:
         return self._reaped_cpu_s + orphans + sum(processes.usage(pid).cpu_s for pid in alive)
 
     def at_limit(self) -> bool:
-        """Return whether the program is being killed, or has been, for a limit; counts what it uses now."""
+        """Return whether the program is being killed, or has been, for a limit. This measures it now."""
         self._look()
         return self._limit is not None
 
@@ -186,7 +185,7 @@ class Monitor:
         return bool(piece)
 
     def _drain_what_is_there(self) -> None:
-        """Read what the pipe holds now, and no more: a process may still be writing."""
+        """Read only what is in the pipe now: a process may still be writing."""
         for _ in range(8):
             if not select.select([self._pipe], [], [], 0)[0] or not self._drain():
                 return
@@ -239,7 +238,7 @@ class Monitor:
         return None
 
     def _look(self) -> None:
-        """Count what the program uses, and kill it if it is too much."""
+        """Measure what the program uses, and kill it if it exceeds a limit."""
         members = self.members()
         self.others = frozenset(members - {self._pid})
         used = [processes.usage(pid) for pid in members]
@@ -253,7 +252,7 @@ class Monitor:
             self._kill("cpu")
 
     def _memory_is_too_much(self, members: set[int]) -> bool:
-        """Count again, with what forks share only once: slow, so not before the first count is too high."""
+        """Count again, with shared memory counted once. Slow, so call it only if the first count is too high."""
         exact = [processes.proportional_bytes(pid) for pid in members]
         return sum(exact) > self._limits.memory_bytes or not any(exact)
 

@@ -56,12 +56,12 @@ class Namespaces:
         """
         if self.builder is not None:
             self.builder.wait()
-        # bubblewrap may end without having waited for it: then it has become a child of this process.
+        # If bubblewrap ended without waiting for it, it has become a child of this process.
         with contextlib.suppress(ChildProcessError):
             os.waitpid(self.init, 0)
 
     def forget(self) -> None:
-        """Close, in a fork of the process that made the namespaces, what keeps them open."""
+        """Close the descriptors that keep the namespaces open, in a fork of the process that made them."""
         if self.builder is not None:
             for number in (self.builder.input, self.builder.output, self.builder.errors):
                 os.close(number)
@@ -205,7 +205,7 @@ _of_process: dict[int, int] = {}
 
 
 def user_namespace_of_this_process() -> int:
-    """Return the user namespace of all students that this process starts in turn; made at the first call.
+    """Return the user namespace that this process uses for all students; the first call makes it.
 
     Raises:
         OSError: if this machine allows no user namespaces.

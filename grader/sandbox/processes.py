@@ -1,6 +1,6 @@
 """A student's processes without namespaces, and what /proc says about them.
 
-Source: proc(5). Processes that end during the look count nothing.
+Source: proc(5). Processes that end while they are read count as nothing.
 """
 
 from __future__ import annotations
@@ -20,9 +20,6 @@ import psutil
 
 from grader.sandbox.filesystem import write_file
 from grader.sandbox.program import Paths
-
-# Source: proc(5). Processes that end during the look count nothing.
-
 
 _TICKS = os.sysconf("SC_CLK_TCK")
 _PAGE = os.sysconf("SC_PAGE_SIZE")
@@ -121,9 +118,9 @@ class ProcessTree:
     own_processes: frozenset[int] = frozenset()
 
     def kill(self) -> None:
-        """Kill what the student has started. What it starts meanwhile is found by `reap`."""
+        """Kill what the student has started. `reap` finds what it starts meanwhile."""
         alive = descendants(self.init)
-        for number in (signal.SIGSTOP, signal.SIGKILL):  # first none can fork any more
+        for number in (signal.SIGSTOP, signal.SIGKILL):  # stopped processes can't fork
             for process in alive:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(process, number)
@@ -144,7 +141,7 @@ def make_paths(files: Mapping[str, bytes], owner: int | None, hub: Path | None) 
 
     Args:
         files: name to content.
-        owner: the user that the home is given to; None for the present one.
+        owner: the user that the home is given to; None for the current one.
         hub: the hub's socket, which the program sees at its real path.
     """
     top = Path(tempfile.mkdtemp(prefix="spinbook-student-"))

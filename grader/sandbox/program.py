@@ -1,4 +1,4 @@
-"""What is started in a sandbox: files, arguments, paths and limits; and what can go wrong."""
+"""The specification of a program in a sandbox: files, arguments, paths and limits; and the errors."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from pathlib import Path, PurePosixPath
 SUBMISSION = "/submission"
 HUB = "/run/lockstep/hub"
 
-#: The message to the fork server that requests a supervisor. Any other one is the name of a module to import.
+#: The message to the fork server that requests a supervisor. Any other message is the name of a module to import.
 START_REQUEST = b" start"
 
 
 class SandboxUnavailable(Exception):
-    """Raised when this machine does not allow the requested sandbox or lacks the middleware."""
+    """Raised if this machine does not allow the requested sandbox or lacks the middleware."""
 
 
 class SandboxError(Exception):
-    """Raised when a sandbox could not be made or ended: a fault of ours or the machine's, never of the student."""
+    """Raised if a sandbox could not be made or ended: a fault of ours or the machine's, never the student's."""
 
 
 class Isolation(str, Enum):
-    """The levels, strongest first. docs/sandbox.md says what each of them keeps apart."""
+    """The levels, strongest first. docs/sandbox.md says what each of them isolates."""
 
     BUBBLEWRAP = "bubblewrap"
     """Namespaces of its own, made by bubblewrap."""
@@ -71,7 +71,7 @@ class ProgramSpec:
     hub: Path | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what could leave the submission's folder or does not exist in it.
+        """Check that all paths are inside the submission's folder and that the main file exists.
 
         Raises:
             ValueError: for a path that could lead outside or has a NUL in it, or a main file that does not exist.
@@ -116,7 +116,7 @@ class Limits:
     file_bytes: int = 64 * _MIB
     """One file, and each of /tmp, the home directory and /dev/shm as a whole."""
     output_bytes: int = 16 * _MIB
-    """What it prints."""
+    """Bytes that it prints."""
     wall_s: float = 300.0
     """Seconds from its start to its end, only to catch what every other limit misses."""
 

@@ -1,8 +1,8 @@
 """The system calls that no student's node needs and that would weaken the sandbox: refused by a seccomp filter.
 
 Denied are: inspecting other processes, changing mounts or namespaces, keys, kernel interfaces with a history of
-holes, and memory that no limit counts (System V shared memory, memfd). It lists what is refused, and not what is
-allowed, so that it never breaks a correct node; what confines are the namespaces and the absence of every capability.
+holes, and memory that no limit counts (System V shared memory, memfd). The filter lists what is refused, and not what
+is allowed, so it never breaks a correct node. The confinement comes from namespaces and from dropping all capabilities.
 
 Source: seccomp(2), bpf(4), and the kernel's tables of system calls for x86-64 and arm64.
 """
@@ -99,7 +99,7 @@ _FORBIDDEN: dict[str, tuple[int | None, int | None]] = {
     "mq_open": (240, 180),
     "memfd_secret": (447, 447),
 }
-# Reported as absent, because callers then fall back to a call that is allowed.
+# Reported as absent: callers then fall back to a call that is allowed.
 _ABSENT: dict[str, tuple[int, int]] = {"memfd_create": (319, 279), "clone3": (435, 435)}
 # Reported as successful: the runner has pinned the program to one core and it stays there.
 _IGNORED: dict[str, tuple[int, int]] = {"sched_setaffinity": (203, 122)}

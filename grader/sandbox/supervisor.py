@@ -19,14 +19,14 @@ from grader.sandbox.program import HUB, SUBMISSION, Isolation, Paths, ProgramSpe
 
 @dataclass(frozen=True)
 class StudentToRun:
-    """What a freshly made student process has to run."""
+    """What a new student process has to run."""
 
     program: ProgramSpec
     paths: Paths
 
 
 def supervise(start: StartRequest, control: int, output: int, users: int = -1) -> StudentToRun:
-    """Start a student and stay with it until it is dead. Returns only in the student itself; the supervisor exits.
+    """Start a student's program and watch it until it is dead. Return only in the student; the supervisor exits.
 
     Args:
         start: what to start.
@@ -60,7 +60,7 @@ def supervise(start: StartRequest, control: int, output: int, users: int = -1) -
 
 
 def refuse(control: int, reason: str) -> NoReturn:
-    """Answer a runner that no student can be started, and exit."""
+    """Tell the runner that no program can be started, and exit."""
     _report(control, {"event": "failed", "reason": reason})
     os._exit(0)
 
@@ -80,7 +80,7 @@ def _build(start: StartRequest, users: int) -> tuple[namespaces.Namespaces | pro
 
 
 def _admit_student_alone(hub: Path, owner: int | None) -> None:
-    """Let the student use the hub's socket, and no other user of this machine.
+    """Let the student, and no other user of this machine, use the hub's socket.
 
     With namespaces it gets the socket alone, without the folder. Without them, and as root, it is another user.
     """
@@ -98,7 +98,7 @@ def _fork_student(
     other_tasks: int,
     output: int,
 ) -> int | StudentToRun:
-    """Fork the student. Returns its pid in the parent, and what to run in the child, once it has been confined."""
+    """Fork the student. Return its pid in the parent and, once it is confined, what to run in the child."""
     fault_at, fault_to = os.pipe()
     child = os.fork()
     if child == 0:

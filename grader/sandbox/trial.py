@@ -1,4 +1,4 @@
-"""Tries whether a level of isolation works here, by starting a program in it: exits with 0, or prints why not, with 1.
+"""Tests a level of isolation by starting a program in it. Exits with 0, or prints the reason and exits with 1.
 
 python -m grader.sandbox.trial LEVEL
 """
@@ -20,7 +20,7 @@ def main(level: Isolation) -> str | None:
     if level is Isolation.LANDLOCK and not landlock.version():
         return "the kernel has no Landlock (Linux 5.13 and newer have it, unless it is switched off)"
     try:
-        # Not preloaded: this also shows that Python itself can be started in there.
+        # Not preloaded, to test that Python itself can be started there.
         program = ProgramSpec("trial.py", {"trial.py": _PROGRAM.encode()}, preloaded=False)
         with ForkServer(preload=()) as fork_server, fork_server.start(program, level) as student:
             end = student.wait(20.0)

@@ -30,7 +30,7 @@ def end(fault: BaseException) -> NoReturn:
 
 
 def end_of_interrupt() -> None:
-    """End the process by SIGINT if it was interrupted: to be called when everything else has ended."""
+    """End the process by SIGINT if it was interrupted: call this when everything else has ended."""
     if not _interrupted:
         return
     sys.stdout.flush()
@@ -40,7 +40,7 @@ def end_of_interrupt() -> None:
 
 
 class _OfOneThread(io.StringIO):
-    """Keeps what the thread that made it writes; what others write goes on to `others`."""
+    """Keeps the text that the thread which created it writes, and passes on the text of other threads to `others`."""
 
     def __init__(self, others: TextIO) -> None:
         super().__init__()
@@ -54,7 +54,7 @@ def _print_at_once(fault: BaseException, output: TextIO) -> None:
     """Print an exception in one piece.
 
     The interpreter prints it line by line. Another thread may print a traceback of its own at that time, as rclpy's
-    executor does for a goal that is under way: nobody could tell the lines of the two apart.
+    executor does for a goal in progress, and the lines of the two would be mixed.
     """
     kept = _OfOneThread(output)
     with contextlib.redirect_stderr(kept):
@@ -62,5 +62,5 @@ def _print_at_once(fault: BaseException, output: TextIO) -> None:
     try:
         output.write(kept.getvalue())
         output.flush()
-    except (OSError, ValueError):  # closed: the interpreter has its own way
+    except (OSError, ValueError):  # closed: leave it to the interpreter
         sys.__excepthook__(type(fault), fault, fault.__traceback__)

@@ -27,8 +27,8 @@ from grader.sandbox.program import START_REQUEST, Paths, ProgramSpec
 from grader.sandbox.supervisor import StudentToRun, refuse, supervise
 from rmw_lockstep import IDENTIFIER
 
-#: The number of cores that a program sees. It runs on one, but rclpy's MultiThreadedExecutor uses this as its number of
-#: threads, and with a single thread a program would hang here that works on every other machine.
+#: The number of cores that a program sees. It runs on one core, but rclpy's MultiThreadedExecutor starts this many
+#: threads, and with a single thread, programs that work on other machines would hang here.
 CORES_SHOWN = 4
 
 
@@ -74,7 +74,7 @@ def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
         errors = "surrogateescape" if mode == "r" else "backslashreplace"
         binary = io.FileIO(number, mode, closefd=False)
         buffered = io.BufferedReader(binary) if mode == "r" else io.BufferedWriter(binary)
-        # By the line, as on a terminal, so that printed text is there when the program is killed.
+        # Line-buffered as on a terminal, so that no text is lost when the program is killed.
         stream = io.TextIOWrapper(buffered, "utf-8", errors, line_buffering=True)
         setattr(sys, name, stream)
         setattr(sys, f"__{name}__", stream)
@@ -91,8 +91,8 @@ def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
     return module
 
 
-# The names of Spinbook's modules, and the number of all, before a fork. Each name that a fork looks at is copied from
-# the fork server's memory.
+# The names of Spinbook's modules, and the number of all modules, before a fork. Stored here, because each name that a
+# fork reads in `sys.modules` would copy a page of the fork server's memory.
 _own_modules: list[str] = []
 _count_of_modules: list[int] = []
 
@@ -111,7 +111,7 @@ def _modules_of_this_fork() -> list[str]:
     return list(itertools.islice(reversed(sys.modules), len(sys.modules) - _count_of_modules[0]))
 
 
-# The modules whose code is still running below the student's: without a reference they would be torn down.
+# The modules whose code is still running below the student's. Without a reference they would be torn down.
 _ours: list[types.ModuleType] = []
 
 
@@ -145,7 +145,7 @@ def _prepare_for_forks() -> None:
     callers.remember_files()
     preloaded.choose()
     preloaded.hide()
-    sys.path_importer_cache.clear()  # emptied here, it need not be copied to be emptied in each fork
+    sys.path_importer_cache.clear()  # otherwise each fork would copy it to clear it
     _note_modules()
     gc.collect()
     gc.freeze()
@@ -166,14 +166,14 @@ def serve(requests: int, fault: str | None) -> StudentToRun | None:
             return None
         if message != START_REQUEST:
             preloaded.show_all()
-            with contextlib.suppress(Exception):  # a program that imports it is told why
+            with contextlib.suppress(Exception):  # a program that imports it gets the error
                 _import(message.decode())
             _prepare_for_forks()
             continue
         if _fork_supervisor() == 0:
             listening.detach()
             os.close(requests)
-            for number in passed:  # no program may inherit what was received
+            for number in passed:  # no program may inherit the received descriptors
                 os.set_inheritable(number, False)
             request, control, output, *users = passed
             with os.fdopen(request, "rb") as stream:
@@ -186,9 +186,9 @@ def serve(requests: int, fault: str | None) -> StudentToRun | None:
 
 
 def _fork_supervisor() -> int:
-    """Fork as the C library does, without what Python does besides: it prepares threads, locks and random numbers anew.
+    """Fork as the C library does, without Python's own preparation of threads, locks and random numbers.
 
-    A supervisor uses none of them. It forks its student as Python does, and there all this is done.
+    A supervisor uses none of these. It forks its student as Python does, which prepares them.
     """
     return syscalls.libc_call("fork", of=_with_python)
 
@@ -198,7 +198,7 @@ _with_python = ctypes.PyDLL(None, use_errno=True)
 
 
 def _load(modules: list[str]) -> str | None:
-    """Import modules, and return what is wrong if rclpy has loaded another middleware than the grader's."""
+    """Import modules. Return a message if rclpy has loaded another middleware than the grader's."""
     wanted = os.environ.pop("RMW_IMPLEMENTATION", None)
     if wanted and choosable():
         os.environ["RMW_IMPLEMENTATION"] = wanted
@@ -211,7 +211,7 @@ def _load(modules: list[str]) -> str | None:
     loaded = sys.modules["rclpy"].get_rmw_implementation_identifier()
     if loaded == IDENTIFIER:
         return None
-    return f"rclpy has loaded the middleware {loaded}, not {IDENTIFIER}. Run spinbook doctor: it says what is installed"
+    return f"rclpy has loaded the middleware {loaded}, not {IDENTIFIER}. Run spinbook doctor to see what is installed"
 
 
 def _import(name: str) -> None:

@@ -1,4 +1,4 @@
-"""What a process of the pool answers: a result, or whose fault it is that there is none."""
+"""The answer of a process of the pool: a result, or whose fault it is that there is none."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Answer = tuple[str, Any]
 
 
 def answer_of(work: Callable[[], Any]) -> Answer:
-    """Do some work, and return the answer. It raises nothing."""
+    """Do some work, and return the answer. Raises nothing."""
     try:
         return "result", work()
     except ExerciseError as error:

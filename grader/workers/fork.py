@@ -1,4 +1,4 @@
-"""How the worker and the processes that judge fork."""
+"""The fork of the worker and of the judging processes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import warnings
 def fork() -> int:
     """Fork as `os.fork` does, without the warning that Python 3.12 and later print if a process has several threads.
 
-    Those besides Python's own are LTTng's: ROS 2's tracing starts two when rclpy is imported. They wait for a tracing
+    The other threads are LTTng's: ROS 2's tracing starts two when rclpy is imported. They wait for a tracing
     daemon (lttng-ust(3), "LTTNG_UST_REGISTER_TIMEOUT"), and a child has no use for them.
     """
     if sys.version_info < (3, 12):

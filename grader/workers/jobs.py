@@ -1,4 +1,4 @@
-"""What a worker can do."""
+"""The jobs that a worker can do."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from grader.submission.places import is_launcher
 if TYPE_CHECKING:
     from grader.checking.run import Run
     from grader.sandbox.fork_server import (
-        ForkServer,  # the worker hands it in
+        ForkServer,  # the worker passes it in
         SandboxedProgram,
     )
 
 
 class Job(Protocol):
-    """Something to do in a process of the worker pool. `ready` is to be called once threads are allowed."""
+    """A job for a process of the worker pool. It calls `ready` as soon as other threads may start."""
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
-        """Do it."""
+        """Do the job, and return its result."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The processes that judge: one collects an exercise's checks, and each judging is a fork of it from there on."""
+"""The judging processes: one collects an exercise's checks, and each judging is a fork of it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _REQUEST = b"j"
 
 
 class Judges:
-    """The worker's side. A process is started when it is first needed, and again if it has died."""
+    """The worker's side. A process is started when it is first needed, and restarted if it has died."""
 
     def __init__(self, working: set[int]) -> None:
         """`working` are the worker's processes, which this adds to."""
@@ -39,7 +39,7 @@ class Judges:
         Args:
             collected: what `SharedObjects.to_collect` returned.
             descriptor: the socket from which the `JudgeJob` comes, and to which its result goes.
-            control: what only the worker may hold.
+            control: a socket that only the worker may keep open.
         """
         for _ in range(2):
             requests = self._requests.get(collected) or self._start(collected, descriptor, control)
@@ -101,14 +101,14 @@ class _Judging:
         return job.runs()
 
     def end(self, answer: Answer) -> NoReturn:
-        """Answer and exit. Without a request so far it is the answer to each: the checks can't be used."""
+        """Answer and exit. Without a request so far, give this answer to every request: the checks can't be used."""
         connection = self._connection or self._fork_for_each()
         with contextlib.suppress(OSError):
             connection.send(answer)
         os._exit(0)
 
     def _fork_for_each(self) -> Connection:
-        gc.collect()  # later, in each fork, it would be copied there
+        gc.collect()  # a collection in each fork would copy the memory
         gc.freeze()
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # forks need no reaping
         while True:
@@ -125,7 +125,7 @@ class _Judging:
 
 
 def _end_with(connection: Connection) -> None:
-    """End this process when nobody waits for its answer any more."""
+    """End this process when its client has closed the connection."""
     with contextlib.suppress(EOFError, OSError):
         connection.recv()
     os._exit(1)

@@ -35,19 +35,18 @@ TRIES = 3
 
 
 class HostFault(Exception):
-    """Raised when a job failed several times through a fault of the machine or ours."""
+    """Raised if a job failed several times because of a fault of ours or the machine's."""
 
 
 class Worker:
     """One process of a worker pool, created when it is first needed; use it as a context manager, from one thread.
 
-    What the process has prepared for one job is ready for the next: a runner its namespaces, and all memory that is
-    copied from the worker when it is first touched. So it is for jobs that may share a process: the runs of one
-    submission, not those of two.
+    The process keeps what it has prepared for one job, such as a runner's namespaces and memory copied from the worker,
+    for the next. So use it for jobs that may share a process: the runs of one submission, not those of two.
     """
 
     def __init__(self, process: Callable[[], Connection], shared: SharedObjects) -> None:
-        """`process` connects to a new process; it raises OSError where there is none to be had."""
+        """`process` connects to a new process; it raises OSError if there is none."""
         self._new, self._shared, self._known = process, shared, 0
         self._process: Connection | None = None
 
@@ -61,7 +60,7 @@ class Worker:
             kind, result = self._once(job, cancelled or threading.Event())
             if kind == "result":
                 return result
-            self.close()  # the fault may have left it in any state
+            self.close()  # its state is unknown after a fault
             if kind == "author":
                 raise result
             faults.append(str(result))
@@ -88,7 +87,7 @@ class Worker:
             return "host", "the process that did the work died"
 
     def _started(self) -> Connection:
-        self._known = self._shared.count  # what is shared later, this process does not have
+        self._known = self._shared.count  # this process does not have what is shared later
         self._process = process = self._new()
         return process
 
@@ -126,18 +125,18 @@ STUDENT_ENVIRONMENT = {
 
 
 def leave_cpus_to_workers() -> None:
-    """Keep numpy, which ROS's message classes import, from starting a thread per CPU in this process: each of them
-    computes for 0.1 s before it waits. For commands; processes that they start have it from them.
+    """Keep numpy, which ROS's message classes import, from starting a thread per CPU: each of them computes for 0.1 s
+    before it waits. Commands call this, and their child processes inherit it.
     """
     os.environ.setdefault(_THREADS_OF_NUMPY, "1")
 
 
-#: The path of a socket has at most 107 bytes (unix(7)); a pool's folder and that of a hub in it need the others.
+#: The path of a socket has at most 107 bytes (unix(7)); the pool's folder and the hub's folder in it need the rest.
 _LONGEST_PLACE = 60
 
 
 def _place_for_sockets() -> str:
-    """The folder for temporary files, or /tmp if its path is too long for a socket, as on some clusters."""
+    """Return the folder for temporary files, or /tmp if its path is too long for a socket, as on some clusters."""
     place = tempfile.gettempdir()
     return place if len(os.fsencode(place)) <= _LONGEST_PLACE else "/tmp"
 
@@ -158,8 +157,8 @@ class WorkerPool:
             MiddlewareUnavailable: if the grader's middleware is not available on this machine.
         """
         require_middleware()
-        # A job that is cancelled ends at once: what it has made, as the folder of its hub, goes with the pool. A
-        # student that is another user goes through it to the hub.
+        # A cancelled job ends at once; its files, such as its hub's folder, are removed with the pool. A student who is
+        # another user has to pass through this folder to the hub.
         self._temporary = Path(tempfile.mkdtemp(prefix="spinbook-", dir=_place_for_sockets()))
         self._temporary.chmod(0o711)
         self._lock = threading.Lock()
@@ -190,7 +189,7 @@ class WorkerPool:
             return worker.do(job, cancelled)
 
     def judge(self, job: JudgeJob) -> tuple[Verdict, ...]:
-        """Do the same with a judging. If the exercise is shared, its checks are collected once for all judgings."""
+        """Return the verdicts of a judging. The checks of a shared exercise are collected once for all judgings."""
         collected = self._shared.to_collect(job.exercise, job.recordings)
         command = PROCESS if collected is None else JUDGE + collected
         with Worker(partial(self._process, command), self._shared) as worker:
@@ -198,7 +197,7 @@ class WorkerPool:
             return verdicts
 
     def reserve(self) -> Worker:
-        """A process that does one job after another."""
+        """Return a process that does one job after another."""
         return Worker(self._process, self._shared)
 
     def share(self, objects: Iterable[object]) -> None:
@@ -229,7 +228,7 @@ class WorkerPool:
             self._control.send(command)
 
     def _process(self, command: bytes = PROCESS) -> Connection:
-        """Return a connection to a new process that does jobs. Raises OSError if none can be had."""
+        """Return a connection to a new process that does jobs. Raises OSError if there is none."""
         ours, theirs = socket.socketpair()
         try:
             self._hand_over(command, theirs.fileno())
@@ -255,7 +254,7 @@ class WorkerPool:
                 socket.send_fds(self._control, [command], [descriptor])
 
     def close(self) -> None:
-        """End the worker, and with it every job and every student's program; remove what they have left."""
+        """End the worker, and with it every job and every student's program; remove their files."""
         self._closed = True
         self._control.close()
         self._worker.wait()

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Sandbox:
-    """What decides on the mounts of a submission's sandbox: see `grader.sandbox.filesystem.mounts`."""
+    """What determines the mounts of a submission's sandbox: see `grader.sandbox.filesystem.mounts`."""
 
     readonly: tuple[Path, ...]
     hidden: tuple[Path, ...]
@@ -33,11 +33,11 @@ class SharedObjects:
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """The number of shared objects."""
         return len(self._objects)
 
     def add(self, objects: Iterable[Any]) -> bytes:
-        """Add some; returns what `receive` is to be given in the worker."""
+        """Add objects; return the bytes for `receive` in the worker."""
         new = [one for one in objects if id(one) not in self._numbers]
         first = len(self._objects)
         self._objects += new
@@ -45,12 +45,12 @@ class SharedObjects:
         return pickle.dumps((first, new))
 
     def to_collect(self, exercise: Exercise, scenarios: Iterable[str]) -> bytes | None:
-        """What a process needs to know to collect the checks of an exercise; None if the exercise is not shared."""
+        """Return what a process needs to collect the checks of an exercise; None if the exercise is not shared."""
         number = self._numbers.get(id(exercise))
         return None if number is None else json.dumps([number, *scenarios]).encode()
 
     def pickled(self, job: Any, known: int) -> bytes:
-        """`job` for a process that has the first `known` objects."""
+        """Return `job`, pickled for a process that has the first `known` objects."""
         stream = io.BytesIO()
         _Pickler(stream, self._numbers, known).dump(job)
         return stream.getvalue()
@@ -73,27 +73,27 @@ _objects: dict[int, Any] = {}
 
 
 def shared_object(number: int) -> Any:
-    """The object of this number."""
+    """Return the object with this number."""
     return _objects[number]
 
 
 def what_to_collect(content: bytes) -> tuple[Exercise, list[str]]:
-    """The exercise, and the names of the scenarios, from `SharedObjects.to_collect`."""
+    """Return the exercise and the names of the scenarios, from `SharedObjects.to_collect`."""
     number, *scenarios = json.loads(content)
     return shared_object(number), scenarios
 
 
 def receive(content: bytes) -> None:
-    """Take objects from the owner, and work out what each job would have to work out for itself."""
+    """Take objects from the owner, and compute in advance what each job would compute."""
     first, objects = pickle.loads(content)
     for number, one in enumerate(objects, start=first):
         _objects[number] = one
-        with contextlib.suppress(Exception):  # what is wrong with it, the job that needs it says
+        with contextlib.suppress(Exception):  # the job that needs it reports the fault
             _prepare(one)
 
 
 def _prepare(one: Any) -> None:
-    from grader.scenario.scenario import Scenario  # here, as the owner starts sooner without it
+    from grader.scenario.scenario import Scenario  # imported here, because the owner starts faster without it
 
     if isinstance(one, Scenario):
         from grader.runner.publishers import prepare_messages

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 def preload() -> None:
-    """Import what runs a program, look at the file system, and leave the memory in a good state for forks to share."""
+    """Import the modules that run a program, scan the file system, and prepare the memory for sharing with forks."""
     importlib.import_module("grader.runner.run")
     filesystem.mounts((), (), 0)
     _share()
@@ -38,7 +38,7 @@ def preload() -> None:
 
 @functools.cache
 def preload_types(module: str) -> None:
-    """Do the same for a module of message types, such as `sensor_msgs.msg`, and its compiled support."""
+    """Preload a module of message types, such as `sensor_msgs.msg`, and its compiled support."""
     middleware.load_type_support(module)
     _share()
 
@@ -57,7 +57,7 @@ LONGEST_COMMAND = 65536
 
 @functools.cache
 def preload_judging() -> None:
-    """Do the same for what judging needs."""
+    """Preload what judging needs."""
     from grader.checking.judge import load_pytest
 
     load_pytest()
@@ -65,7 +65,7 @@ def preload_judging() -> None:
 
 
 def _share() -> None:
-    # Collected later, in each fork, it would be copied there.
+    # A later collection in each fork would copy this memory.
     gc.collect()
     gc.freeze()
 
@@ -74,7 +74,7 @@ def _share() -> None:
 
 
 def main() -> None:
-    """Serve jobs until the other end of the control socket is closed; remove the folder with all they have left."""
+    """Serve jobs until the other end of the control socket is closed; remove the folder with the jobs' files."""
     descriptor, folder = sys.argv[1:]
     control = socket.socket(fileno=int(descriptor))
     with ForkServer() as fork_server:
@@ -94,7 +94,7 @@ def main() -> None:
                 preload_types(module)
             elif command == SHARE:
                 take_shared(descriptors[0])
-                judges.close()  # they don't have it
+                judges.close()  # they lack the newly shared objects
             elif command.startswith(JUDGE):
                 judges.request(command.removeprefix(JUDGE), descriptors[0], control)
                 os.close(descriptors[0])
@@ -121,10 +121,10 @@ def _reap(working: set[int]) -> None:
 
 
 def _work(descriptor: int, fork_server: ForkServer) -> NoReturn:
-    """Do one job after another in this process, which ends with the first that fails, or when no more are requested."""
+    """Do one job after another, until one fails or the client closes the connection."""
     connection = multiprocessing.connection.Connection(descriptor)
     jobs: queue.SimpleQueue[Job] = queue.SimpleQueue()
-    # The client may lose interest in the result: then the other end is closed, and the job ends at once.
+    # If the client no longer needs the result, it closes the other end, and the job ends at once.
     listener = threading.Thread(target=_listen, args=(connection, jobs), daemon=True)
 
     def ready() -> None:
