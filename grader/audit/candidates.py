@@ -175,16 +175,16 @@ def problems_of(
     candidates: list[Candidate], trials: dict[str, Trial], checks: tuple[AuditedCheck, ...], seed: int | None = None
 ) -> list[AuditProblem]:
     """Return the results that are not as they must be; `seed` is set if it is not the default one."""
-    found: list[AuditProblem] = []
+    problems: list[AuditProblem] = []
     for candidate in candidates:
         trial = trials[candidate.name]
         if candidate.kind == "nothing":
-            found += _nothing(candidate, trial, checks)
+            problems += _nothing(candidate, trial, checks)
         elif candidate.kind == "mistake":
-            found += _mistake(candidate, trial, checks)
+            problems += _mistake(candidate, trial, checks)
         else:
-            found += _right(candidate, trial, seed)
-    return found
+            problems += _right(candidate, trial, seed)
+    return problems
 
 
 def _right(candidate: Candidate, trial: Trial, seed: int | None) -> list[AuditProblem]:
@@ -219,31 +219,31 @@ def _mistake(candidate: Candidate, trial: Trial, checks: tuple[AuditedCheck, ...
     subject = f"the mistake {candidate.name} (“{candidate.title}”)"
     known = {check.name for check in checks}
 
-    def problem(about: str, found: str, fix: str) -> AuditProblem:
-        return AuditProblem(candidate.file, candidate.line, found, fix, about=about)
+    def problem(about: str, text: str, fix: str) -> AuditProblem:
+        return AuditProblem(candidate.file, candidate.line, text, fix, about=about)
 
     if not candidate.caught_by:
         fix = "Write “Caught by:” and the names of the checks in its section, or in its docstring."
         return [problem(candidate.name, f"{subject} names no check that must catch it", fix)]
-    found = []
+    problems = []
     for name in candidate.caught_by:
         status = trial.statuses.get(name)
         fix = "Fix the check so that it fails, or take it off the list under “Caught by:”."
         if name not in known:
             fix = "Write the check (again), or take it off the list under “Caught by:”."
-            found.append(problem(name, f"{subject} is to be caught by {name}: there is no such check", fix))
+            problems.append(problem(name, f"{subject} is to be caught by {name}: there is no such check", fix))
         elif status == "passed":
-            found.append(problem(name, f"{name} lets {subject} through", fix))
+            problems.append(problem(name, f"{name} lets {subject} through", fix))
         elif status == "blocked":
             by = ", ".join(trial.failed) or "another check"
             text = f"{name} is to catch {subject}, but is blocked: it depends on {by}, which fails"
-            found.append(problem(name, text, fix))
+            problems.append(problem(name, text, fix))
     for name in trial.failed:
         if name not in candidate.caught_by:
             text = f"{subject} fails {name}, too, which it does not name: {trial.findings[name].text}"
             fix = "If the check should pass here, fix it. Otherwise add it under “Caught by:”."
-            found.append(problem(name, text, fix))
-    return found
+            problems.append(problem(name, text, fix))
+    return problems
 
 
 def _score(trial: Trial, checks: tuple[AuditedCheck, ...]) -> float:

@@ -105,9 +105,9 @@ class _Listing(Checks):
 SHORTEST = 12
 
 
-def problem_of(check: AuditedCheck, found: str, fix: str) -> AuditProblem:
+def problem_of(check: AuditedCheck, problem: str, fix: str) -> AuditProblem:
     """Return a problem of this check."""
-    return AuditProblem(check.file, check.line, found, fix, about=check.name)
+    return AuditProblem(check.file, check.line, problem, fix, about=check.name)
 
 
 def problems_in_text(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
@@ -116,15 +116,15 @@ def problems_in_text(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> li
 
 
 def _rules(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
-    found = []
+    problems = []
     for check in checks:
         if check.hidden and not check.rule:
             text = f"the hidden check {check.name} does not name the sentence of the task that it is based on"
-            found.append(problem_of(check, text, 'Add rule="…" to @check, with the sentence of task.md.'))
+            problems.append(problem_of(check, text, 'Add rule="…" to @check, with the sentence of task.md.'))
         elif check.rule:
             for error in rule_that_the_task_lacks(exercise.task, check.rule, check.file, check.line):
-                found.append(problem_of(check, error.problem.problem, error.problem.fix))
-    return found
+                problems.append(problem_of(check, error.problem.problem, error.problem.fix))
+    return problems
 
 
 def _giveaways(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
@@ -132,15 +132,15 @@ def _giveaways(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[Aud
     in_starter = {_squeezed(line) for line in starter(source).splitlines()}
     lines = {line.split("  #")[0].strip() for line in source.splitlines() if not line.strip().startswith("#")}
     secret = {_squeezed(line): line for line in lines if len(line) >= SHORTEST and _squeezed(line) not in in_starter}
-    found = []
+    problems = []
     for check in checks:
         for name, text in (("hint", check.hint), ("title", check.title)):
             for squeezed, line in secret.items():
                 if squeezed in _squeezed(text):
                     message = f"the {name} of {check.name} contains a line of the solution: {line}"
                     fix = "Say where to look, not what to write."
-                    found.append(problem_of(check, message, fix))
-    return found
+                    problems.append(problem_of(check, message, fix))
+    return problems
 
 
 def _squeezed(text: str) -> str:

@@ -50,14 +50,14 @@ def stale(exercise: Exercise, reasons: dict[str, str], fates: dict[str, Fate]) -
     """Return the entries that are out of date."""
     file = survivors_file(exercise)
     lines = file.read_text(encoding="utf-8").splitlines() if reasons else []
-    found = []
+    problems = []
     for id_ in reasons:
         fate = fates.get(id_, "gone")
         if fate in NOW:
             line = next((i for i, text in enumerate(lines, start=1) if id_ in text), 1)
             message = f"the mutant {id_} is listed as a survivor, but {NOW[fate]}"
-            found.append(AuditProblem(file, line, message, "Remove the entry.", about=id_))
-    return found
+            problems.append(AuditProblem(file, line, message, "Remove the entry.", about=id_))
+    return problems
 
 
 QUESTION = "Is this a right solution? Then list it in {}, as mutant = {!r}, with a reason. If not, add a check."

@@ -24,17 +24,17 @@ def differences(recording: Recording, reference: Recording) -> tuple[RecordingDi
     """Return every difference that can be seen from outside a node: messages, graph, how it ended. Its log does not
     count.
     """
-    found: list[str] = []
+    texts: list[str] = []
     if recording.ending != reference.ending:
-        found.append(f"it ended differently: {recording.ending.message or recording.ending.traceback or 'not in time'}")
+        texts.append(f"it ended differently: {recording.ending.message or recording.ending.traceback or 'not in time'}")
     if recording.nodes != reference.nodes:
-        found.append(f"nodes {_named(recording.nodes)}, the solution's {_named(reference.nodes)}")
-    found += _ends(recording, reference)
+        texts.append(f"nodes {_named(recording.nodes)}, the solution's {_named(reference.nodes)}")
+    texts += _ends(recording, reference)
     if recording.uses_sim_time != reference.uses_sim_time:
-        found.append("its clock differs")
-    found += _messages(recording.received, reference.received)
-    found += _events(recording, reference)
-    return tuple(RecordingDifference(recording.scenario, text) for text in found)
+        texts.append("its clock differs")
+    texts += _messages(recording.received, reference.received)
+    texts += _events(recording, reference)
+    return tuple(RecordingDifference(recording.scenario, text) for text in texts)
 
 
 def _named(names: tuple[str, ...]) -> str:
@@ -64,7 +64,7 @@ def _messages(mine: tuple[ReceivedMessage, ...], its: tuple[ReceivedMessage, ...
 
 def _events(recording: Recording, reference: Recording) -> list[str]:
     """Return the differences in calls, goals, parameters and ends of programs."""
-    found = []
+    texts = []
     events: tuple[tuple[str, Sequence[Any], Sequence[Any]], ...] = (
         ("calls of services", recording.calls, reference.calls),
         ("goals", recording.goals, reference.goals),
@@ -74,10 +74,10 @@ def _events(recording: Recording, reference: Recording) -> list[str]:
     )
     for name, mine, its in events:
         if len(mine) != len(its):
-            found.append(f"{len(mine)} {name}, the solution's {len(its)}")
-        elif differ := sum(_text(asdict(one)) != _text(asdict(other)) for one, other in zip(mine, its, strict=True)):
-            found.append(f"{differ} of {len(its)} {name} differ")
-    return found
+            texts.append(f"{len(mine)} {name}, the solution's {len(its)}")
+        elif differ := sum(_text(asdict(a)) != _text(asdict(b)) for a, b in zip(mine, its, strict=True)):
+            texts.append(f"{differ} of {len(its)} {name} differ")
+    return texts
 
 
 def _text(value: Any) -> str:

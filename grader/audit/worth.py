@@ -34,15 +34,15 @@ def never_failing(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) ->
 
 def alike(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[tuple[AuditedCheck, AuditedCheck, int]]:
     """Return pairs of checks that always failed together, with the number of times."""
-    found = []
+    pairs_alike = []
     for check, other in combinations(checks, 2):
         # If only one of them was judged, nothing is known about the other.
         pairs = [(trial.statuses.get(check.name), trial.statuses.get(other.name)) for trial in trials.values()]
         judged = [pair for pair in pairs if set(pair) <= {"passed", "failed"}]
         many = judged.count(("failed", "failed"))
         if many and all(first == second for first, second in judged):
-            found.append((check, other, many))
-    return found
+            pairs_alike.append((check, other, many))
+    return pairs_alike
 
 
 def worth_running_on(
@@ -55,11 +55,11 @@ def worth_running_on(
     chosen: set[str] = set()
     for check in never_failing(checks, trials):
         chosen.update([id_ for id_, trial in mutants.items() if _undecided(check, trial)][:EACH])
-    for one, other, _ in alike(checks, trials):
+    for check, other, _ in alike(checks, trials):
         tells = [
             id_
             for id_, trial in mutants.items()
-            for failed, open_ in ((one, other), (other, one))
+            for failed, open_ in ((check, other), (other, check))
             if failed.name in trial.failed and _undecided(open_, trial)
         ]
         chosen.update(tells[:EACH])
@@ -86,24 +86,24 @@ def _that_fail_together(checks: tuple[AuditedCheck, ...], trials: dict[str, Tria
     return [
         problem_of(
             other,
-            f"{one.name} and {other.name} always fail together ({many} times): do both judge the same thing?",
+            f"{check.name} and {other.name} always fail together ({many} times): do both judge the same thing?",
             fix,
         )
-        for one, other, many in alike(checks, trials)
+        for check, other, many in alike(checks, trials)
     ]
 
 
 def problems_of_broken(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     """Return the checks that crashed on what some program published; `trials` are those of all programs, by name."""
-    found = []
+    problems = []
     for check in checks:
         for name, trial in trials.items():
             if trial.statuses.get(check.name) == "error":
                 text = f"{check.name} breaks on what {name} publishes: {trial.findings[check.name].text}"
                 fix = "A check must pass or fail, whatever a student's node publishes. Look before you use an element."
-                found.append(problem_of(check, text, fix))
+                problems.append(problem_of(check, text, fix))
                 break
-    return found
+    return problems
 
 
 def _broke_off(finding: Finding) -> bool:
@@ -116,15 +116,15 @@ def _broke_off(finding: Finding) -> bool:
 
 def messages(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     """Return the checks that failed and did not say what they expected."""
-    found = []
+    problems = []
     for check in checks:
         for name, trial in trials.items():
             finding = trial.findings.get(check.name) if check.name in trial.failed else None
             if finding and not _broke_off(finding) and not finding.expected and not WORDS.search(finding.text):
                 message = f"{check.name} fails for {name} and does not say what was expected: “{finding.text}”"
-                found.append(problem_of(check, message, "Name it in the message."))
+                problems.append(problem_of(check, message, "Name it in the message."))
                 break
-    return found
+    return problems
 
 
 def scenario_results(

@@ -52,12 +52,12 @@ def disagreements(exercise: Exercise) -> Iterator[ExerciseError]:
     source = file.read_text(encoding="utf-8", errors="replace")
     hidden = {number for block in hidden_blocks(source) for number, _ in block}
     declared, made = tuple(_declared(exercise)), created(source, exercise.node_name)
-    for one in made:
-        if one.name is not None:
-            problem = _difference(one, declared, exercise)
+    for call in made:
+        if call.name is not None:
+            problem = _difference(call, declared, exercise)
             if problem:
-                whose = "the solution" if one.line in hidden else "the starter"
-                yield ExerciseError(file, f"{whose} {problem}", _FIX, one.line)
+                whose = "the solution" if call.line in hidden else "the starter"
+                yield ExerciseError(file, f"{whose} {problem}", _FIX, call.line)
     yield from _missing(exercise, file, source, declared, made)
 
 
@@ -74,28 +74,28 @@ def _declared(exercise: Exercise) -> Iterator[_Declared]:
         yield _Declared("parameter", number, parameter.name, parameter.type, default=parameter.default)
 
 
-def _difference(one: Created, declared: tuple[_Declared, ...], exercise: Exercise) -> str:
+def _difference(call: Created, declared: tuple[_Declared, ...], exercise: Exercise) -> str:
     """Return how it differs from the declaration, to follow the words "the solution"; empty if it does not."""
-    verb = "declares" if one.kind == "parameter" else "creates"
-    what = f"{verb} {_WORDS[one.kind]} {one.name}"
-    same = [other for other in declared if (other.kind, other.name) == (one.kind, one.name)]
+    verb = "declares" if call.kind == "parameter" else "creates"
+    phrase = f"{verb} {_WORDS[call.kind]} {call.name}"
+    same = [other for other in declared if (other.kind, other.name) == (call.kind, call.name)]
     if not same:
         # One of several programs may subscribe to what another one publishes, which is declared once.
-        of_topic = exercise.programs and one.kind in ("publish", "subscribe")
-        same = [other for other in declared if other.name == one.name] if of_topic else []
+        of_topic = exercise.programs and call.kind in ("publish", "subscribe")
+        same = [other for other in declared if other.name == call.name] if of_topic else []
         if not same:
-            return f"{what}, which exercise.toml does not declare under [[{one.kind}]]"
-    return _other_value(one, same[0], what)
+            return f"{phrase}, which exercise.toml does not declare under [[{call.kind}]]"
+    return _other_value(call, same[0], phrase)
 
 
-def _other_value(one: Created, other: _Declared, what: str) -> str:
+def _other_value(call: Created, other: _Declared, phrase: str) -> str:
     """Return the first of type, QoS and default that differs from the declaration."""
-    pairs = [("type", one.type, other.type), ("default", one.default, other.default)]
-    if one.kind == other.kind and one.qos and other.qos:
-        pairs += [(name, getattr(one.qos, name), getattr(other.qos, name)) for name in vars(other.qos)]
+    pairs = [("type", call.type, other.type), ("default", call.default, other.default)]
+    if call.kind == other.kind and call.qos and other.qos:
+        pairs += [(name, getattr(call.qos, name), getattr(other.qos, name)) for name in vars(other.qos)]
     for name, got, expected in pairs:
         if got is not None and expected is not None and got != expected:
-            return f"{what} with {name} = {_shown(got)}; exercise.toml has {name} = {_shown(expected)}"
+            return f"{phrase} with {name} = {_shown(got)}; exercise.toml has {name} = {_shown(expected)}"
     return ""
 
 
@@ -109,11 +109,16 @@ def _missing(
 ) -> Iterator[ExerciseError]:
     """Yield what is declared, but neither created nor named anywhere in the solution."""
     toml, written = exercise.folder / "exercise.toml", texts(source)
-    computed = {one.kind for one in made if one.name is None}
-    for one in declared:
-        there = any((other.kind, other.name) == (one.kind, one.name) for other in made)
-        if there or one.kind in computed or one.name in _OF_LIBRARIES or {one.name, one.name.lstrip("/")} & written:
+    computed = {call.kind for call in made if call.name is None}
+    for table in declared:
+        there = any((other.kind, other.name) == (table.kind, table.name) for other in made)
+        if (
+            there
+            or table.kind in computed
+            or table.name in _OF_LIBRARIES
+            or {table.name, table.name.lstrip("/")} & written
+        ):
             continue
-        verb = "declare" if one.kind == "parameter" else "create"
-        problem = f"{file.name} does not {verb} {_WORDS[one.kind]} {one.name}, which is declared here"
-        yield ExerciseError(toml, problem, _FIX, line_of(toml, one.kind, one.number, ""))
+        verb = "declare" if table.kind == "parameter" else "create"
+        problem = f"{file.name} does not {verb} {_WORDS[table.kind]} {table.name}, which is declared here"
+        yield ExerciseError(toml, problem, _FIX, line_of(toml, table.kind, table.number, ""))

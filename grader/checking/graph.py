@@ -81,7 +81,7 @@ def must_have_interface(run: RecordedRun, only: bool = False) -> None:
     With `only`, it must have no others, and one endpoint of each. Of several programs, each node must have at most one.
     """
     declared = [(_KINDS[topic.direction], topic.name, topic.type) for topic in run.exercise.topics]
-    declared += [(_KINDS[one.role], one.name, one.type) for one in run.exercise.endpoints]
+    declared += [(_KINDS[end.role], end.name, end.type) for end in run.exercise.endpoints]
     for kind, name, type_ in declared:
         mine = end_points(run, kind, name)
         if not mine:

@@ -161,7 +161,7 @@ class RecordedRun:
             *self.exercise.endpoints,
             *self.exercise.inputs,
         ]
-        return next((one.units[field] for one in declared if name in ("", one.name) and field in one.units), "")
+        return next((d.units[field] for d in declared if name in ("", d.name) and field in d.units), "")
 
     def messages_on(
         self, topic: str = "", reference: bool = False, subscriber: str = ""

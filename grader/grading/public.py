@@ -54,8 +54,8 @@ def public_part(exercise: Exercise, options: Options, isolation: Isolation, work
     used = {name for check in checks if not check.hidden for name in check.fixtures}
     scenarios = tuple(scenario for scenario in declared(exercise, options.seed) if scenario.name in used)
     if not scenarios:
-        found = "no public check uses a scenario"
-        raise ExerciseError(exercise.folder / "checks.py", found, "Write one: students check their own work with it.")
+        problem = "no public check uses a scenario"
+        raise ExerciseError(exercise.folder / "checks.py", problem, "Write one: students check their own work with it.")
     references = reference(ScenarioRunner(exercise.public(), scenarios, isolation, options, workers))
     hidden = [check for check in checks if check.hidden]
     return PublicPart(scenarios, references, len(hidden), sum(check.points for check in hidden))
@@ -127,9 +127,9 @@ def _for_students(exercise: Exercise, scenario: Scenario) -> Any:
     try:
         return plain_scenario(scenario)
     except NotForStudents as error:
-        found = f"the scenario {scenario.name}, which a public check uses, runs {error} of this file"
+        problem = f"the scenario {scenario.name}, which a public check uses, runs {error} of this file"
         fix = f"Students don't get this file. Put {error} into another one in this folder, or hide the check."
-        raise ExerciseError(exercise.scenarios_file, found, fix, scenario.line or None) from None
+        raise ExerciseError(exercise.scenarios_file, problem, fix, scenario.line or None) from None
 
 
 def _scenario(entries: dict[str, Any], folder: Path) -> Scenario:

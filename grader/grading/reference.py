@@ -114,8 +114,8 @@ def _made(runner: ScenarioRunner) -> dict[str, Recording]:
     for recording in recordings.values():
         ending = recording.ending
         if ending.outcome != "completed":
-            found = f"the solution does not complete the scenario {recording.scenario}: {ending.message}"
-            raise ExerciseError(file, found, "Fix the solution or the scenario.", ending.line)
+            problem = f"the solution does not complete the scenario {recording.scenario}: {ending.message}"
+            raise ExerciseError(file, problem, "Fix the solution or the scenario.", ending.line)
     return recordings
 
 
@@ -131,8 +131,8 @@ def _prove(runner: ScenarioRunner, recordings: dict[str, Recording]) -> None:
             raise ExerciseError(file, f"the check {verdict.name} breaks: {verdict.error}", "Fix the check.", line)
         if verdict.status == "failed":
             message = verdict.finding.text if verdict.finding else ""
-            found = f"the solution does not pass the check {verdict.name}: {message}"
-            raise ExerciseError(file, found, "Fix the check or the solution.", line)
+            problem = f"the solution does not pass the check {verdict.name}: {message}"
+            raise ExerciseError(file, problem, "Fix the check or the solution.", line)
     for file in exercise.check_files:
         for fault in same_name_twice(file):
             raise fault

@@ -178,10 +178,10 @@ class ScenarioRunner:
             environment={**STUDENT_ENVIRONMENT, **submission.program.environment},
             hidden=self._hidden,
         )
-        own = {one.file: one.arguments for one in scenario.programs}
+        own = {program.file: program.arguments for program in scenario.programs}
         programs = tuple(
-            replace(program, main=one.file, arguments=(*own.get(one.file, ()), *program.arguments))
-            for one in self.exercise.programs
+            replace(program, main=part.file, arguments=(*own.get(part.file, ()), *program.arguments))
+            for part in self.exercise.programs
         )
         cores = sorted(os.sched_getaffinity(0))
         return RunJob(
@@ -196,9 +196,14 @@ class ScenarioRunner:
             pace=self.options.pace,
             data_bytes=max(LEAST_BYTES, MOST_BYTES // len(self.scenarios)),
             programs=programs,
-            companions=tuple(_companion(one) for one in scenario.companions),
+            companions=tuple(_companion(companion) for companion in scenario.companions),
         )
 
 
-def _companion(one: Companion) -> ProgramSpec:
-    return ProgramSpec(one.file, {one.file: one.text.encode()}, (*one.arguments, *ARGUMENTS), STUDENT_ENVIRONMENT)
+def _companion(companion: Companion) -> ProgramSpec:
+    return ProgramSpec(
+        companion.file,
+        {companion.file: companion.text.encode()},
+        (*companion.arguments, *ARGUMENTS),
+        STUDENT_ENVIRONMENT,
+    )

@@ -61,16 +61,16 @@ def message_type(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     place = _argument(node, "type")
     if place is not None:
         other, module = OTHER_TYPES.get(called(node), ("std_msgs.msg.String", "std_msgs.msg"))
-        what = f"has the type {other.rpartition('.')[2]} for {program.text(place.value)}"
-        yield Change(node, place.value, expression(other), what, (module,))
+        description = f"has the type {other.rpartition('.')[2]} for {program.text(place.value)}"
+        yield Change(node, place.value, expression(other), description, (module,))
 
 
 def quality_of_service(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """Give an endpoint another depth, or make it best effort or transient local."""
     place = _argument(node, "qos")
     if place is not None:
-        for new, what, imports in PROFILES:
-            yield Change(node, place.value, expression(new), f"{called(node)} {what}", imports)
+        for new, description, imports in PROFILES:
+            yield Change(node, place.value, expression(new), f"{called(node)} {description}", imports)
 
 
 def callback_left_out(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
@@ -109,8 +109,8 @@ def one_publisher_a_message(node: cst.CSTNode, program: ParsedProgram) -> Iterat
         for callback in program.callbacks():
             if isinstance(callback.body, cst.IndentedBlock) and program.has_self(callback.body):
                 body = [node.with_changes(leading_lines=[]), *callback.body.body]
-                what = "creates a publisher for each message"
-                yield Change(callback, callback.body, with_body(callback.body, body), what)
+                description = "creates a publisher for each message"
+                yield Change(callback, callback.body, with_body(callback.body, body), description)
 
 
 def publisher_on_other_topic(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
@@ -120,8 +120,8 @@ def publisher_on_other_topic(node: cst.CSTNode, program: ParsedProgram) -> Itera
         for topic, kind in kinds.items():
             package, _, name = kind.split("/")
             new = f"self.create_publisher({package}.msg.{name}, '{topic}', 10)"
-            what = f"has a publisher on {topic}, too"
-            yield program.instead(node, what, node, new, imports=(f"{package}.msg",))
+            description = f"has a publisher on {topic}, too"
+            yield program.instead(node, description, node, new, imports=(f"{package}.msg",))
 
 
 def spinning(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:

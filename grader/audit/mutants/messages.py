@@ -55,7 +55,7 @@ def header(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 def unit(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """Give a field that has a unit in degrees, or in thousandths."""
     declared: tuple[Topic | ServiceOrAction, ...] = (*program.exercise.outputs, *program.exercise.endpoints)
-    fields = {field for one in declared for field in one.units}
+    fields = {field for topic in declared for field in topic.units}
     value: cst.BaseExpression | None = None
     field = ""
     if isinstance(node, cst.Call) and called(node) == "append" and len(node.args) == 1:
@@ -69,8 +69,8 @@ def unit(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
         templates = _EACH
     if value is not None and field in fields:
         text = program.text(value)
-        for template, what in zip(templates, ("in degrees", "in thousandths"), strict=True):
-            yield Change(node, value, expression(template.format(text)), f"gives {field} {what}", ("math",))
+        for template, description in zip(templates, ("in degrees", "in thousandths"), strict=True):
+            yield Change(node, value, expression(template.format(text)), f"gives {field} {description}", ("math",))
 
 
 _EACH = ("[math.degrees(v) for v in {}]", "[v * 1000.0 for v in {}]")

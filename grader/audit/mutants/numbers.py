@@ -47,12 +47,12 @@ def divisor(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
         if isinstance(node.right, (cst.Integer, cst.Float)) or program.text(node.right).isupper():
             return  # a constant
         text = program.text(node.right)
-        for new, what in (
+        for new, description in (
             (f"round({text}, 1)", f"rounds {text} to tenths"),
             (f"max({text}, 0.01)", f"takes 0.01 for a smaller {text}"),
             (f"min({text}, 1.0)", f"takes 1.0 for a larger {text}"),
         ):
-            yield Change(node, node.right, expression(new), what)
+            yield Change(node, node.right, expression(new), description)
 
 
 def constant(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:

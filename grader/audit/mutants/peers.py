@@ -80,11 +80,11 @@ def blocking(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     if not isinstance(node, cst.Call) or name not in CALLS:
         return
     other, module = CALLS[name]
-    what = f"calls {other}() for {name}()"
+    description = f"calls {other}() for {name}()"
     if isinstance(node.func, cst.Attribute):
-        yield Change(node, node.func.attr, cst.Name(other), what)
+        yield Change(node, node.func.attr, cst.Name(other), description)
     elif module:
-        yield Change(node, node.func, expression(f"{module}.{other}"), what, (module,))
+        yield Change(node, node.func, expression(f"{module}.{other}"), description, (module,))
 
 
 def slow_callback(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
@@ -92,10 +92,10 @@ def slow_callback(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]
     if not isinstance(node, cst.FunctionDef) or not isinstance(node.body, cst.IndentedBlock):
         return
     if node.name.value in _called_back(program):
-        for line, what in (("time.sleep(1.0)", "sleeps for 1 s"), ("raise RuntimeError('broken')", "raises")):
+        for line, description in (("time.sleep(1.0)", "sleeps for 1 s"), ("raise RuntimeError('broken')", "raises")):
             body = with_body(node.body, [cst.parse_statement(line), *node.body.body])
             imports = ("time",) if "time" in line else ()
-            yield Change(node, node.body, body, f"{node.name.value}() {what}", imports)
+            yield Change(node, node.body, body, f"{node.name.value}() {description}", imports)
 
 
 def empty_result(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
@@ -127,8 +127,8 @@ def timer_clock(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     assert isinstance(wall, cst.Call)
     comma = cst.Comma(whitespace_after=cst.SimpleWhitespace(" "))
     args = [*(arg.with_changes(comma=comma) for arg in node.args), wall.args[0]]
-    what = "the timer goes by the computer's clock"
-    yield Change(node, node, node.with_changes(args=args), what, ("rclpy.clock",))
+    description = "the timer goes by the computer's clock"
+    yield Change(node, node, node.with_changes(args=args), description, ("rclpy.clock",))
 
 
 def _called_back(program: ParsedProgram) -> set[str]:

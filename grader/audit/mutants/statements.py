@@ -229,8 +229,8 @@ def loop(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """In a loop or a comprehension, leave out the first or the last element, go backwards, or sort."""
     if isinstance(node, (cst.For, cst.CompFor)):
         text = program.text(node.iter)
-        for template, what in TAKEN:
-            yield Change(node, node.iter, expression(template.format(text)), what.format(text))
+        for template, description in TAKEN:
+            yield Change(node, node.iter, expression(template.format(text)), description.format(text))
 
 
 def end_of_loop(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
