@@ -14,7 +14,7 @@ from pathlib import Path
 from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Options
-from grader.recording.recording import Recording, likewise
+from grader.recording.recording import Recording, not_run_because
 from grader.sandbox.program import Isolation, ProgramSpec
 from grader.scenario.command_line import ARGUMENTS, arguments
 from grader.scenario.scenario import Companion, Scenario
@@ -144,7 +144,7 @@ class ScenarioRunner:
             try:
                 first = queue.recording(self.scenarios[0].name)
                 if first.ending.outcome != "completed":
-                    return {scenario.name: likewise(first, scenario.name) for scenario in self.scenarios}
+                    return {scenario.name: not_run_because(first, scenario.name) for scenario in self.scenarios}
                 self.workers.prepare_to_judge()
                 return {scenario.name: queue.recording(scenario.name) for scenario in self.scenarios}
             finally:

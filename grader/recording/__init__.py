@@ -1,4 +1,4 @@
-"""What the grader saw while a node ran: plain data, which no student's program can change."""
+"""What the grader saw while a node ran, as plain data that no student's program can change."""
 
 from grader.recording.events import (
     Call,

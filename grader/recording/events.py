@@ -8,10 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-#: A message's fields by name: numbers, texts, lists and further such dictionaries, as its definition nests them.
+#: A message's fields by name: numbers, texts, lists and nested dictionaries.
 Fields = dict[str, Any]
 
-#: Who asked: the grader, or the student's node.
+#: Who sent the request: the grader, or the student's node.
 By = Literal["grader", "node"]
 
 #: The states of action_msgs/msg/GoalStatus, by their numbers.
@@ -23,8 +23,8 @@ class Call:
     """One request to a service at `at`, and its response.
 
     `by` is "grader" for a call of the student's service, and "node" for a request that the student's node sent to a
-    reference server; `node` is then the full name of that node. `answered` and `response` are None when no response
-    came. With `served` False there was no server.
+    reference server; `node` is then the full name of that node. `answered` and `response` are None if there was no
+    response. `served` is False if there was no server.
     """
 
     at: int
@@ -40,7 +40,7 @@ class Call:
 
 @dataclass(frozen=True)
 class GoalState:
-    """A state that the action's raw status topic gave for a goal, such as "executing"."""
+    """A state of a goal on the action's raw status topic, such as "executing"."""
 
     at: int
     state: str
@@ -70,8 +70,8 @@ class Goal:
 
     Goals count from 1 (`number`), in the order in which they were sent. `by` is "grader" for a goal for the student's
     action server, and "node" for one that the student's node sent to a scripted action server; `node` is then the full
-    name of that node, and `asked_result` is when it asked for the result. `accepted` is None without an answer.
-    `status` and `result` are what the response to the request for the result says, at `finished`.
+    name of that node, and `asked_result` is when it requested the result. `accepted` is None without an answer.
+    `status` and `result` are from the response to that request, at `finished`.
     """
 
     number: int
@@ -94,7 +94,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class ParameterChange:
-    """The grader set a parameter. `taken` is None when no answer came; `reason` is what a refusal says."""
+    """The grader set a parameter. `taken` is None if there was no answer; `reason` is the reason for a refusal."""
 
     at: int
     node: str
@@ -107,7 +107,7 @@ class ParameterChange:
 
 @dataclass(frozen=True)
 class ParameterReading:
-    """The grader asked for a parameter. `value` is None when it is not set, not declared, or no answer came."""
+    """The grader read a parameter. `value` is None if it is not set or not declared, or if there was no answer."""
 
     at: int
     node: str
@@ -118,7 +118,7 @@ class ParameterReading:
 
 @dataclass(frozen=True)
 class ProgramExit:
-    """One of several programs ended. `by` is "grader" when the scenario killed it."""
+    """One of several programs ended. `by` is "grader" if the scenario killed it."""
 
     at: int
     program: str

@@ -1,4 +1,4 @@
-"""What was seen while a node was run, as plain data, and as JSON, which keeps every number to the last bit."""
+"""Recordings of a node's run, as plain data and as JSON, which keeps every number to the last bit."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from grader.recording.events import Call, Event, Fields, Goal, ParameterChange, 
 
 __all__ = ["Ending", "Endpoint", "Fields", "ReceivedMessage", "Recording", "RunOutcome", "SentMessage"]
 
-#: How one run ended. `completed`: the node was there from the first message to the last.
+#: How one run ended. `completed`: the node ran from the first message to the last.
 RunOutcome = Literal["completed", "did-not-start", "crashed", "timed-out", "over-limit"]
 
 #: What an end point is. Those of actions are made of five end points each in the ROS graph.
@@ -24,7 +24,7 @@ EndPointKind = Literal["publisher", "subscription", "server", "client", "action 
 class SentMessage:
     """A message that a reference publisher published at `at` ns of simulated time.
 
-    `heard` is whether the student's node subscribed to its topic then.
+    `heard` is whether the student's node subscribed to its topic at that time.
     """
 
     at: int
@@ -36,12 +36,12 @@ class SentMessage:
 
 @dataclass(frozen=True)
 class ReceivedMessage:
-    """A message that came from the student's node at `at` ns of simulated time.
+    """A message from the student's node at `at` ns of simulated time.
 
-    `after` is how many messages had been sent by then: 3 means that it came after the third and before the fourth.
-    `subscriber` is the name of the scenario's own subscriber that got it, and empty for the recorder, which hears
-    everything. `node` is the full name of the node that published it. What is
-    `unordered` has no order among what its node published on the topic at the same moment: several threads did.
+    `after` is how many messages had been sent by then: 3 means after the third and before the fourth.
+    `subscriber` is the name of the scenario's own subscriber that got it, and empty for the recorder, which
+    receives everything. `node` is the full name of the node that published it. An `unordered` message has no order
+    among those of its node and topic at the same moment, because several threads published them.
     """
 
     at: int
@@ -76,9 +76,8 @@ class Endpoint:
 class Ending:
     """How a run ended, in `message` for the student.
 
-    `interrupted` is whether the node was asked to end by Ctrl-C; then `ended_in_time` tells whether it did so within
-    the 2 s it has, and `traceback` whether it printed one. `line` is the line of the student's file that is to blame,
-    where that is known.
+    `interrupted` is whether the node was asked to end by Ctrl-C; then `ended_in_time` is whether it did so within
+    2 s, and `traceback` whether it printed one. `line` is the line of the student's file that is to blame, if known.
     """
 
     outcome: RunOutcome
@@ -115,7 +114,7 @@ class Recording:
 
     @property
     def timeline(self) -> tuple[Event, ...]:
-        """Everything that happened, in the order in which it did. What happened at one moment is in a fixed order."""
+        """All events in order of time. Events at the same moment are in a fixed order."""
         found = [Event(one.at, f"sent {one.topic}", one) for one in self.sent]
         found += [Event(one.at, f"received {one.topic}", one) for one in self.received]
         found += [Event(one.at, f"set {one.name}", one) for one in self.parameters]
@@ -129,8 +128,8 @@ class Recording:
         return tuple(sorted(found, key=lambda event: event.at))
 
 
-def likewise(first: Recording, scenario: str) -> Recording:
-    """The recording of a scenario that is not spun, because the `first` one has ended before its time."""
+def not_run_because(first: Recording, scenario: str) -> Recording:
+    """Return the recording of a scenario that does not run, because the program ended early in the `first` one."""
     if first.scenario == scenario:
         return first
     ending = Ending(first.ending.outcome, first.ending.message)
@@ -159,7 +158,7 @@ _TUPLES_OF = {
 
 
 def to_json(recordings: dict[str, Recording]) -> str:
-    """`recordings` as a text from which `from_json` makes equal ones."""
+    """Return `recordings` as JSON, from which `from_json` makes equal ones."""
     return _ENCODER.encode(recordings)
 
 
@@ -169,26 +168,26 @@ def _fields_of(value: Any) -> dict[str, Any]:
 
 @cache
 def _names(kind: Any) -> tuple[str, ...]:
-    """Return the names of a dataclass's fields. Raises TypeError for anything else, as the encoder expects."""
+    """Return the names of a dataclass's fields. Raises TypeError for other types, as the encoder expects."""
     return tuple(field.name for field in dataclasses.fields(kind))
 
 
-#: Nothing in a recording contains itself. This writes the same as `json.dumps(plain(recordings))`, in half the time.
+#: Writes the same as `json.dumps(plain(recordings))` in half the time. No recording contains itself.
 _ENCODER = json.JSONEncoder(check_circular=False, default=_fields_of)
 
 
 def from_json(text: str) -> dict[str, Recording]:
-    """The recordings that `to_json` wrote. Raises ValueError, KeyError or TypeError where it did not write them."""
+    """Return the recordings that `to_json` wrote. Raises ValueError, KeyError or TypeError for any other text."""
     return from_plain(json.loads(text))
 
 
 def plain(recordings: dict[str, Recording]) -> dict[str, Any]:
-    """`recordings` as dictionaries, lists, texts and numbers."""
+    """Return `recordings` as dictionaries, lists, texts and numbers."""
     return {name: _plain(recording) for name, recording in recordings.items()}
 
 
 def _plain(value: Any) -> Any:
-    """What `dataclasses.asdict` makes of a recording, without copying the messages' fields, in a third of the time."""
+    """Return the same as `dataclasses.asdict` in a third of the time: the messages' fields are not copied."""
     if isinstance(value, tuple):
         return tuple(_plain(one) for one in value)
     if not dataclasses.is_dataclass(value):
@@ -197,7 +196,7 @@ def _plain(value: Any) -> Any:
 
 
 def from_plain(entries: dict[str, Any]) -> dict[str, Recording]:
-    """The recordings that `plain` made such. Raises ValueError, KeyError or TypeError where it did not."""
+    """Return the recordings that `plain` converted. Raises ValueError, KeyError or TypeError for other data."""
     return {name: _recording(recording) for name, recording in entries.items()}
 
 

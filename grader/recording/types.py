@@ -20,6 +20,6 @@ OWN_SERVICES = (
 
 @cache
 def message_class(type_name: str) -> Any:
-    """The Python class of `package/msg/Name`. Raises ImportError or AttributeError if there is none."""
+    """Return the Python class of `package/msg/Name`. Raises ImportError or AttributeError if there is none."""
     package, kind, name = type_name.split("/")
     return getattr(importlib.import_module(f"{package}.{kind}"), name)

@@ -1,4 +1,4 @@
-"""AuthorCode of the author's that runs inside the grader: a function or a class of a file in the exercise's folder."""
+"""The author's code that runs inside the grader: a function or a class from a file in the exercise's folder."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from typing import Any
 class AuthorCode:
     """A function or a class called `name`, in `file`, or in a module of the grader's such as `grader.scenario.models`.
 
-    `digest` is the SHA-256 of the file's text. The code is named and not held, because it has to reach a process in
-    which the file was not imported.
+    `digest` is the SHA-256 of the file's text. The code is stored by name, because it is sent to processes that have
+    not imported the file.
     """
 
     file: str
@@ -27,22 +27,22 @@ class AuthorCode:
     digest: str = ""
 
     def load(self) -> Any:
-        """The function or class itself. Raises what importing the file raises, and AttributeError."""
+        """Return the function or class itself. Raises AttributeError, and what importing the file raises."""
         if self.is_the_graders:
             return getattr(importlib.import_module(self.file), self.name)
         return getattr(_module(self.file, self.digest), self.name)
 
     @property
     def is_the_graders(self) -> bool:
-        """Whether it comes with the grader, and not from an author's file."""
+        """Whether it belongs to the grader, and not to an author's file."""
         return self.file.startswith("grader.")
 
     def for_students(self) -> AuthorCode:
-        """The same by its file's name alone, as in a student's copy of the exercise's folder."""
+        """Return the same code with only the name of its file, as in a student's copy of the exercise's folder."""
         return self if self.is_the_graders else AuthorCode(Path(self.file).name, self.name)
 
     def in_folder(self, folder: Path) -> AuthorCode:
-        """The same in a student's copy of the exercise's folder. Raises OSError where the file is missing."""
+        """Return the same code in a student's copy of the exercise's folder. Raises OSError if the file is missing."""
         if self.is_the_graders:
             return self
         file = folder / Path(self.file).name
@@ -50,7 +50,7 @@ class AuthorCode:
 
 
 def code_of(given: Callable[..., Any]) -> AuthorCode:
-    """Where a function or a class is. Raises `ValueError` for one that has no name of its own, such as a lambda."""
+    """Return where a function or a class is defined. Raises `ValueError` for one without a name, such as a lambda."""
     name = getattr(given, "__qualname__", "")
     if not name.isidentifier():
         raise ValueError(f"{name or given!r} is not a function or a class at the top level of a file")
@@ -61,7 +61,7 @@ def code_of(given: Callable[..., Any]) -> AuthorCode:
 
 
 def digest_of(file: Path) -> str:
-    """The SHA-256 of a file's text."""
+    """Return the SHA-256 of a file's text."""
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
@@ -80,7 +80,7 @@ AUTHORS_FILE = "scenarios.py"
 
 
 def line_of_the_author() -> int:
-    """The line of the innermost call in a scenarios.py, or 0 outside of one."""
+    """Return the line of the innermost call in a scenarios.py, or 0 if there is none."""
     frame = sys._getframe(1)
     while frame is not None:
         if frame.f_code.co_filename.endswith(f"/{AUTHORS_FILE}"):

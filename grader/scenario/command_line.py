@@ -1,4 +1,4 @@
-"""What follows a program's name on its command line in a scenario."""
+"""The arguments of a program in a scenario."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import Any
 
 from grader.scenario.scenario import Scenario
 
-#: How every program is started.
+#: The arguments of every program.
 ARGUMENTS = ("--ros-args", "-p", "use_sim_time:=true")
 
 
 def arguments(scenario: Scenario) -> tuple[str, ...]:
-    """What follows the program's name on its command line in a scenario."""
+    """Return the arguments that follow the program's name on its command line in a scenario."""
     found = [*scenario.arguments, *ARGUMENTS]
     for name, value in scenario.parameters.items():
         found += ["-p", f"{name}:={_yaml(value)}"]
@@ -24,12 +24,12 @@ def arguments(scenario: Scenario) -> tuple[str, ...]:
 
 
 def _yaml(value: Any) -> str:
-    """A parameter's value on a command line, such as `2.0`, `true` or `["a", "b"]`."""
+    """Return a parameter's value for the command line, such as `2.0`, `true` or `["a", "b"]`."""
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(_yaml(one) for one in value)}]"
     if isinstance(value, float):
         text = repr(value)
         special = {"nan": ".nan", "inf": ".inf", "-inf": "-.inf"}
-        # A number with an exponent needs a point to be one in YAML 1.1.
+        # In YAML 1.1, a number with an exponent also needs a decimal point.
         return special.get(text, text if "." in text or "e" not in text else text.replace("e", ".0e"))
     return json.dumps(value)

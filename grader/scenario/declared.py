@@ -17,9 +17,9 @@ from grader.scenario.scenario import Scenario
 
 
 def declared(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
-    """What `scenarios(seed)` in the exercise's scenarios.py returns, with every value checked.
+    """Return what `scenarios(seed)` in the exercise's scenarios.py returns, with every value checked.
 
-    Raises `ExerciseError`, with the line, if it is unusable.
+    Raises `ExerciseError`, with the line, for a mistake in it.
     """
     file = exercise.scenarios_file
     if not file.exists():
@@ -44,7 +44,7 @@ def _returned(exercise: Exercise, seed: int) -> tuple[Any, ...]:
     assert spec
     assert spec.loader
     module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # where `inspect` finds the file of a class
+    sys.modules[name] = module  # `inspect` looks here for the file of a class
     try:
         with _files_of(exercise.folder):
             spec.loader.exec_module(module)

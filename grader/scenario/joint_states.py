@@ -1,7 +1,7 @@
 """Streams of JointState messages, and what can go wrong with them.
 
-A stream is a tuple of `Sample`s. `arm_swing` makes one; every fault takes a stream and returns another, so that a
-scenario reads as what happens: `lost(arm_swing(3), one_in=4, seed=1)`.
+A stream is a tuple of `Sample`s. `arm_swing` makes one; every fault takes a stream and returns another, so a
+scenario reads like a description: `lost(arm_swing(3), one_in=4, seed=1)`.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ Stream = tuple[Sample, ...]
 
 
 def moving(joints: dict[str, Callable[[float], float]], times: Iterable[float], frame_id: str = "base_link") -> Stream:
-    """A stream in which each joint is where its function puts it at each of `times` (s after the start)."""
+    """Return a stream in which each joint follows its function, at each of `times` (s after the start)."""
     stream = []
     for t in times:
         at = START + round(t * SECOND)
@@ -53,18 +53,18 @@ def moving(joints: dict[str, Callable[[float], float]], times: Iterable[float], 
 
 
 def arm_swing(seconds: float, period: float = 0.1) -> Stream:
-    """Return the stream of two arms that swing, a message every `period` seconds."""
+    """Return the stream of two swinging arms, with a message every `period` seconds."""
     return moving(ARM_SWING, every(period, seconds))
 
 
 def lost(stream: Stream, one_in: int, seed: int) -> Stream:
-    """About one in `one_in` messages is lost, never the first or the last."""
+    """Lose about one in `one_in` messages, never the first or the last."""
     chance = random.Random(f"lost {seed}")
     return tuple(s for s in stream if s in (stream[0], stream[-1]) or chance.randrange(one_in))
 
 
 def shuffled(stream: Stream, seed: int) -> Stream:
-    """The joints are in another order in each message."""
+    """Shuffle the order of the joints in each message."""
     chance = random.Random(f"shuffled {seed}")
     result = []
     for sample in stream:
@@ -75,13 +75,13 @@ def shuffled(stream: Stream, seed: int) -> Stream:
 
 
 def late(stream: Stream, most: float, seed: int) -> Stream:
-    """Each message comes up to `most` s later than its stamp says, none before the one that was stamped earlier."""
+    """Delay each message by up to `most` s after its stamp, without changing the order."""
     instants = later([sample.at for sample in stream], most, seed)
     return tuple(replace(sample, at=at) for sample, at in zip(stream, instants, strict=True))
 
 
 def without(stream: Stream, joint: str, first: int, last: int) -> Stream:
-    """`joint` is missing from message number `first` to number `last`, counted from 0."""
+    """Remove `joint` from messages `first` to `last`, counted from 0."""
 
     def drop(sample: Sample) -> Sample:
         return _pick(sample, [i for i, name in enumerate(sample.names) if name != joint])
@@ -90,19 +90,19 @@ def without(stream: Stream, joint: str, first: int, last: int) -> Stream:
 
 
 def stamped(stream: Stream, number: int, like: int) -> Stream:
-    """Message `number` has the stamp of message `like`."""
+    """Give message `number` the stamp of message `like`."""
     return changed(stream, [number], lambda sample: replace(sample, stamp=stream[like].stamp))
 
 
 def stamps_moved(stream: Stream, first: int, by: float) -> Stream:
-    """From message `first` on, every stamp is `by` s later, or earlier where `by` is negative."""
+    """Move every stamp from message `first` on by `by` s; a negative `by` makes them earlier."""
     return changed(
         stream, range(first, len(stream)), lambda sample: replace(sample, stamp=sample.stamp + round(by * SECOND))
     )
 
 
 def paused(stream: Stream, before: int, seconds: float) -> Stream:
-    """Nothing is published for `seconds` before message number `before`; the joints stay where they are."""
+    """Publish nothing for `seconds` before message `before`; the joints stay where they are."""
     wait = round(seconds * SECOND)
     return changed(
         stream,
@@ -112,7 +112,7 @@ def paused(stream: Stream, before: int, seconds: float) -> Stream:
 
 
 def placed(stream: Stream, number: int, joint: str, position: float) -> Stream:
-    """In message `number`, `joint` has this position, such as `math.nan`."""
+    """Give `joint` this position, such as `math.nan`, in message `number`."""
 
     def place(sample: Sample) -> Sample:
         positions = list(sample.positions)
@@ -123,22 +123,22 @@ def placed(stream: Stream, number: int, joint: str, position: float) -> Stream:
 
 
 def emptied(stream: Stream, number: int) -> Stream:
-    """Message `number` names no joint."""
+    """Remove all joints from message `number`."""
     return changed(stream, [number], lambda sample: replace(sample, names=(), positions=()))
 
 
 def shortened(stream: Stream, number: int, positions: int) -> Stream:
-    """Message `number` has only this many `positions`, for all its names."""
+    """Keep only this many `positions` in message `number`, but all names."""
     return changed(stream, [number], lambda sample: replace(sample, positions=sample.positions[:positions]))
 
 
 def framed(stream: Stream, first: int, frame_id: str) -> Stream:
-    """From message `first` on, the frame is `frame_id`."""
+    """Set the frame to `frame_id` from message `first` on."""
     return changed(stream, range(first, len(stream)), lambda sample: replace(sample, frame_id=frame_id))
 
 
 def restarted(stream: Stream, after: int) -> Stream:
-    """After message `after` the publisher disappears; a new one starts the same movement from its beginning."""
+    """Replace the publisher after message `after`; the new one starts the same movement from its beginning."""
     rest = [
         replace(sample, names=again.names, positions=again.positions, publisher=2)
         for sample, again in zip(stream[after + 1 :], stream, strict=False)
@@ -147,13 +147,13 @@ def restarted(stream: Stream, after: int) -> Stream:
 
 
 def changed(stream: Stream, numbers: Iterable[int], change: Callable[[Sample], Sample]) -> Stream:
-    """`stream` with `change` made to the messages of these `numbers`, counted from 0."""
+    """Return `stream` with `change` applied to the messages with these `numbers`, counted from 0."""
     wanted = set(numbers)
     return tuple(change(sample) if i in wanted else sample for i, sample in enumerate(stream))
 
 
 def published(stream: Stream, topic: str = "/joint_commands") -> tuple[Message, ...]:
-    """The stream as messages on `topic`, with a velocity of 0 for each joint."""
+    """Return the stream as messages on `topic`, with a velocity of 0 for each joint."""
     return tuple(
         Message(
             at=sample.at,

@@ -1,4 +1,4 @@
-"""Worlds that are ready to use: a turtle in its square, and a chain of joints."""
+"""Ready-made worlds: a turtle in its square, and a chain of joints."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from grader.recording.recording import Fields
 
-#: The square of turtlesim is this wide and high, in units, and a turtle's command holds for so long (s).
+#: The width and height of turtlesim's square (units), and how long a turtle follows a command (s).
 SIDE, COMMAND_HOLDS = 11.088889, 1.0
 
 TWIST, POSE, JOINT_STATE = "geometry_msgs/msg/Twist", "turtlesim/msg/Pose", "sensor_msgs/msg/JointState"
@@ -48,7 +48,7 @@ class Turtle:
         self.x, self.y = min(max(self.x, 0.0), SIDE), min(max(self.y, 0.0), SIDE)
 
     def state(self) -> dict[str, Fields]:
-        """The pose."""
+        """Return the pose."""
         fields: Fields = {"x": self.x, "y": self.y, "theta": self.theta}
         if self._velocities:
             fields |= {"linear_velocity": self._forward, "angular_velocity": self._turn}
@@ -100,7 +100,7 @@ class JointChain:
             self._positions[name], self._velocities[name] = position + velocity * seconds, velocity
 
     def state(self) -> dict[str, Fields]:
-        """Positions and velocities, stamped with the time of the step."""
+        """Return positions and velocities, stamped with the time of the step."""
         return {
             self._states: {
                 "name": list(self._positions),

@@ -1,8 +1,8 @@
 """Streams of messages that each carry a number, of any message type, and what can go wrong with them.
 
-`numbers` makes a stream; every fault takes a stream and returns another, so that a scenario reads as what happens:
+`numbers` makes a stream; every fault takes a stream and returns another, so a scenario reads like a description:
 `lost(numbers("/distance", wave(2.0, every(0.1, 5))), one_in=4, seed=1)`. A stream is a tuple of messages, which is what
-`Scenario` takes. Instants come from `times`; joints have streams of their own, in `joint_states`.
+`Scenario` takes. Instants come from `times`; `joint_states` has streams of joints.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ def numbers(
     stamped: bool = False,
     **others: Any,
 ) -> Stream:
-    """A message for each of `values`, which are pairs of an instant (s after the start) and a number.
+    """Return a message for each of `values`: pairs of an instant (s after the start) and a number.
 
-    The number goes into `field`, in which dots lead inwards, such as `linear.x` of a Twist. With `stamped` each message
+    The number goes into `field`, which may be nested, such as `linear.x` of a Twist. With `stamped` each message
     has the instant in its `header.stamp`. `others` are fields that are the same in each message, such as
     `header={"frame_id": "base"}`. Without a `type` it is the one that exercise.toml declares for the topic.
     """
@@ -45,20 +45,20 @@ def numbers(
 
 
 def wave(height: float, times: Iterable[float], period: float = 2 * math.pi) -> list[tuple[float, float]]:
-    """Values of a sine that swings between `-height` and `height` once in `period` s."""
+    """Return values of a sine that swings between `-height` and `height` once in `period` s."""
     return [(t, height * math.sin(2 * math.pi * t / period)) for t in times]
 
 
 def chosen(lowest: float, highest: float, times: Iterable[float], seed: int) -> list[tuple[float, float]]:
-    """Random values between `lowest` and `highest`, the same for each `seed`."""
+    """Return random values between `lowest` and `highest`, the same for each `seed`."""
     chance = random.Random(f"chosen {lowest} {highest} {seed}")
     return [(t, chance.uniform(lowest, highest)) for t in times]
 
 
 def placed(stream: Stream, number: int, value: float, field: str = "data") -> Stream:
-    """Message `number`, counted from 0, has this value, such as `math.nan`, in the `field` that `numbers` filled.
+    """Set the `field` that `numbers` filled to this value, such as `math.nan`, in message `number`, counted from 0.
 
-    Raises `ValueError` when the message has no such field.
+    Raises `ValueError` if the message has no such field.
     """
     if not _has(stream[number].fields, field):
         found = f"message {number} on {stream[number].topic} has no number in its field {field!r}."
@@ -67,36 +67,36 @@ def placed(stream: Stream, number: int, value: float, field: str = "data") -> St
 
 
 def lost(stream: Stream, one_in: int, seed: int) -> Stream:
-    """About one in `one_in` messages is lost, never the first or the last."""
+    """Lose about one in `one_in` messages, never the first or the last."""
     chance = random.Random(f"lost {seed}")
     last = len(stream) - 1
     return tuple(message for i, message in enumerate(stream) if i in (0, last) or chance.randrange(one_in))
 
 
 def late(stream: Stream, most: float, seed: int) -> Stream:
-    """Each message comes up to `most` s later, none before one that was sent earlier; stamps stay as they are."""
+    """Delay each message by up to `most` s without changing the order; stamps stay as they are."""
     instants = later([message.at for message in stream], most, seed)
     return tuple(replace(message, at=at) for message, at in zip(stream, instants, strict=True))
 
 
 def twice(stream: Stream, number: int) -> Stream:
-    """Message `number` is published twice, at one instant."""
+    """Publish message `number` twice at the same instant."""
     return (*stream[: number + 1], *stream[number:])
 
 
 def paused(stream: Stream, before: int, seconds: float) -> Stream:
-    """Nothing is published for `seconds` before message `before`; where messages have stamps, these move along."""
+    """Publish nothing for `seconds` before message `before`; stamps, if any, move along."""
     wait = round(seconds * SECOND)
     return _changed(stream, range(before, len(stream)), lambda message: _later(message, wait))
 
 
 def restarted(stream: Stream, after: int) -> Stream:
-    """After message `after` the publisher disappears, and another one takes over."""
+    """Replace the publisher after message `after` by another one."""
     return _changed(stream, range(after + 1, len(stream)), lambda message: replace(message, publisher=2))
 
 
 def together(*streams: Stream) -> Stream:
-    """Several streams at once, such as those of two topics, in the order of their instants."""
+    """Merge several streams, such as those of two topics, in the order of their instants."""
     return tuple(sorted((message for stream in streams for message in stream), key=lambda message: message.at))
 
 
@@ -119,6 +119,6 @@ def _has(fields: Fields, path: str) -> bool:
 
 
 def _set(fields: Fields, path: str, value: Any) -> Fields:
-    """A copy of `fields` in which `path` has this value."""
+    """Return a copy of `fields` in which `path` has this value."""
     name, _, rest = path.partition(".")
     return {**fields, name: _set(fields.get(name, {}), rest, value) if rest else value}

@@ -39,15 +39,15 @@ Typed = TypeVar("Typed", Message, Request, SendGoal, Subscribe, Server, ActionSe
 
 
 def resolved(exercise: Exercise, scenario: Scenario) -> Scenario:
-    """`scenario` with all types filled in, and its files read.
+    """Return `scenario` with all types filled in and its files read.
 
-    Raises `ExerciseError`, which names the line of scenarios.py, for everything that does not fit.
+    Raises `ExerciseError`, which names the line of scenarios.py, for every mistake.
     """
     return Resolver(exercise, scenario).scenario()
 
 
 class Resolver:
-    """Goes through one scenario."""
+    """Resolves one scenario."""
 
     def __init__(self, exercise: Exercise, scenario: Scenario) -> None:
         self._exercise, self._scenario = exercise, scenario
@@ -55,7 +55,7 @@ class Resolver:
         self._known: dict[str, frozenset[str]] = {}
 
     def scenario(self) -> Scenario:
-        """See `resolved`."""
+        """Return the resolved scenario: see `resolved`."""
         given = self._scenario
         self._timing()
         self._parameters()
@@ -97,7 +97,7 @@ class Resolver:
     # --- types
 
     def _typed(self, given: Typed, name: str, kind: str, declared: str | None, table: str) -> Typed:
-        """`given` with its type, which is of this kind."""
+        """Return `given` with its type, which is of this kind."""
         type_name = given.type or declared
         if not type_name:
             fix = f"Declare it in exercise.toml under [[{table}]], or write its type after its name."
@@ -118,7 +118,7 @@ class Resolver:
         return replace(given, type=type_name) if not isinstance(given, (Server, ActionServer)) else given
 
     def _interfaces_of(self, package: str) -> frozenset[str]:
-        """Looked up once for all messages of a scenario: it reads files."""
+        """Return the package's types; cached for all messages of a scenario, because this reads files."""
         if package not in self._known:
             self._known[package] = prefixes.interfaces_of(package, prefixes.installed())
         return self._known[package]
@@ -264,7 +264,7 @@ Peer = TypeVar("Peer", Server, ActionServer)
 
 
 def _with_type(given: Peer, type_name: str) -> Peer:
-    """The same peer with its type; `replace` would lose its line."""
+    """Return the same peer with its type; `replace` would lose its line."""
     names = [field.name for field in dataclasses.fields(given) if field.name not in ("line", "type")]
     found = type(given)(**{name: getattr(given, name) for name in names}, type=type_name)
     object.__setattr__(found, "line", given.line)

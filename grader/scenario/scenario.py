@@ -21,7 +21,7 @@ from grader.scenario.world import World
 #: How often /clock is published between steps, unless the author says otherwise (Hz).
 RATE = 100.0
 
-#: What the computer's own clock shows while simulated time goes by: see `grader.runner.grader_side`.
+#: What the computer's own clock shows while simulated time passes: see `grader.runner.grader_side`.
 ComputerTime = Literal["apart", "simulated"]
 
 
@@ -69,14 +69,14 @@ class SendGoal(Step):
 
 @dataclass(frozen=True)
 class CancelGoal(Step):
-    """The grader asks to cancel a goal; goals count from 1, in the order of the steps."""
+    """The grader requests to cancel a goal; goals count from 1, in the order of the steps."""
 
     number: int
 
 
 @dataclass(frozen=True)
 class CancelAll(Step):
-    """The grader asks to cancel every goal of an action."""
+    """The grader requests to cancel every goal of an action."""
 
     action: str
 
@@ -92,7 +92,7 @@ class SetParameter(Step):
 
 @dataclass(frozen=True)
 class GetParameter(Step):
-    """The grader asks for a parameter of a node."""
+    """The grader reads a parameter of a node."""
 
     name: str
     node: str = ""
@@ -117,7 +117,7 @@ class Leave(Step):
 
 @dataclass(frozen=True)
 class ComeBack(Step):
-    """A server that left is there again."""
+    """A server that left comes back."""
 
     name: str
 
@@ -169,20 +169,20 @@ class Scenario:
     """What one run of a program consists of.
 
     `name` is the fixture by which checks ask for its recording, `title` says in words what happens. `messages` takes
-    messages and steps, in nested tuples and in any order; a scenario keeps the steps in `steps`.
+    messages and steps, in nested tuples and in any order; the scenario moves the steps to `steps`.
 
     `duration` is how long simulated time lasts (s), and `rate` how often /clock is published meanwhile (Hz). Without
     both, a scenario that only publishes has its clock set for each message.
 
     `parameters`, `remappings`, `namespace` and `arguments` are given to the program when it starts. `servers` and
-    `world` are what it deals with; `qos` says what the reference publisher on a topic offers. `programs` says when
+    `world` are its surroundings; `qos` says what the reference publisher on a topic offers. `programs` says when
     each of several programs starts, and `companions` are the author's own.
 
     With `interrupt` the program is asked to end by Ctrl-C at the end.
 
     `computer_time` says what the computer's clock shows to the program, and what `time.sleep` and wall timers take:
-    "simulated" is the same as simulated time; "apart" is more, 1.25 s for each simulated second, so that a node that
-    measures with the wrong clock gets another value.
+    "simulated" is the same as simulated time; "apart" is more, 1.25 s for each simulated second, so a node that
+    measures with the wrong clock gets a different value.
     """
 
     name: str
@@ -205,7 +205,7 @@ class Scenario:
     line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
 
     if TYPE_CHECKING:
-        # What an author may give is more than what is kept: one for several, and nested tuples.
+        # The constructor accepts more than the fields store: single values for tuples, and nested tuples.
         def __init__(
             self,
             name: str,
@@ -229,7 +229,7 @@ class Scenario:
         ) -> None: ...
 
     def __post_init__(self) -> None:
-        """Sort what was given together: messages and steps."""
+        """Separate messages from steps, and sort both."""
         given = tuple(_flat(self.messages))
         steps = (*self.steps, *(one for one in given if not isinstance(one, Message)))
         messages = tuple(one for one in given if isinstance(one, Message))
@@ -240,13 +240,13 @@ class Scenario:
 
     @property
     def seconds(self) -> float:
-        """How long it lasts, in simulated seconds."""
+        """The scenario's length in simulated seconds."""
         last = max((one.at for one in self.content), default=START)
         return max(self.duration, (last - START) / SECOND)
 
     @property
     def content(self) -> tuple[Content, ...]:
-        """Messages and steps in the order in which they happen; those of one moment in the order of the author."""
+        """Messages and steps in the order in which they happen; those of one moment in the author's order."""
         if not self.steps:
             return self.messages
         both: tuple[Content, ...] = (*self.messages, *self.steps)
@@ -267,12 +267,12 @@ class Scenario:
 
     @property
     def size(self) -> float:
-        """How much there is to do in it, in messages: to run the largest first."""
+        """The amount of work, in messages: the largest scenarios run first."""
         return len(self.messages) + self.seconds * self.clock_rate
 
     @cached_property
     def digest(self) -> str:
-        """The same for two scenarios only if everything in them is."""
+        """A digest of everything in the scenario."""
         return hashlib.sha256(json.dumps(_digestible(self), sort_keys=True).encode()).hexdigest()
 
 
@@ -293,14 +293,14 @@ _FROM_THE_BEGINNING = ("name", "title", "messages", "interrupt")
 
 
 def _digestible(value: Any) -> Any:
-    """Plain data of everything that matters; what has its default value came later, and changes no old digest."""
+    """Return plain data of everything that matters. Defaults are left out, so new fields change no old digest."""
     if isinstance(value, (list, tuple)):
         return [_digestible(one) for one in value]
     if isinstance(value, dict):
         return {str(key): _digestible(one) for key, one in value.items()}
     if not hasattr(value, "__dataclass_fields__"):
         return value
-    # Names of classes matter only where several may stand: for messages they were never part of it.
+    # Names of classes matter only where several are possible; they were never part of the digest of messages.
     found = {} if isinstance(value, (Scenario, Message)) else {"is": type(value).__name__}
     for one in fields(value):
         content = getattr(value, one.name)

@@ -1,4 +1,4 @@
-"""Reference servers: what answers the student's requests and goals, and how."""
+"""Reference servers, which answer the student's requests and goals."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, Literal, ParamSpec
 from grader.recording.recording import Fields
 from grader.scenario.code import AuthorCode, code_of, line_of_the_author
 
-#: How an action server takes a request to cancel. "ignore": it accepts, but continues anyway.
+#: How an action server reacts to a request to cancel. "ignore": it accepts, but continues anyway.
 OnCancel = Literal["accept", "refuse", "ignore"]
 
 End = Literal["succeeded", "aborted", "never"]
@@ -20,7 +20,7 @@ _Given = ParamSpec("_Given")
 
 @dataclass(frozen=True)
 class Reply:
-    """The answer to one request, `after` s of simulated time; `fields` is None for no answer at all."""
+    """The answer to one request after `after` s of simulated time; `fields` is None for no answer."""
 
     after: float = 0.0
     fields: Fields | None = None
@@ -40,11 +40,11 @@ def no_reply() -> Reply:
 class Server:
     """A reference server of a service.
 
-    `replies` has one for each request; the last one serves all that follow. Or it is a function of the author's file,
-    which gets the request and returns the response's fields (or a `Reply`).
+    `replies` has one for each request; the last one is repeated. Or it is a function from the author's file, which
+    gets the request and returns the response's fields (or a `Reply`).
 
-    The server is there from before the program's start, or from `appears` on (s after the start); it is gone at `gone`
-    and back at `back`.
+    The server exists before the program starts, or from `appears` on (s after the start). It disappears at `gone` and
+    comes back at `back`.
     """
 
     service: str
@@ -64,7 +64,7 @@ class Server:
         gone: float | None = None,
         back: float | None = None,
     ) -> None:
-        """Take one reply for several, and a function for its place."""
+        """Accept a single reply for a tuple, and a function for its `AuthorCode`."""
         given: dict[str, Any] = {"service": service, "type": type, "replies": _replies(replies)}
         given |= {"appears": appears, "gone": gone, "back": back, "line": line_of_the_author()}
         for name, value in given.items():
@@ -83,7 +83,7 @@ def _replies(given: Any) -> tuple[Reply, ...] | AuthorCode:
 class GoalScript:
     """What a scripted action server does with one goal; times are s after it accepted the goal.
 
-    `answers_after` is how late it accepts or rejects.
+    `answers_after` is the delay before it accepts or rejects the goal.
     """
 
     accept: bool = True
@@ -151,7 +151,7 @@ class ActionServer:
     line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Keep one script as several are kept."""
+        """Convert a single script into a tuple."""
         object.__setattr__(self, "goals", self.scripts)
 
     @property

@@ -26,7 +26,7 @@ One = TypeVar("One")
 
 
 class At:
-    """Some instants; each method makes a step for each of them. Instants are ns of simulated time."""
+    """Some instants (ns of simulated time). Each method makes a step for each of them."""
 
     def __init__(self, instants: tuple[int, ...]) -> None:
         self._instants = instants
@@ -47,11 +47,11 @@ class At:
         return self._each(lambda instant: SendGoal(instant, action, type, fields))
 
     def cancel(self, number: int) -> tuple[CancelGoal, ...]:
-        """Ask to cancel goal `number`."""
+        """Request to cancel goal `number`."""
         return self._each(lambda instant: CancelGoal(instant, number))
 
     def cancel_all(self, action: str) -> tuple[CancelAll, ...]:
-        """Ask to cancel every goal of an action."""
+        """Request to cancel every goal of an action."""
         return self._each(lambda instant: CancelAll(instant, action))
 
     def set_parameter(self, name: str, value: Any, node: str = "") -> tuple[SetParameter, ...]:
@@ -59,7 +59,7 @@ class At:
         return self._each(lambda instant: SetParameter(instant, name, value, node))
 
     def get_parameter(self, name: str, node: str = "") -> tuple[GetParameter, ...]:
-        """Ask for a parameter."""
+        """Read a parameter."""
         return self._each(lambda instant: GetParameter(instant, name, node))
 
     def subscribe(
@@ -77,7 +77,7 @@ class At:
         return self._each(lambda instant: Subscribe(instant, topic, type, name, Qos(reliability, durability, depth)))
 
     def leave(self, name: str) -> tuple[Leave, ...]:
-        """Take away a publisher or a server by its topic or service, or a subscriber by its name."""
+        """Remove a publisher or a server by its topic or service, or a subscriber by its name."""
         return self._each(lambda instant: Leave(instant, name))
 
     def come_back(self, name: str) -> tuple[ComeBack, ...]:
@@ -94,7 +94,7 @@ class At:
 
 
 def at(*seconds: float) -> At:
-    """At these seconds after the start."""
+    """Return steps for these instants (s after the start)."""
     return At(tuple(START + round(second * SECOND) for second in seconds))
 
 

@@ -46,15 +46,15 @@ _CLASSES: dict[str, Any] = {
 
 
 class NotForStudents(ValueError):
-    """Raised for a scenario with code of scenarios.py in it, which a student's copy can't have."""
+    """Raised for a scenario that uses code from scenarios.py, which a student's copy does not have."""
 
 
-#: The file that no student gets: the code of a public scenario must be in another file of the exercise's folder.
+#: Files that no student gets. The code of a public scenario must be in another file of the exercise's folder.
 HIDDEN_FILES = ("scenarios.py", "hidden_checks.py")
 
 
 def code_in(value: Any) -> Iterator[AuthorCode]:
-    """The author's code in a scenario, or in a part of one: a world's class, a server's function."""
+    """Yield the author's code in a scenario, or in a part of one: a world's class, a server's function."""
     if isinstance(value, AuthorCode):
         yield from () if value.is_the_graders else (value,)
     elif isinstance(value, (list, tuple, dict)):
@@ -66,7 +66,7 @@ def code_in(value: Any) -> Iterator[AuthorCode]:
 
 
 def plain(value: Any) -> Any:
-    """Dictionaries, lists, texts and numbers of a scenario, or of a part of one. Raises `NotForStudents`."""
+    """Return a scenario, or a part of one, as dictionaries, lists, texts and numbers. Raises `NotForStudents`."""
     if isinstance(value, AuthorCode):
         if Path(value.file).name in HIDDEN_FILES:
             raise NotForStudents(value.name)
@@ -82,8 +82,8 @@ def plain(value: Any) -> Any:
 
 
 def from_plain(value: Any, folder: Path) -> Any:
-    """The scenario that `plain` converted; the author's code is in `folder`. Raises KeyError or TypeError if it is
-    something else, and OSError if a file is missing.
+    """Return the scenario that `plain` converted; the author's code is in `folder`. Raises KeyError or TypeError for
+    other data, and OSError if a file is missing.
     """
     if isinstance(value, list):
         return tuple(from_plain(one, folder) for one in value)
@@ -97,7 +97,7 @@ def from_plain(value: Any, folder: Path) -> Any:
     return _CLASSES[value["is"]](**entries)
 
 
-#: Entries that hold the fields of messages, and so lists as lists.
+#: Entries with the fields of messages, in which lists stay lists.
 _FIELDS = ("fields", "result", "parameters", "arguments", "value", "remappings")
 
 

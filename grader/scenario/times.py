@@ -16,12 +16,12 @@ BEFORE_START = START - SECOND
 
 
 def every(period: float, seconds: float) -> tuple[float, ...]:
-    """Instants `period` s apart, for `seconds`."""
+    """Return instants `period` s apart, for `seconds`."""
     return tuple(k * period for k in range(round(seconds / period)))
 
 
 def uneven(shortest: float, longest: float, count: int, seed: int) -> tuple[float, ...]:
-    """`count` instants that are between `shortest` and `longest` s apart, the same for each `seed`."""
+    """Return `count` instants that are between `shortest` and `longest` s apart, the same for each `seed`."""
     chance = random.Random(f"uneven {seed}")
     times = [0.0]
     while len(times) < count:
@@ -30,7 +30,7 @@ def uneven(shortest: float, longest: float, count: int, seed: int) -> tuple[floa
 
 
 def later(instants: Sequence[int], most: float, seed: int) -> tuple[int, ...]:
-    """Each instant (ns) up to `most` s later, none before the one that comes before it; the same for each `seed`."""
+    """Delay each instant (ns) by up to `most` s without changing the order; the same for each `seed`."""
     chance = random.Random(f"late {seed}")
     result, at = [], 0
     for instant in instants:

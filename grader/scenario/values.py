@@ -22,7 +22,7 @@ class InvalidValue(ValueError):
 
 
 def check_fields(kind: Any, fields: Fields, name: str, at: str = "") -> None:
-    """See that a message, request or goal of the class `kind`, called `name` in messages, may have these fields.
+    """Check that a message, request or goal of the class `kind`, called `name` in errors, can have these fields.
 
     Raises `InvalidValue`.
     """

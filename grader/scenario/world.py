@@ -1,7 +1,7 @@
 """Worlds: small models that read a program's commands and publish the state, stepped in simulated time.
 
 A model is a class with `reads` and `publishes` (topic to type), `hear(topic, message)`, `step(seconds)` and `state()`,
-which returns the fields of a message for each topic that is to be published now. It runs inside the grader.
+which returns a message's fields for each topic to publish now. It runs inside the grader.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ class Model(Protocol):
     publishes: dict[str, str]
 
     def hear(self, topic: str, message: Any) -> None:
-        """A message has arrived; its fields are attributes."""
+        """Take a message that has arrived; its fields are attributes."""
 
     def step(self, seconds: float) -> None:
-        """Simulated time advances."""
+        """Advance the world by this much simulated time."""
 
     def state(self) -> dict[str, Fields]:
-        """What is published after a step."""
+        """Return the messages to publish after a step, by topic."""
 
 
 @dataclass(frozen=True)
 class World:
-    """A model, by its class and what its constructor gets; it is stepped every `period` s of simulated time."""
+    """A model, by its class and its constructor's arguments; it is stepped every `period` s of simulated time."""
 
     code: AuthorCode
     arguments: dict[str, Any] = field(default_factory=dict)
@@ -43,23 +43,23 @@ class World:
     line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
 
     def __init__(self, model: Callable[..., Any] | AuthorCode, period: float = PERIOD, **arguments: Any) -> None:
-        """Take the class itself, and whatever its constructor is to get."""
+        """Take the class itself, and the arguments for its constructor."""
         given = {"code": model if isinstance(model, AuthorCode) else code_of(model), "arguments": arguments}
         for name, value in {**given, "period": period, "line": line_of_the_author()}.items():
             object.__setattr__(self, name, value)
 
     def begin(self) -> Model:
-        """A new model, in its first state."""
+        """Return a new model in its initial state."""
         model: Model = self.code.load()(**self.arguments)
         return model
 
     def __reduce__(self) -> tuple[Callable[..., World], tuple[Any, ...]]:
-        """Keep all parts when it crosses from one process to another."""
+        """Keep all parts when the world is sent to another process."""
         return restored, (self.code, self.period, self.arguments, self.line)
 
 
 def restored(code: AuthorCode, period: float, arguments: dict[str, Any], line: int) -> World:
-    """A world from its parts."""
+    """Return a world made from its parts."""
     world = World(code, period, **arguments)
     object.__setattr__(world, "line", line)
     return world

@@ -16,7 +16,7 @@ from typing import Any
 from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load
-from grader.recording.recording import Recording, from_plain, likewise
+from grader.recording.recording import Recording, from_plain, not_run_because
 from grader.scenario.scenario import Message, Scenario
 from grader.scenario.store import from_plain as scenario_from_plain
 from spinbook.browser.in_page import runner
@@ -109,7 +109,7 @@ def record(exercise: Exercise, scenarios: list[Scenario], program: ProgramText) 
     works = found[first.name].ending.outcome == "completed"
     for scenario in others:
         found[scenario.name] = (
-            runner.run(exercise, scenario, program) if works else likewise(found[first.name], scenario.name)
+            runner.run(exercise, scenario, program) if works else not_run_because(found[first.name], scenario.name)
         )
     return found
 
