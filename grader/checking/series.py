@@ -64,7 +64,7 @@ def must_match_series(
         in_all = shifted or too_early or f"{_stops(expected, got)} {run.waits()}"
         run.wrong_at(None, text, "", f"{len(expected)} messages", len(got), in_all)
     if shifted:
-        run.wrong_at(got[0].at, "the messages are not in step.", name, "each in its turn", "one late", shifted)
+        run.wrong_at(got[0].at, "the messages are shifted.", name, "each at its place", "shifted by one", shifted)
 
 
 def must_keep_rate(run: RecordedRun, hz: float, topic: str = "", tolerance: float = 0.02) -> None:

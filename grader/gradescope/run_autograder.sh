@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs for each submission: reads submission/, writes results/results.json. Where that fails by a fault of ours, there is
-# no score in it, so Gradescope records none.
+# Runs for each submission: reads submission/, writes results/results.json. If a fault of ours prevents
+# grading, it contains no score, so Gradescope records none.
 EXERCISE=@EXERCISE@
 ISOLATION=@ISOLATION@
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

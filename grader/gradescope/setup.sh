@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs once, when Gradescope builds the container or another runner makes itself ready: installs Python, the sandbox, the grader and ROS 2 from PyPI.
+# Runs once, when Gradescope builds the container or another runner is prepared: installs Python, the sandbox, the grader and ROS 2 from PyPI.
 set -euo pipefail
 EXERCISE=@EXERCISE@
 ISOLATION=@ISOLATION@
@@ -18,8 +18,8 @@ if [ "${#missing[@]}" -gt 0 ]; then
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
 fi
 
-# A wheel with the versions that it ran with; or a checkout with those that are pinned, without their hashes: a folder
-# that is installed has none.
+# Install a wheel with the versions that it ran with, or a checkout with the pinned ones. Hashes are left out, because
+# pip would then require one for everything, and a folder has none.
 software=$(ls "$here"/course/spinbook-*.whl 2>/dev/null || echo "$here/course")
 if [ -f "$here/course/pins.txt" ]; then
     cp "$here/course/pins.txt" "$here/pins.txt"
@@ -37,5 +37,5 @@ interface_compiler() { "$here/venv/bin/python" -m interface_compiler "$@"; }
 { interface_compiler && interface_compiler compile "$here/course/interfaces" "$here/course/build/interfaces"; } ||
     echo "Some messages could not be compiled." >&2
 
-# Proves that grading works in here, and keeps what the solution publishes. What is wrong stands in the build's output.
+# Test that grading works here, and store what the solution publishes. Problems are in the build's output.
 "$here/venv/bin/python" -m grader.gradescope.run prepare "$here/course/exercises/$EXERCISE" $ISOLATION
