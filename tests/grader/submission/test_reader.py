@@ -1,4 +1,4 @@
-"""A submission is a file, a notebook's cell or an installed executable; whatever is in it, reading it does no harm."""
+"""A submission is a file, a notebook's cell or an installed executable. Reading it is harmless."""
 
 from __future__ import annotations
 
@@ -9,11 +9,18 @@ from pathlib import Path
 
 import pytest
 
-from grader.exercise import Exercise
+from grader.exercise import Exercise, load
 from grader.exercise.exercise import ProgramFile
 from grader.submission import NoSubmission, read
 
+ROOT = Path(__file__).parents[3]
 CELL = "%%node joint_velocity\nclass JointVelocity:\n    pass\n"
+
+
+@pytest.fixture(scope="session")
+def exercise() -> Exercise:
+    """The exercise joint_velocity; the folder's other tests use heartbeat."""
+    return load(ROOT / "exercises" / "joint_velocity")
 
 
 def notebook(tmp_path: Path, *cells: tuple[str, dict[str, object]]) -> str:
