@@ -104,8 +104,8 @@ class Recogniser:
         places = [(parts, file, understand(parts)) for parts, file in below.items()]
         misfits = [(parts[0], file) for parts, file, place in places if place is None]
         outside = [(parts, file) for parts, file in self.files.items() if parts[:skip] != inside]
-        misfits += [(parts[skip - 1], file) for parts, file in outside if parts[skip - 1] not in form.beside]
-        others = tuple(file for parts, file in outside if parts[skip - 1] in form.beside)
+        misfits += [(parts[skip - 1], file) for parts, file in outside if parts[skip - 1] not in form.next_to]
+        others = tuple(file for parts, file in outside if parts[skip - 1] in form.next_to)
         understood = tuple((file, place) for _, file, place in places if place is not None)
         return Recognition(form, inside, understood, tuple(misfits), others)
 

@@ -28,7 +28,7 @@ PACES: dict[ComputerTime, tuple[int, int]] = {"apart": (5, 4), "simulated": (1, 
 #: milliseconds. It also gives every message a time of its own.
 BETWEEN_MESSAGES = 10_000_000
 
-#: Compatible with whatever a student's publisher offers.
+#: Compatible with every QoS that a publisher can offer.
 ACCEPT_ANY = QosPolicies(depth=10_000, reliability=BEST_EFFORT)
 
 _CLOCK = struct.Struct("<4siI")

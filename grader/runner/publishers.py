@@ -10,7 +10,7 @@ from grader.scenario.scenario import Message, Scenario
 from rmw_lockstep.hub import HubNode, HubPublisher, QosPolicies
 from rmw_lockstep.qos import TRANSIENT_LOCAL
 
-#: Compatible with whatever a student's subscription requests.
+#: Compatible with every QoS that a subscription can request.
 OFFER = QosPolicies(depth=1_000, durability=TRANSIENT_LOCAL)
 
 

@@ -145,7 +145,7 @@ class Monitor:
     def cpu_seconds(self) -> float:
         """Return the CPU seconds of all processes, including those that have ended."""
         alive = (self._pid, *self.others) if self.exit is None else self.others
-        orphans = processes.buried_cpu_seconds(self._init) if self._init != self._pid else 0.0
+        orphans = processes.reaped_cpu_seconds(self._init) if self._init != self._pid else 0.0
         return self._reaped_cpu_s + orphans + sum(processes.usage(pid).cpu_s for pid in alive)
 
     def at_limit(self) -> bool:

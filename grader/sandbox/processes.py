@@ -103,7 +103,7 @@ def _names(folder: str) -> list[str]:
         return []
 
 
-def buried_cpu_seconds(pid: int) -> float:
+def reaped_cpu_seconds(pid: int) -> float:
     """Return the CPU seconds of the children that a process has reaped."""
     fields = _fields(f"/proc/{pid}/stat")
     return (int(fields[13]) + int(fields[14])) / _TICKS if fields else 0.0

@@ -161,10 +161,10 @@ def _code(upload: Upload, exercise: Exercise) -> Code:
     """Return the program: the file that the record names, if it does."""
     own = upload.files.get(exercise.file_name)
     if upload.has_record and own is not None:
-        beside = {name: data for name, data in upload.files.items() if kind_of(name) != "notebook"}
-        if len(beside) == 1:
+        code = {name: data for name, data in upload.files.items() if kind_of(name) != "notebook"}
+        if len(code) == 1:
             return code_of_python(own, exercise)
-        return code_of_files(Contents(beside), exercise)
+        return code_of_files(Contents(code), exercise)
     return code_of_files(upload.contents, exercise)
 
 

@@ -74,7 +74,7 @@ class Format:
     """A platform's format, or another way to organise submissions.
 
     `read` returns a function that interprets a path, or None if the export does not have this format. `inside` names
-    the folders that contain the submissions, `beside` what may be next to them. `of_row` returns the student in a row
+    the folders that contain the submissions, `next_to` what may be next to them. `of_row` returns the student in a row
     of the platform's own list of students, named as in its export, or None for another table. `dates` says where the
     dates of submissions can come from if the export has none.
     """
@@ -83,7 +83,7 @@ class Format:
     title: str
     read: Callable[[Export], Callable[[Parts], Interpretation] | None]
     inside: tuple[str, ...] = ()
-    beside: tuple[str, ...] = ()
+    next_to: tuple[str, ...] = ()
     of_row: Callable[[Mapping[str, str]], Student | None] | None = None
     dates: str = ""
     table: ExportTable | None = None

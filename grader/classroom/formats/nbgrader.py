@@ -84,7 +84,7 @@ FORMAT = Format(
     "nbgrader's folder of submissions",
     read,
     inside=(SUBMITTED,),
-    beside=("source", "release", "autograded", "feedback", "nbgrader_config.py", "gradebook.db"),
+    next_to=("source", "release", "autograded", "feedback", "nbgrader_config.py", "gradebook.db"),
     dates=f"Each STUDENT/ASSIGNMENT folder may have a {TIMESTAMP}.",
     table=ExportTable("nbgrader.csv", table),
 )
