@@ -22,7 +22,7 @@ def counted(*streams: tuple[int, float, int], lost: float = 0.0, jitter_ms: floa
     rate = MessageCounter(len(streams))
     for when, number in sorted(sent):
         if chance.random() >= lost:
-            rate.heard(number, when)
+            rate.count(number, when)
     return rate.rate_hz()
 
 
