@@ -7,7 +7,7 @@ from datetime import tzinfo
 from pathlib import Path
 
 from grader.classroom.archive import date_of
-from grader.classroom.formats.format import Upload
+from grader.classroom.formats.format import UploadedFile
 from grader.classroom.names import normal
 from grader.classroom.submissions import File, SubmissionsError
 from grader.classroom.tables import table_rows
@@ -18,14 +18,14 @@ NEEDED = ("file", "student")
 KNOWN = (*NEEDED, "name", "email", "submitted", "attempt")
 
 
-def by_row(table: Path, zone: tzinfo | None) -> tuple[list[tuple[File, Upload]], list[Skipped]]:
+def by_row(table: Path, zone: tzinfo | None) -> tuple[list[tuple[File, UploadedFile]], list[Skipped]]:
     """Return the files that the rows name, relative to the CSV file's folder, and the rows whose file is missing.
 
     Times without a zone are in `zone`. Several files of a student are attempts if each has a time, or a number in the
     column attempt. Other columns are kept as the student's data from the learning platform. Raises
     `SubmissionsError` for a row with a mistake.
     """
-    uploads: dict[str, list[tuple[File, Upload]]] = defaultdict(list)
+    uploads: dict[str, list[tuple[File, UploadedFile]]] = defaultdict(list)
     skipped = []
     for number, row in table_rows(table, NEEDED):
         if not row["student"] or not row["file"]:
@@ -42,7 +42,7 @@ def by_row(table: Path, zone: tzinfo | None) -> tuple[list[tuple[File, Upload]],
         attempt = row.get("attempt", "").zfill(4) if row.get("attempt") else ""
         if not attempt and row.get("submitted") and time.at:
             attempt = str(time.at.timestamp()).zfill(20)
-        upload = Upload((student,), (path.name,), attempt, time)
+        upload = UploadedFile((student,), (path.name,), attempt, time)
         uploads[student.id].append((File(row["file"], path), upload))
     return [one for theirs in uploads.values() for one in _attempts(theirs)], skipped
 
@@ -58,9 +58,9 @@ def _time(row: dict[str, str], path: Path, place: str, zone: tzinfo | None) -> T
     return time
 
 
-def _attempts(theirs: list[tuple[File, Upload]]) -> list[tuple[File, Upload]]:
+def _attempts(theirs: list[tuple[File, UploadedFile]]) -> list[tuple[File, UploadedFile]]:
     """Return a student's files; as attempts only if the order of all of them is known."""
     known = [upload.attempt for _, upload in theirs]
     if len(set(known)) == len(known) and all(known):
         return theirs
-    return [(file, Upload(upload.students, upload.inside, "", upload.time)) for file, upload in theirs]
+    return [(file, UploadedFile(upload.students, upload.inside, "", upload.time)) for file, upload in theirs]

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from grader.classroom.archive import unpacked, walk
 from grader.classroom.class_table import by_row
-from grader.classroom.formats.format import Upload
+from grader.classroom.formats.format import UploadedFile
 from grader.classroom.formats.per_student import without_suffix
 from grader.classroom.groups import Attempt, Group, Unit, in_groups
 from grader.classroom.names import normal, unique_ids
@@ -68,7 +68,7 @@ class ClassFiles:
     """
 
     kind: str
-    uploads: Sequence[tuple[File, Upload]]
+    uploads: Sequence[tuple[File, UploadedFile]]
     skipped: Sequence[Skipped]
     odd: Sequence[Question] = ()
     dates: str = ""
@@ -84,7 +84,7 @@ def _found(source: Path, exercise: Exercise, unpack_into: Path, options: Collect
     root = source.resolve().name.removesuffix(".zip")
     recognition = Recogniser(files, root, exercise, options.zone).recognise(options.format)
     folder = f", in {'/'.join(recognition.inside)}/" if recognition.inside else ""
-    uploads = [(file, place) for file, place in recognition.understood if isinstance(place, Upload)]
+    uploads = [(file, place) for file, place in recognition.understood if isinstance(place, UploadedFile)]
     others = [Skipped(file.name, place) for file, place in recognition.understood if isinstance(place, str) and place]
     others += [Skipped(file.name, f"not in {'/'.join(recognition.inside)}/") for file in recognition.others]
     why = f"its name is not one of {recognition.form.title}"
@@ -207,14 +207,14 @@ class Collector:
         return [f"not on the roster: {', '.join(strangers)}"] if self.options.roster and strangers else []
 
 
-def _units(uploads: Sequence[tuple[File, Upload]]) -> list[Unit]:
+def _units(uploads: Sequence[tuple[File, UploadedFile]]) -> list[Unit]:
     """Return what each student or group handed in; files marked `aside` only if there is nothing else."""
-    by_owner: dict[tuple[str, ...], list[tuple[File, Upload]]] = defaultdict(list)
+    by_owner: dict[tuple[str, ...], list[tuple[File, UploadedFile]]] = defaultdict(list)
     for file, upload in uploads:
         by_owner[tuple(student.id for student in upload.students)].append((file, upload))
     units = []
     for theirs in by_owner.values():
-        attempts: dict[str, list[tuple[File, Upload]]] = defaultdict(list)
+        attempts: dict[str, list[tuple[File, UploadedFile]]] = defaultdict(list)
         for file, upload in [one for one in theirs if not one[1].aside] or theirs[:1]:
             attempts[upload.attempt].append((file, upload))
         units.append(Unit(theirs[0][1].students, attempts))

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grader.classroom.formats.format import Upload
+from grader.classroom.formats.format import UploadedFile
 from grader.classroom.names import comparable, normal
 from grader.classroom.roster import generic_student, signs
 from grader.classroom.submissions import File, SubmissionsError
@@ -15,7 +15,7 @@ from grader.classroom.tables import table_rows
 from grader.grading.grade import Student
 
 #: One attempt: its files, and what their paths say.
-Attempt = Sequence[tuple[File, Upload]]
+Attempt = Sequence[tuple[File, UploadedFile]]
 
 
 @dataclass(frozen=True)

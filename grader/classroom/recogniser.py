@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import tzinfo
 
-from grader.classroom.formats.format import Export, Format, Parts, Upload
+from grader.classroom.formats.format import Export, Format, Parts, UploadedFile
 from grader.classroom.formats.registry import FORMATS, PLAIN, PLATFORMS
 from grader.classroom.submissions import File, SubmissionsError
 from grader.exercise.exercise import Exercise
@@ -34,14 +34,14 @@ class Recognition:
 
     form: Format
     inside: Parts
-    understood: tuple[tuple[File, Upload | str], ...]
+    understood: tuple[tuple[File, UploadedFile | str], ...]
     misfits: tuple[tuple[str, File], ...]
     others: tuple[File, ...]
 
     @property
     def fits(self) -> set[tuple[str, ...]]:
         """The students whose submissions are understood."""
-        return {tuple(s.id for s in place.students) for _, place in self.understood if isinstance(place, Upload)}
+        return {tuple(s.id for s in place.students) for _, place in self.understood if isinstance(place, UploadedFile)}
 
     @property
     def odd(self) -> set[str]:

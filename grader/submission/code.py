@@ -264,22 +264,20 @@ def _chosen(reading: _ReadState, target: ProgramFile, handed_out: frozenset[str]
     options = [_of_python(name, reading) for name in packages.programs(reading.files)]
     begun = [one for one in options if not python_code.is_empty(one.source) and digest_of(one.source) not in handed_out]
     options = begun or options
-    named = [one for one in options if _is_called(one.file, target.file)]
-    cells = _of_notebooks(reading, target, handed_out)
+    named = [one for one in options if _is_called(one.file, target.file)] + _of_notebooks(reading, target, handed_out)
     its_own = [one for one in options if _is_it(one.source, target)]
-    if not (named or its_own or cells) and reading.questions:
+    if not (named or its_own) and reading.questions:
         raise AmbiguousProgram(reading.questions[0])
-    for tier in (
-        [*named, *cells],
-        its_own,
-        _by_executable(reading, options, target),
-        [one for one in options if one.function] if not reading.exercise.programs else [],
-        [one for one in options if "rclpy" in one.source] if not reading.exercise.programs else [],
-        options if not reading.exercise.programs else [],
-    ):
+    only_program = [] if reading.exercise.programs else _by_content(options)
+    for tier in (named, its_own, _by_executable(reading, options, target), *only_program):
         if tier:
             return _decided(tier, reading, target)
     raise Unreadable(_nothing(reading, target))
+
+
+def _by_content(options: list[_Option]) -> list[list[_Option]]:
+    """Return what an exercise with a single program takes for it: executables, then what uses rclpy, then anything."""
+    return [[one for one in options if one.function], [one for one in options if "rclpy" in one.source], options]
 
 
 def _of_python(name: str, reading: _ReadState) -> _Option:

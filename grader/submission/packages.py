@@ -37,7 +37,7 @@ class EntryPoint:
 
 
 @dataclass(frozen=True)
-class LaunchedNode:
+class LaunchFileNode:
     """A node in a launch file: its executable, and the name that the launch file gives it, if any."""
 
     executable: str
@@ -110,9 +110,9 @@ def _of_cmake(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoint]:
                 yield EntryPoint(posixpath.basename(word), file, "")
 
 
-def launched(files: Mapping[str, bytes]) -> list[LaunchedNode]:
+def launched(files: Mapping[str, bytes]) -> list[LaunchFileNode]:
     """Return the nodes that launch files start, if their executable is a plain string."""
-    found: list[LaunchedNode] = []
+    found: list[LaunchFileNode] = []
     for name in sorted(files):
         text = files[name].decode("utf-8", errors="replace")
         if re.search(r"launch\.py$", name):
@@ -120,11 +120,11 @@ def launched(files: Mapping[str, bytes]) -> list[LaunchedNode]:
         elif re.search(r"launch\.(xml|ya?ml)$|\.launch$", name):
             for node in re.findall(r"<node\b[^>]*>|^\s*-\s*node:.*?(?=^\s*-|\Z)", text, re.DOTALL | re.MULTILINE):
                 values = dict(re.findall(r"""\b(exec|name)\s*[=:]\s*["']?([\w.-]+)""", node))
-                found.append(LaunchedNode(values.get("exec", ""), values.get("name", "")))
+                found.append(LaunchFileNode(values.get("exec", ""), values.get("name", "")))
     return [one for one in found if one.executable]
 
 
-def _launched_by_python(text: str) -> Iterator[LaunchedNode]:
+def _launched_by_python(text: str) -> Iterator[LaunchFileNode]:
     tree = python_code.tree_of(text)
     for node in ast.walk(tree) if tree else ():
         if isinstance(node, ast.Call) and getattr(node.func, "id", getattr(node.func, "attr", "")).endswith("Node"):
@@ -133,7 +133,7 @@ def _launched_by_python(text: str) -> Iterator[LaunchedNode]:
                 for keyword in node.keywords
                 if isinstance(keyword.value, ast.Constant) and isinstance(keyword.value.value, str)
             }
-            yield LaunchedNode(values.get("executable", ""), values.get("name", ""))
+            yield LaunchFileNode(values.get("executable", ""), values.get("name", ""))
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from grader.exercise.exercise import Exercise, ProgramFile
@@ -50,22 +50,32 @@ def choose(notebook: Notebook, exercise: Exercise, target: ProgramFile, starters
 
 def _candidates(cells: Sequence[NotebookCell], exercise: Exercise, target: ProgramFile) -> list[NotebookCell]:
     """Return the cells that can be the program, by the first rule that any cell satisfies."""
-    stem = target.file.removesuffix(".py")
-    named = [one for one in cells if one.name == stem and one.magic.name != "part"]
-    own = [one for one in cells if one.exercise == exercise.name and one.name in ("", stem) and not exercise.programs]
-    by_name = [one for one in cells if one in named or one in own]
-    others = [one for one in cells if one.is_python and one.magic.name != "part"]
-    parts = [one for one in cells if one.is_python]
-    for tier in (
-        by_name,
-        [one for one in cells if one.exercise == exercise.name],
-        [one for one in others if python_code.defines(one.code, target.class_name)],
-        [one for one in others if python_code.creates(one.code, target.node)],
-        [one for one in parts if python_code.defines(one.code, target.class_name)],
-    ):
-        if any(one.code.strip() for one in tier):
+    by_name = _by_name(cells, exercise, target.file.removesuffix(".py"))
+    for tier in (by_name, [cell for cell in cells if cell.exercise == exercise.name], *_by_code(cells, target)):
+        if any(cell.code.strip() for cell in tier):
             return tier
     return by_name
+
+
+def _by_name(cells: Sequence[NotebookCell], exercise: Exercise, stem: str) -> list[NotebookCell]:
+    """Return the cells that name the program, or the exercise if it has only one program."""
+    names = ("", stem)
+
+    def is_named(cell: NotebookCell) -> bool:
+        if cell.name == stem and cell.magic.name != "part":
+            return True
+        return cell.exercise == exercise.name and cell.name in names and not exercise.programs
+
+    return [cell for cell in cells if is_named(cell)]
+
+
+def _by_code(cells: Sequence[NotebookCell], target: ProgramFile) -> Iterator[list[NotebookCell]]:
+    """Yield the cells that define the program's class, those that create its node, and parts that define the class."""
+    parts = [cell for cell in cells if cell.is_python]
+    whole = [cell for cell in parts if cell.magic.name != "part"]
+    yield [cell for cell in whole if python_code.defines(cell.code, target.class_name)]
+    yield [cell for cell in whole if python_code.creates(cell.code, target.node)]
+    yield [cell for cell in parts if python_code.defines(cell.code, target.class_name)]
 
 
 def _decided(
@@ -114,19 +124,26 @@ def _checked(
 ) -> tuple[NotebookCell, AssembledProgram] | None:
     """Return the program that `%check` judged last, from the record in its saved output; None if unknown."""
     stem = target.file.removesuffix(".py")
-    checks = [one for one in notebook.cells if one.checked and {exercise.name, stem} & one.checked.keys()]
+    checks = [cell for cell in notebook.cells if cell.checked and {exercise.name, stem} & cell.checked.keys()]
     if not checks:
         return None
-    last = max(checks, key=lambda one: (one.ran or 0, one.number))
-    digest = (last.checked or {}).get(exercise.name) or (last.checked or {}).get(stem) or ""
-    if digest:
-        return next((one for one in reversed(programs) if digest_of(one[1].code) == digest), None)
-    # An older Spinbook saved no record. It judged the %%node cell that had been run last.
-    node = [one for one in programs if one[0].name == stem]
-    if len({digest_of(program.code) for _, program in node}) == 1:
-        return node[-1]
-    ran = [one for one in node if last.ran and one[0].ran and one[0].ran < last.ran]
-    return max(ran, key=lambda one: one[0].ran or 0) if ran else None
+    last = max(checks, key=lambda cell: (cell.ran or 0, cell.number))
+    records = last.checked or {}
+    if digest := records.get(exercise.name) or records.get(stem):
+        return next((program for program in reversed(programs) if digest_of(program[1].code) == digest), None)
+    return _run_before(last, [program for program in programs if program[0].name == stem])
+
+
+def _run_before(
+    check: NotebookCell, programs: Sequence[tuple[NotebookCell, AssembledProgram]]
+) -> tuple[NotebookCell, AssembledProgram] | None:
+    """Return the program whose cell was the last to run before a check: an older Spinbook, which saved no record,
+    judged that one.
+    """
+    if len({digest_of(program.code) for _, program in programs}) == 1:
+        return programs[-1]
+    earlier = [program for program in programs if check.ran and 0 < (program[0].ran or 0) < check.ran]
+    return max(earlier, key=lambda program: program[0].ran or 0) if earlier else None
 
 
 def _notes(cell: NotebookCell, program: AssembledProgram, candidates: Sequence[NotebookCell], why: str) -> list[str]:

@@ -16,7 +16,6 @@ EXCEPTIONS: dict[str, str] = {
     "ActionServer": "rcl_python has the names of rclpy's C module; a scenario has servers by the names of ROS 2",
     "Context": "rcl_python has the names of rclpy's C module, launch files those of launch",
     "Node": "rcl_python has the names of rclpy's C module, launch files those of launch",
-    "Upload": "to be renamed",
     "Message": "written by authors: a message that a check expects, and one that a scenario publishes",
 }
 

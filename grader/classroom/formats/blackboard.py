@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 
-from grader.classroom.formats.format import Export, Format, Interpretation, Parts, Upload, person
+from grader.classroom.formats.format import Export, Format, Interpretation, Parts, UploadedFile, person
 from grader.classroom.times import Time, read_time
 from grader.grading.grade import Student
 
@@ -36,7 +36,7 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
         time = _time(match, export)
         student = person(user, who["name"] if who else "", Username=user)
         inside = (match["file"] or parts[-1],)
-        return Upload(
+        return UploadedFile(
             (student,), inside, f"{match['day']} {match['h']}{match['m']}{match['s']}", time, aside=bool(match["own"])
         )
 

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Mapping
 from datetime import datetime
 
-from grader.classroom.formats.format import OWN, Export, Format, Interpretation, Parts, Upload, person
+from grader.classroom.formats.format import OWN, Export, Format, Interpretation, Parts, UploadedFile, person
 from grader.classroom.times import Time, localized, month_named, without_zone
 from grader.grading.grade import Student
 
@@ -35,7 +35,7 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
             return None
         time = _time(match["time"], export)
         student = person(f"{match['name']}_{match['user']}", match["name"], UserID=match["user"])
-        return Upload((student,), parts[1:], time.at.isoformat() if time.at else match["time"], time)
+        return UploadedFile((student,), parts[1:], time.at.isoformat() if time.at else match["time"], time)
 
     return understand
 

@@ -20,7 +20,7 @@ from grader.classroom.formats.format import (
     Format,
     Interpretation,
     Parts,
-    Upload,
+    UploadedFile,
     last_first,
     person,
 )
@@ -52,9 +52,9 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
         student = person("_".join(filter(None, (name, user))), name, ID=user)
         time = Time(source="Canvas", late=bool(match["late"] or match["anonymous_late"]))
         if match["page"]:
-            return Upload((student,), parts, time=time, aside=True)
+            return UploadedFile((student,), parts, time=time, aside=True)
         attempt, file = _attempt(match["file"], first[user])
-        return Upload((student,), (file,), attempt, time)
+        return UploadedFile((student,), (file,), attempt, time)
 
     return understand
 

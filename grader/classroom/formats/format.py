@@ -17,7 +17,7 @@ Parts = tuple[str, ...]
 
 
 @dataclass(frozen=True)
-class Upload:
+class UploadedFile:
     """What a file's path says: whose it is, which attempt, its path inside the submission, and when it was submitted.
 
     A student's `id` is unique in the export. `attempt` is empty if there is only one; attempts are sorted by these
@@ -33,7 +33,7 @@ class Upload:
 
 
 #: An upload; or the reason why the file is not one, which the instructor reads; or None if the name does not fit.
-Interpretation = Upload | str | None
+Interpretation = UploadedFile | str | None
 
 #: For files that the platform wrote itself: left out without a message.
 OWN = ""

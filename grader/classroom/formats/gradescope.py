@@ -13,7 +13,7 @@ from typing import Any
 
 import yaml
 
-from grader.classroom.formats.format import OWN, Export, Format, Interpretation, Parts, Upload, person
+from grader.classroom.formats.format import OWN, Export, Format, Interpretation, Parts, UploadedFile, person
 from grader.classroom.times import read_time
 from grader.grading.grade import Student
 
@@ -35,16 +35,16 @@ def read(export: Export) -> Callable[[Parts], Interpretation] | None:
         if parts == (METADATA,):
             return OWN
         upload = uploads.get(parts[0]) if len(parts) > 1 else None
-        return Upload(upload.students, parts[1:], upload.attempt, upload.time) if upload else None
+        return UploadedFile(upload.students, parts[1:], upload.attempt, upload.time) if upload else None
 
     return understand
 
 
-def _upload(one: dict[str, Any]) -> Upload | None:
+def _upload(one: dict[str, Any]) -> UploadedFile | None:
     students = tuple(_student(who) for who in one.get(":submitters") or [] if isinstance(who, dict))
     created = str(one.get(":created_at", ""))
     time = read_time(created, METADATA, timezone.utc)
-    return Upload(students, (), time.at.isoformat() if time.at else created, time) if students else None
+    return UploadedFile(students, (), time.at.isoformat() if time.at else created, time) if students else None
 
 
 def _student(who: dict[str, Any]) -> Student:

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable
 from datetime import datetime
 
-from grader.classroom.formats.format import OWN, Export, Format, Interpretation, Parts, Upload, person
+from grader.classroom.formats.format import OWN, Export, Format, Interpretation, Parts, UploadedFile, person
 from grader.classroom.times import Time, localized
 
 FOLDER = re.compile(r"(?P<last>[^_]+)_(?P<first>.+)_(?P<login>[^_]+)_(?P<number>\d+)")
@@ -40,7 +40,7 @@ def read(export: Export) -> Callable[[Parts], Interpretation] | None:
         team = own[0] != parts[0]
         student = person(own[0], name, Login=match["login"], **({"Group": parts[0]} if team else {}))
         time = Time(_time(file["time"], export), SOURCE, late=True if file["late"] else None)
-        return Upload((student,), (file["name"], *own[2:]), file["time"] or "", time)
+        return UploadedFile((student,), (file["name"], *own[2:]), file["time"] or "", time)
 
     return understand
 

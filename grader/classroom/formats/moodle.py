@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from html import escape
 
-from grader.classroom.formats.format import Export, ExportTable, Format, Interpretation, Parts, Upload, person
+from grader.classroom.formats.format import Export, ExportTable, Format, Interpretation, Parts, UploadedFile, person
 from grader.classroom.tables import Cell, csv_text, number
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Entry, Student
@@ -37,7 +37,7 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
         team, _, rest = match["name"].partition("-")
         name = rest if in_teams else match["name"]
         student = _student(name, match["number"] or "", {"Group": team} if in_teams else {})
-        return Upload((student,), parts[1:] or (match["file"],), aside=match["kind"] != "file")
+        return UploadedFile((student,), parts[1:] or (match["file"],), aside=match["kind"] != "file")
 
     return understand
 

@@ -15,7 +15,7 @@ from grader.classroom.formats.format import (
     Format,
     Interpretation,
     Parts,
-    Upload,
+    UploadedFile,
     last_and_first,
     person,
 )
@@ -42,7 +42,7 @@ def read(export: Export) -> Callable[[Parts], Interpretation] | None:
             return None
         if parts[1] != wanted:
             return f"another assignment, {parts[1]}"
-        return Upload((person(parts[0]),), parts[2:], time=times[parts[0]], aside=parts[2:] == (TIMESTAMP,))
+        return UploadedFile((person(parts[0]),), parts[2:], time=times[parts[0]], aside=parts[2:] == (TIMESTAMP,))
 
     return understand
 

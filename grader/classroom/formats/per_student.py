@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from grader.classroom.formats.format import Export, Format, Interpretation, Parts, Upload, person
+from grader.classroom.formats.format import Export, Format, Interpretation, Parts, UploadedFile, person
 from grader.classroom.names import normal, student_id
 from grader.classroom.times import UNKNOWN
 
@@ -24,7 +24,7 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
         name = normal(parts[0]) if len(parts) > 1 else without_suffix(parts[0])
         file = export.files.get(parts)
         student = person(name, name if name != student_id(name) else "")
-        return Upload((student,), parts[1:] or parts, time=file.time if file else UNKNOWN)
+        return UploadedFile((student,), parts[1:] or parts, time=file.time if file else UNKNOWN)
 
     return understand
 

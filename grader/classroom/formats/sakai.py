@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Mapping
 from datetime import timezone
 
-from grader.classroom.formats.format import OWN, Export, Format, Interpretation, Parts, Upload, person
+from grader.classroom.formats.format import OWN, Export, Format, Interpretation, Parts, UploadedFile, person
 from grader.classroom.times import UNKNOWN, read_time
 from grader.grading.grade import Student
 
@@ -42,7 +42,7 @@ def read(export: Export) -> Callable[[Parts], Interpretation] | None:
         if len(parts) == 2 and parts[1] in SAKAIS:
             return OWN
         aside = len(parts) == 2 and (parts[1] == TIMESTAMP or parts[1].endswith("_submissionText.html"))
-        return Upload(students[parts[0]], parts[2:] or parts[1:], time=times[parts[0]], aside=aside)
+        return UploadedFile(students[parts[0]], parts[2:] or parts[1:], time=times[parts[0]], aside=aside)
 
     return understand
 
