@@ -215,11 +215,11 @@ def test_every_executor_answers_and_is_known_to_be_idle(watch: Watch, executor: 
         executor.add_node(node)
         executor.spin()
     """)
-    from programs import Qos
+    from programs import QosPolicies
     from rclpy.serialization import serialize_message
     from std_msgs.msg import String
 
-    publisher = watch.node.publisher("/asked", "std_msgs/msg/String", Qos())
+    publisher = watch.node.publisher("/asked", "std_msgs/msg/String", QosPolicies())
     watch.go_on(0)
     for word in ("one", "two", "three"):
         publisher.publish(serialize_message(String(data=word)))

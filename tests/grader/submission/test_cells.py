@@ -67,7 +67,7 @@ def test_which_cell_was_taken_is_said_and_why(exercise: Exercise) -> None:
     code = code_in(notebook(cell(NODE, EXERCISE), cell("# notes", EXERCISE)), exercise)
     assert code.notes == (
         '2 cells of the notebook are for this exercise. Taken: code cell 1 ("%%node heartbeat"), because the other one '
-        "holds no program.",
+        "has no program.",
     )
     assert code_in(notebook(NODE, "x = 1"), exercise).notes == ()
 
@@ -193,7 +193,7 @@ def test_a_line_of_a_program_in_pieces_has_its_cell_and_its_line_there(exercise:
     expected = 1 + f"%%part beats\n{IMPORTS}\n{CLASS}".split("\n").index("    def beat(self):")
     assert place_of(code.source, 1 + lines.index("    def beat(self):")) == (2, expected)
     assert place_of(code.source, 1 + lines.index("    rclpy.init()")) == (3, 3)
-    assert "put together from the code cells 2, 3 of the notebook" in code.notes[0]
+    assert "consists of the code cells 2, 3 of the notebook" in code.notes[0]
 
 
 def test_a_module_that_another_cell_defines_comes_along(exercise: Exercise) -> None:

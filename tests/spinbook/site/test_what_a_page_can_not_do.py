@@ -115,7 +115,7 @@ def test_a_cell_that_computes_for_ever_can_be_stopped(shown: Opened) -> None:
     expect(run(cell, "print('begins')\nwhile True: pass")).to_contain_text("begins", timeout=DEADLINE_MS)
     bar = shown.page.get_by_role("region", name="Running nodes")
     bar.get_by_role("button", name="Stop all nodes").click()
-    expect(cell.get_by_role("status")).to_contain_text("It was ended, and the variables", timeout=DEADLINE_MS)
+    expect(cell.get_by_role("status")).to_contain_text("It was ended, so the variables", timeout=DEADLINE_MS)
     expect(bar).to_be_hidden(timeout=DEADLINE_MS)
 
 

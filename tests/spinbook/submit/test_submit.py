@@ -93,7 +93,7 @@ def test_a_choice_among_cells_is_reported(folder: Path) -> None:
     Path("week3.ipynb").write_text(json.dumps(notebook))
     done = submitted("--no-check")
     assert upload().files["joint_velocity.py"].decode() == f"\n{SOLUTION}"
-    assert 'Taken: code cell 1 ("%%node joint_velocity"), because the other one holds no' in done.output
+    assert 'Taken: code cell 1 ("%%node joint_velocity"), because the other one has no' in done.output
 
 
 def test_a_huge_notebook_stays_at_home(folder: Path) -> None:
