@@ -37,9 +37,6 @@ PR_CAPBSET_DROP = 24
 PR_SET_CHILD_SUBREAPER = 36
 PR_SET_NO_NEW_PRIVS = 38
 
-_SIOCSIFFLAGS = 0x8914
-_IFF_UP = 1
-
 _MOUNT_SETATTR = 442  # the same number on every architecture, as all calls since Linux 5.1
 _PIVOT_ROOT = {"x86_64": 155, "aarch64": 41}
 _CAPABILITY_VERSION_3 = 0x20080522
