@@ -12,6 +12,7 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
 from grader.sandbox.middleware import to_be_compiled
 from grader.sandbox.program import Isolation, SandboxUnavailable
+from grader.submission.file_kinds import kind_of
 from grader.submission.reader import NoSubmission, Submission, is_one, of_source, read
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 
@@ -152,6 +153,7 @@ def grade(
             click.echo("Compiling the grader's middleware, once ...", err=True)
         loaded = load(_folder(exercise))
         if out and not mistake:
+            _refuse_a_single_program(submission)
             class_options = {
                 "jobs": jobs,
                 "format": form,
@@ -184,6 +186,15 @@ def grade(
         _stop(f"The machine or the grader is at fault, not the submission: {error}")
     _write(result, loaded, plot, bag)
     sys.exit(OUR_FAULT if result.outcome == "host-error" else NOT_FULL_MARKS if not result.full_marks else FULL_MARKS)
+
+
+def _refuse_a_single_program(submission: str) -> None:
+    """Refuse `--out` with one program, because it is for the results of a class."""
+    if kind_of(submission) in ("python", "notebook") and not Path(submission).is_dir():
+        raise click.UsageError(
+            f"{submission}: this is one submission, and --out is for a class. Leave out --out, or give the folder, "
+            "zip file or CSV file of a class."
+        )
 
 
 def _mistake(name: str, exercise: Exercise) -> Submission:

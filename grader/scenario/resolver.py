@@ -12,6 +12,8 @@ from grader.exercise.exercise import Exercise, ExerciseError, ServiceOrAction
 from grader.recording.recording import Fields
 from grader.recording.types import message_class
 from grader.scenario.scenario import (
+    SECOND,
+    START,
     CancelAll,
     CancelGoal,
     ComeBack,
@@ -58,6 +60,7 @@ class Resolver:
         """Return the resolved scenario: see `resolved`."""
         given = self._scenario
         self._timing()
+        self._within_its_end()
         self._parameters()
         found = replace(
             given,
@@ -87,6 +90,31 @@ class Resolver:
                 self._fault(0, f"{name}={value!r}", "Give a number that is not negative.")
         if scenario.computer_time not in ("apart", "simulated"):
             self._fault(0, f"computer_time={scenario.computer_time!r}", 'Give "apart" or "simulated".')
+
+    def _within_its_end(self) -> None:
+        """Refuse what would never happen, because the scenario is over before."""
+        scenario = self._scenario
+        if not scenario.duration:
+            return
+        end = START + round(scenario.duration * SECOND)
+        for step in scenario.content:
+            if step.at > end:
+                self._too_late(getattr(step, "line", 0), "a step", (step.at - START) / SECOND)
+        for program in scenario.programs:
+            self._check_times(0, program.file, starts=program.starts, killed=program.killed)
+        for server in scenario.servers:
+            name = server.service if isinstance(server, Server) else server.action
+            self._check_times(server.line, name, appears=server.appears, gone=server.gone, back=server.back)
+
+    def _check_times(self, line: int, name: str, **times: float | None) -> None:
+        for word, seconds in times.items():
+            if seconds is not None and seconds > self._scenario.duration:
+                self._too_late(line, f"{word} of {name}", seconds)
+
+    def _too_late(self, line: int, event: str, seconds: float) -> NoReturn:
+        name, duration = self._scenario.name, self._scenario.duration
+        found = f"{event} comes {seconds:g} s after the start, but the scenario {name} ends after {duration:g} s"
+        self._fault(line, found, "Give it a longer duration, or an earlier step.")
 
     def _parameters(self) -> None:
         for name, value in self._scenario.parameters.items():

@@ -53,6 +53,13 @@ def test_wrong_usage_ends_with_2_and_says_what_is_right(arguments: list[str]) ->
     assert "Usage:" in done.stderr
 
 
+def test_one_program_with_the_results_folder_of_a_class_is_refused_with_what_to_do(tmp_path: Path) -> None:
+    done = grade("joint_velocity", str(SOLUTIONS / "solution.py"), "--out", str(tmp_path / "results"))
+    assert done.returncode == 2
+    assert "Leave out --out" in done.stderr
+    assert not (tmp_path / "results").exists()
+
+
 def test_an_authors_fault_ends_with_3(tmp_path: Path) -> None:
     folder = tmp_path / "exercises" / "lonely"
     folder.mkdir(parents=True)

@@ -134,6 +134,7 @@ def scenario_of(folder: Path, step: str = "", more: str = "") -> Scenario:
         ('at(0.5).kill("talker.py")', "there is no program 'talker.py'"),
         ('at(0.5).leave("/moon")', "nothing here is called '/moon'"),
         ("Message(0, '/in', 'std_msgs/msg/Float64', {'data': None})", "which is double"),
+        ('at(6.05).publish("/in", data=1.0)', "6.05 s after the start, but the scenario first ends after 3 s"),
     ],
 )
 def test_a_step_that_can_not_be_is_reported_with_its_line(tmp_path: Path, step: str, message: str) -> None:
@@ -156,6 +157,7 @@ def test_a_step_that_can_not_be_is_reported_with_its_line(tmp_path: Path, step: 
         ("world=World(Tank)", "the world Tank fails"),
         ('companions=Companion("nobody.py")', "there is no file nobody.py"),
         ("rate=-1", "rate=-1"),
+        ('servers=Server("/lamp", replies=reply(), gone=9.0)', "gone of /lamp comes 9 s after the start, but .* ends"),
         ("parameters={'gain': None}", "the parameter gain is NoneType"),
     ],
 )
