@@ -15,13 +15,21 @@ def surroundings(course: Course) -> Surroundings:
     modules: set[str] = set()
     for file in course.chapters:
         modules |= modules_of(course.root, file)
-    interfaces = frozenset(item.full_name for item in collect(course).definitions)
+    collected = collect(course)
+    interfaces = frozenset(item.full_name for item in collected.definitions)
     labels: dict[str, Label] = {}
     for file in course.chapters:
         labels = labels_of(course.root, file) | labels
     titles = {file: title_of(course.root, file) for file in course.chapters}
     return Surroundings(
-        course.package.name, frozenset(modules), course.exercises, course.names, interfaces, labels, titles
+        course.package.name,
+        frozenset(modules),
+        course.exercises,
+        course.names,
+        interfaces,
+        labels,
+        titles,
+        collected.not_compiled,
     )
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from groundwork.problem import Problem, Severity
 from spinbook.chapter.attributes import not_included
-from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_path, interface_title, is_someone_elses
+from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_of, interface_title, is_someone_elses
 from spinbook.chapter.launch_files import is_package_file, unsupported_in_launch_file
 from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect, programs_in_magics
 from spinbook.chapter.terminal import Command, CommandKind, UnsupportedCommand, looks_like_shell, read_commands
@@ -137,7 +137,7 @@ def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[C
     problems = _unknown_attributes(fence, file)
     if fence.has("static"):
         return ClassifiedFence(fence, CellKind.STATIC, "it says `static`"), problems
-    if interface := interface_path(fence.title or "", interface_package):
+    if interface := interface_of(fence, interface_package):
         return _interface(fence, interface, interface_package), problems
     if meant := interface_title(fence.title or ""):
         return ClassifiedFence(fence, CellKind.STATIC, "its title is not an interface's name"), [

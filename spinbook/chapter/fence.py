@@ -27,6 +27,9 @@ _ATTRIBUTE = re.compile(r"""([A-Za-z_][\w-]*)=(?:"([^"]*)"|'([^']*)'|(\S+))|(\S+
 _DIRECTIVE = re.compile(r"\{([A-Za-z][\w:-]*)\}(.*)$")
 _OPTION = re.compile(r"^:([\w-]+):\s*(.*)$")
 
+#: Endings of files whose names are titles, whatever the attribute is called.
+_FILES = (".py", ".msg", ".srv", ".action")
+
 PYTHON = frozenset({"python", "py", "python3", "ipython", "ipython3"})
 SHELL = frozenset({"bash", "sh", "shell", "zsh", "console", "shell-session", "terminal"})
 
@@ -44,6 +47,8 @@ class Fence:
     line: int
     attributes: Mapping[str, str] = field(default_factory=dict)
     skipped: int = 0
+    interface: str = ""
+    """The title of the message, service or action that it defines, if so."""
 
     @property
     def is_python(self) -> bool:
@@ -110,7 +115,7 @@ def parse_info(info: str) -> tuple[str, dict[str, str]]:
         elif re.fullmatch(r"[A-Za-z_][\w-]*", word):
             attributes[word] = "true"
     for name in ("filename", "file", "caption", "name"):
-        if "title" not in attributes and attributes.get(name, "").endswith(".py"):
+        if "title" not in attributes and attributes.get(name, "").endswith(_FILES):
             attributes["title"] = attributes[name]
     return language.rstrip(",").lower(), attributes
 
@@ -130,7 +135,7 @@ def make_fence(info: str, content: str, line: int) -> Fence:
         content = "".join(lines[skipped:])
     if "raises-exception" in attributes.get("tags", ""):
         attributes["raises"] = "true"
-    if attributes.get("caption", "").endswith(".py"):
+    if attributes.get("caption", "").endswith(_FILES):
         attributes["title"] = attributes["caption"]
     return Fence(language=language, code=content, line=line, attributes=attributes, skipped=skipped)
 
@@ -171,6 +176,14 @@ def interface_title(title: str) -> str | None:
     package = folders[-2] if len(folders) > 1 and folders[-1] == kind else ""
     package = re.sub(r"\W+", "_", package).lower() + "/" if package else ""
     return f"{package}{kind}/{''.join(word[:1].upper() + word[1:] for word in words) or 'Name'}.{kind}"
+
+
+def interface_of(fence: Fence, package: str) -> str | None:
+    """Return the path of the interface that a fence defines, such as `my_interfaces/msg/Pose.msg`; None for others.
+
+    `package` is used if neither the fence nor the chapter names one.
+    """
+    return None if fence.has("static") else interface_path(fence.interface or fence.title or "", package)
 
 
 def is_someone_elses(package: str, own: str) -> bool:

@@ -16,13 +16,14 @@ from spinbook.chapter.blocks import read_blocks
 from spinbook.chapter.chapter import Chapter, StaticFence, make_cells
 from spinbook.chapter.classify import CellKind, ClassifiedFence, first_look, with_language
 from spinbook.chapter.excerpts import excerpts, is_excerpt
-from spinbook.chapter.fence import Fence, interface_package
+from spinbook.chapter.fence import Fence, interface_of, interface_package
 from spinbook.chapter.files import is_elsewhere, locate, read_included
 from spinbook.chapter.labels import Heading, Label, References, headings, labels, words_of
 from spinbook.chapter.layout import ChapterLayout, Piece
 from spinbook.chapter.own_packages import OwnPackages, named_files, own_packages
 from spinbook.chapter.programs import Programs
 from spinbook.chapter.shells import Shells
+from spinbook.chapter.shown_interfaces import one_each, shown_interfaces
 from spinbook.chapter.source import Source, read_source
 
 
@@ -33,7 +34,8 @@ class Surroundings:
     `package` is the course's ROS package, `modules` the node modules of the course's other chapters, `exercises` the
     exercises that exist, `names` the chapters' names, by their file, `interfaces` the messages, services and actions
     that the course defines, such as `my_robot_interfaces/msg/JointLimits`, `labels` what MyST's labels name, `titles`
-    the chapters' titles, by their file.
+    the chapters' titles, by their file, `not_compiled` why definitions in chapters are only shown, by the file and line
+    on which each begins.
     """
 
     package: str
@@ -43,6 +45,7 @@ class Surroundings:
     interfaces: frozenset[str] = frozenset()
     labels: Mapping[str, Label] = field(default_factory=dict)
     titles: Mapping[Path, str] = field(default_factory=dict)
+    not_compiled: Mapping[tuple[Path, int], Problem] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -101,9 +104,23 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResu
     return ReadResult(chapter, tuple(problems))
 
 
-def fences_of(root: Path, file: Path) -> Iterator[Fence]:
-    """Return the fences of a chapter that are closed, in order; none if it can't be read."""
-    return (block.fence for block in _parse(root, file).fences if block.fence and block.closed)
+def definitions_of(root: Path, file: Path, own: str) -> Iterator[tuple[Fence, str]]:
+    """Yield each fence of a chapter that defines an interface, with its path, such as `my_interfaces/msg/Pose.msg`.
+
+    `own` is the package of interfaces for which the chapter names none.
+    """
+    for block, fence in _fences(_parse(root, file), own):
+        if block.closed and (path := interface_of(fence, own)):
+            yield fence, path
+
+
+def _fences(parsed: _ParsedChapter, own: str) -> Iterator[tuple[Block, Fence]]:
+    """Yield each block that is a fence, and the fence, with the interface that it defines."""
+    text = parsed.source.text if parsed.source else ""
+    titles = shown_interfaces(parsed.blocks, text, own)
+    for block in parsed.fences:
+        if block.fence is not None:
+            yield block, replace(block.fence, interface=titles.get(block.fence.line, ""))
 
 
 def modules_of(root: Path, file: Path) -> frozenset[str]:
@@ -151,7 +168,7 @@ def _parsed(root: Path, file: Path, changed: int) -> _ParsedChapter:
     folder = file.parent.as_posix()
     included: list[Path] = []
     blocks = read_blocks(source.text, lambda name: read_included(root, folder, name, included))
-    return _ParsedChapter(source, blocks, tuple(problems), tuple(included))
+    return _ParsedChapter(source, one_each(blocks), tuple(problems), tuple(included))
 
 
 def _classify(
@@ -161,14 +178,14 @@ def _classify(
     items: list[ClassifiedFence] = []
     own = interface_package(surroundings.package)
     repeated = excerpts([with_language(block.fence) for block in parsed.fences if block.fence])
-    for block in parsed.fences:
-        assert block.fence is not None
-        item, fence_problems = _unclosed(block, file) if not block.closed else first_look(block.fence, file, own)
-        if is_excerpt(item, repeated.get(block.fence.line, "")):
-            item, fence_problems = (
-                ClassifiedFence(block.fence, CellKind.STATIC, "it is a piece of a program of the chapter"),
-                [],
-            )
+    for block, fence in _fences(parsed, own):
+        item, fence_problems = first_look(fence, file, own) if block.closed else _unclosed(block, fence, file)
+        if is_excerpt(item, repeated.get(fence.line, "")):
+            item = ClassifiedFence(fence, CellKind.STATIC, "it is a piece of a program of the chapter")
+            fence_problems = []
+        if item.kind is CellKind.INTERFACE and (fault := surroundings.not_compiled.get((file, fence.first_code_line))):
+            why = "its definition is not compiled"
+            item, fence_problems = ClassifiedFence(fence, CellKind.STATIC, why, fault.problem), [fault]
         bad = _bad_seconds(item, file)
         items.append(replace(item, fence=_without_seconds(item.fence)) if bad else item)
         problems += [*fence_problems, *bad]
@@ -207,14 +224,11 @@ def _kinds(surroundings: Surroundings) -> dict[str, frozenset[str]]:
     return {package: frozenset(kind for of, kind in pairs if of == package) for package, _ in pairs}
 
 
-def _unclosed(block: Block, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
-    assert block.fence is not None
+def _unclosed(block: Block, fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
     text = f"the code fence that opens here (`{block.lines[0].text.strip()[:60]}`) is never closed."
-    mark = block.lines[0].text.strip()[:3]
-    problem = Problem(file, block.fence.line, text, f"Close it with a line of its own: {mark}", Severity.NOT_RUN)
-    return ClassifiedFence(block.fence, CellKind.STATIC, "its fence is never closed", "its fence is never closed."), [
-        problem
-    ]
+    fix = f"Close it with a line of its own: {block.lines[0].text.strip()[:3]}"
+    problem = Problem(file, fence.line, text, fix, Severity.NOT_RUN)
+    return ClassifiedFence(fence, CellKind.STATIC, "its fence is never closed", "its fence is never closed."), [problem]
 
 
 def _layout(by_line: Mapping[int, ClassifiedFence], surroundings: Surroundings) -> ChapterLayout:

@@ -108,7 +108,10 @@ class Shells:
         return out
 
     def _fence(self, item: ClassifiedFence, out: list[ClassifiedFence]) -> ClassifiedFence:
-        item = replace(item, commands=tuple(part for command in item.commands for part in self._launched(command)))
+        commands = [self._compiled_here(command) for command in item.commands]
+        item = replace(item, commands=tuple(part for command in commands for part in self._launched(command)))
+        if all(command.kind is CommandKind.NOTE for command in item.commands):
+            return replace(item, kind=CellKind.STATIC, why="it makes a package of interfaces, which is compiled here")
         for command in item.commands:
             reason = self._refused(command, out)
             if reason is None:
@@ -223,6 +226,13 @@ class Shells:
         if words[1:3] == ("param", "load"):
             named += [word for word in words[4:] if not word.startswith("-")]
         return any(_file_name(word) not in self._files for word in named)
+
+    def _compiled_here(self, command: Command) -> Command:
+        """Return a comment in place of `ros2 pkg create` of a package whose interfaces the chapters define."""
+        packages = {name.partition("/")[0] for name in self.interfaces}
+        if command.words[1:3] == ("pkg", "create") and created_package(command.words)[0] in packages:
+            return Command(CommandKind.NOTE, f"# {command.text}", (), command.line)
+        return command
 
     def _launched(self, command: Command) -> list[Command]:
         """Replace `ros2 launch` of a launch file above by a comment and the commands that start its nodes."""

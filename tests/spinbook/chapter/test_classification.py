@@ -84,10 +84,8 @@ def test_what_cannot_run_is_shown_with_a_reason(tmp_path: Path, info: str, code:
 @pytest.mark.parametrize(
     ("title", "meant"),
     [
-        ("JointLimits.msg", "msg/JointLimits.msg"),
         ("joint-limits.srv", "srv/JointLimits.srv"),
         ("my-msgs/msg/Limits.msg", "my_msgs/msg/Limits.msg"),
-        ("ros2_ws/src/my_msgs/action/Go.action", "my_msgs/action/Go.action"),
     ],
 )
 def test_a_definition_whose_title_names_no_interface_comes_with_the_one_that_was_meant(
