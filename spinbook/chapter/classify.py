@@ -12,6 +12,7 @@ from groundwork.problem import Problem, Severity
 from spinbook.chapter.attributes import not_included
 from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_of, interface_title, is_someone_elses
 from spinbook.chapter.launch_files import is_package_file, unsupported_in_launch_file
+from spinbook.chapter.own_packages import is_setup_excerpt
 from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect, programs_in_magics
 from spinbook.chapter.terminal import Command, CommandKind, UnsupportedCommand, looks_like_shell, read_commands
 
@@ -241,6 +242,8 @@ def _python(fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
     try:
         code = inspect(fence.code)
     except CodeError as error:
+        if is_setup_excerpt(fence.code):
+            return ClassifiedFence(fence, CellKind.STATIC, "it is a setup.py"), []
         return _broken(fence, error, file)
     if why := _why_static(fence, code):
         sign = f"{why}." if why.startswith("it is a fragment") else ""
@@ -291,6 +294,8 @@ def _is_file(fence: Fence) -> bool:
 def _why_static(fence: Fence, code: PythonCode) -> str:
     if not fence.code.strip():
         return "it is empty"
+    if is_setup_excerpt(fence.code):
+        return "it is a setup.py"
     if code.fragment:
         return f"it is a fragment: {code.fragment}"
     if code.is_setup_script:

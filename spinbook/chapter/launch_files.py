@@ -6,12 +6,14 @@ They are recognised by their titles. A launch file starts its nodes, as `ros2 ru
 from __future__ import annotations
 
 import ast
+import json
 import re
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from ros_in_python.launch.python_file import MODULES
+from spinbook.chapter.node_classes import last_name
 from spinbook.chapter.terminal import Command, CommandKind
 
 
@@ -29,66 +31,145 @@ class LaunchedNode:
         return Command(CommandKind.ROS2, shlex.join(words), words, line)
 
 
-def launched_nodes(code: str) -> list[LaunchedNode]:
-    """Return the nodes that a launch file starts, in order; none if the arguments of one are not literals."""
-    nodes = [_node(call) for call in _calls(code)]
-    return [node for node in nodes if node is not None] if all(nodes) else []
+class NotSupportedError(Exception):
+    """A launch file does something that can't be done here. The message is what, with its line."""
 
 
-def _calls(code: str) -> Iterator[ast.Call]:
-    for item in ast.walk(ast.parse(code)):
-        if isinstance(item, ast.Call) and ast.unparse(item.func).rpartition(".")[2] in {"Node", "LifecycleNode"}:
-            yield item
+#: Arguments of a node that change nothing that a notebook shows.
+_WITHOUT_EFFECT = frozenset({"output", "emulate_tty", "sigterm_timeout", "sigkill_timeout"})
+_NODES = frozenset({"Node", "LifecycleNode"})
+#: What a launch file may call besides: nothing of it starts or changes a process.
+_HARMLESS = frozenset({"LaunchDescription", "DeclareLaunchArgument", "LaunchConfiguration", "add_action", "LogInfo"})
 
 
-def _node(call: ast.Call) -> LaunchedNode | None:
-    keywords = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg}
-    package, executable = (_text(keywords.get(name)) for name in ("package", "executable"))
-    if not package or not executable:
-        return None
-    words = [
-        *_remapped("__node", _text(keywords.get("name"))),
-        *_remapped("__ns", _namespace(keywords.get("namespace"))),
-    ]
-    words += [word for name, to in _pairs(keywords.get("remappings")) for word in _remapped(name, to)]
-    words += [word for name, value in _parameters(keywords.get("parameters")) for word in ("-p", f"{name}:={value}")]
-    arguments = [_text(item) for item in _items(keywords.get("arguments"))]
-    return LaunchedNode(package, executable, (*filter(None, arguments), *(("--ros-args", *words) if words else ())))
+def launched_nodes(code: str, arguments: Mapping[str, str] | None = None) -> list[LaunchedNode]:
+    """Return the nodes that a Python launch file starts, in order. `arguments` are those of the command line.
+
+    Raises NotSupportedError if the file does anything but start nodes whose arguments are texts and numbers.
+    """
+    try:
+        tree = ast.parse(code)
+    except SyntaxError as error:
+        raise NotSupportedError(f"line {error.lineno} is not valid Python") from None
+    calls = sorted((item for item in ast.walk(tree) if isinstance(item, ast.Call)), key=lambda call: call.lineno)
+    reader = _LaunchReader(_assigned(tree), {**_declared(calls), **(arguments or {})})
+    for item in ast.walk(tree):
+        if isinstance(item, ast.For | ast.While | ast.If | ast.Try | ast.ListComp):
+            raise NotSupportedError(f"it has a loop or a condition (line {item.lineno})")
+    for call in calls:
+        name = last_name(call.func)
+        if name not in _NODES | _HARMLESS:
+            raise NotSupportedError(f"it uses `{ast.unparse(call.func)}` (line {call.lineno})")
+    nodes = [reader.node(call) for call in calls if last_name(call.func) in _NODES]
+    if not nodes:
+        raise NotSupportedError("it starts no node")
+    return nodes
 
 
-def _text(value: ast.expr | None) -> str:
-    return str(value.value) if isinstance(value, ast.Constant) else ""
+def _assigned(tree: ast.Module) -> dict[str, ast.expr]:
+    """Return the variables that are set exactly once, with their values."""
+    values: dict[str, list[ast.expr]] = {}
+    for item in ast.walk(tree):
+        if isinstance(item, ast.Assign):
+            for target in item.targets:
+                if isinstance(target, ast.Name):
+                    values.setdefault(target.id, []).append(item.value)
+    return {name: value[0] for name, value in values.items() if len(value) == 1}
 
 
-def _namespace(value: ast.expr | None) -> str:
-    text = _text(value)
-    return text if not text or text.startswith("/") else f"/{text}"
+def _declared(calls: Iterable[ast.Call]) -> dict[str, str]:
+    """Return the launch arguments that a file declares, with their defaults."""
+    defaults: dict[str, str] = {}
+    for call in calls:
+        values = {"name": call.args[0]} if call.args else {}
+        values |= {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg}
+        name, default = values.get("name"), values.get("default_value")
+        if last_name(call.func) != "DeclareLaunchArgument":
+            continue
+        if isinstance(name, ast.Constant) and isinstance(default, ast.Constant):
+            defaults[str(name.value)] = str(default.value)
+    return defaults
 
 
-def _remapped(name: str, to: str) -> list[str]:
-    return ["-r", f"{name}:={to}"] if to else []
+@dataclass(frozen=True)
+class _LaunchReader:
+    """Reads the values in a launch file: texts and numbers, variables that hold them, and launch arguments."""
 
+    variables: Mapping[str, ast.expr]
+    arguments: Mapping[str, str]
 
-def _items(value: ast.expr | None) -> list[ast.expr]:
-    return value.elts if isinstance(value, ast.List | ast.Tuple) else []
+    def node(self, call: ast.Call) -> LaunchedNode:
+        keywords = {keyword.arg or "**": keyword.value for keyword in call.keywords}
+        words: dict[str, list[str]] = {}
+        for name, value in keywords.items():
+            if name in _WITHOUT_EFFECT:
+                continue
+            read = getattr(self, f"_{name}", None)
+            if read is None:
+                raise NotSupportedError(f"it gives a node `{name}` (line {value.lineno})")
+            words[name] = read(value)
+        if call.args or not words.get("package") or not words.get("executable"):
+            raise NotSupportedError(f"it has a node without `package` and `executable` (line {call.lineno})")
+        ros = [word for name in ("name", "namespace", "remappings", "parameters") for word in words.get(name, [])]
+        ros += words.get("ros_arguments", [])
+        own = words.get("arguments", [])
+        if "--ros-args" in own:
+            ros, own = [*own[own.index("--ros-args") + 1 :], *ros], own[: own.index("--ros-args")]
+        return LaunchedNode(words["package"][0], words["executable"][0], (*own, *(["--ros-args", *ros] if ros else [])))
 
+    def _package(self, value: ast.expr) -> list[str]:
+        return [self._text(value)]
 
-def _pairs(value: ast.expr | None) -> Iterator[tuple[str, str]]:
-    for item in _items(value):
-        both = [_text(part) for part in _items(item)]
-        if len(both) == 2 and all(both):
-            yield both[0], both[1]
+    _executable = _package
 
+    def _name(self, value: ast.expr) -> list[str]:
+        return ["-r", f"__node:={self._text(value)}"]
 
-def _parameters(value: ast.expr | None) -> Iterator[tuple[str, str]]:
-    for item in _items(value):
-        if isinstance(item, ast.Dict):
-            for key, of in zip(item.keys, item.values, strict=True):
-                try:
-                    value_of = ast.literal_eval(of)
-                except ValueError:
-                    continue
-                yield _text(key), str(value_of).lower() if isinstance(value_of, bool) else str(value_of)
+    def _namespace(self, value: ast.expr) -> list[str]:
+        text = self._text(value)
+        return ["-r", f"__ns:=/{text.lstrip('/')}"] if text else []
+
+    def _arguments(self, value: ast.expr) -> list[str]:
+        return [self._text(item) for item in self._items(value)]
+
+    _ros_arguments = _arguments
+
+    def _remappings(self, value: ast.expr) -> list[str]:
+        pairs = [self._arguments(item) for item in self._items(value)]
+        return [word for name, to in pairs for word in ("-r", f"{name}:={to}")]
+
+    def _parameters(self, value: ast.expr) -> list[str]:
+        words: list[str] = []
+        for item in self._items(value):
+            table = self._resolved(item)
+            if not isinstance(table, ast.Dict):
+                raise NotSupportedError(f"it reads a file of parameters (line {item.lineno})")
+            for key, of in zip(table.keys, table.values, strict=True):
+                if key is None:
+                    raise NotSupportedError(f"it has `**` among parameters (line {item.lineno})")
+                words += ["-p", f"{self._text(key)}:={self._text(of)}"]
+        return words
+
+    def _items(self, value: ast.expr) -> list[ast.expr]:
+        value = self._resolved(value)
+        if not isinstance(value, ast.List | ast.Tuple):
+            raise NotSupportedError(f"it uses `{ast.unparse(value)[:40]}` (line {value.lineno})")
+        return value.elts
+
+    def _resolved(self, value: ast.expr) -> ast.expr:
+        return self.variables.get(value.id, value) if isinstance(value, ast.Name) else value
+
+    def _text(self, value: ast.expr) -> str:
+        value = self._resolved(value)
+        if isinstance(value, ast.Call) and last_name(value.func) == "LaunchConfiguration" and value.args:
+            name = ast.unparse(value.args[0]).strip("'\"")
+            if name in self.arguments:
+                return self.arguments[name]
+        try:
+            literal = ast.literal_eval(value)
+        except ValueError:
+            raise NotSupportedError(f"it uses `{ast.unparse(value)[:40]}` (line {value.lineno})") from None
+        return json.dumps(literal) if isinstance(literal, bool | list | tuple) else str(literal)
 
 
 _PATH = re.compile(r"launch/[\w-]+[._]launch\.(py|yaml|yml|xml)|config/[\w-]+\.ya?ml")

@@ -20,6 +20,61 @@ def last_name(expression: ast.expr) -> str:
     return expression.id if isinstance(expression, ast.Name) else ""
 
 
+def ros_name(everything: Sequence[ast.AST], classes: Mapping[str, ast.ClassDef]) -> str | None:
+    """Return the first name that code gives a node; None if it gives none.
+
+    It is in `super().__init__('…')`, `Node('…')` or `create_node('…')`, as a text or a constant, or it is the argument
+    of a constructor that passes it on: `Talker('…')`.
+    """
+    calls = [item for item in everything if isinstance(item, ast.Call)]
+    texts = {
+        target.id: item.value
+        for item in everything
+        if isinstance(item, ast.Assign) and isinstance(item.value, ast.Constant)
+        for target in item.targets
+        if isinstance(target, ast.Name)
+    }
+    names = (_text(texts.get(name.id) if isinstance(name, ast.Name) else name) for name in map(_name_given, calls))
+    return next(filter(None, names), None) or _name_passed_on(calls, classes)
+
+
+def _text(value: ast.expr | None) -> str | None:
+    return value.value if isinstance(value, ast.Constant) and isinstance(value.value, str) else None
+
+
+def _name_given(call: ast.Call) -> ast.expr | None:
+    """Return what a call of Node's constructor, or of `create_node`, gives as the name."""
+    function, owner = last_name(call.func), getattr(call.func, "value", None)
+    arguments = call.args
+    if function == "__init__" and isinstance(owner, ast.Name | ast.Attribute) and last_name(owner) in NODE_CLASSES:
+        arguments = arguments[1:]
+    elif not (function in {"Node", "create_node"} or (function == "__init__" and isinstance(owner, ast.Call))):
+        return None
+    return next(iter([*arguments[:1], *(k.value for k in call.keywords if k.arg == "node_name")]), None)
+
+
+def _name_passed_on(calls: Sequence[ast.Call], classes: Mapping[str, ast.ClassDef]) -> str | None:
+    """Return the name that is an argument, or its default, of a constructor that passes it to Node's."""
+    for name, own in classes.items():
+        init = next((i for i in own.body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
+        given = [_name_given(call) for call in ast.walk(init) if isinstance(call, ast.Call)] if init else []
+        passed = next((value.id for value in given if isinstance(value, ast.Name)), "")
+        if init is None or not passed:
+            continue
+        parameters = [parameter.arg for parameter in init.args.args]
+        place = parameters.index(passed) - 1 if passed in parameters else -1
+        values = [value for call in calls if last_name(call.func) == name for value in _argument(call, passed, place)]
+        defaults = dict(zip(reversed(parameters), reversed(init.args.defaults), strict=False))
+        if text := next(filter(None, map(_text, [*values, defaults.get(passed)])), None):
+            return text
+    return None
+
+
+def _argument(call: ast.Call, name: str, place: int) -> list[ast.expr]:
+    named = [keyword.value for keyword in call.keywords if keyword.arg == name]
+    return named or (call.args[place : place + 1] if place >= 0 else [])
+
+
 def can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], everything: Sequence[ast.AST]) -> bool:
     """Return whether a Node class can be created without a main: nothing else creates it, and it needs no arguments."""
     own = classes[name]

@@ -17,6 +17,9 @@ from spinbook.chapter.fence import Fence
 from spinbook.chapter.terminal import programs_of
 
 _ENTRY = re.compile(r"""["']\s*([\w.-]+)\s*=\s*([\w.]+):(\w+)\s*["']""")
+#: The same in setup.cfg and pyproject.toml.
+_PLAIN_ENTRY = re.compile(r"""^\s*([\w.-]+)\s*=\s*["']?([\w.]+):(\w+)["']?,?\s*$""", re.MULTILINE)
+_HAS_ENTRIES = re.compile(r"console_scripts|entry_points|\[project\.scripts\]")
 _PACKAGE_NAME = re.compile(r"""\b(?:package_name|name)\s*=\s*["']([a-z][a-z0-9_]*)["']""")
 _FILE_COMMENT = re.compile(r"""^\s*(?:#+|\"\"\"|''')\s*(?:[Ff]ile(?:name)?\s*:?\s*)?`?([\w./~-]+\.py)\b""")
 _PY_FILE = re.compile(r"[\w./~-]*\w\.py\b")
@@ -55,11 +58,16 @@ def own_packages(fences: Iterable[Fence]) -> OwnPackages:
         if "ros2 pkg create" in fence.code:
             for name, build_type in _created(fence.code):
                 (compiled if build_type in {"ament_cmake", "cmake"} else names).add(name)
-        if "console_scripts" in fence.code or "entry_points" in fence.code or _ENTRY.search(fence.code):
+        if _HAS_ENTRIES.search(fence.code) or _ENTRY.search(fence.code):
             entries, shown = _entries(fence.code)
             executables.update(entries)
             names |= shown
     return OwnPackages(frozenset(names | compiled), executables, frozenset(compiled))
+
+
+def is_setup_excerpt(code: str) -> bool:
+    """Return whether code is a setup.py, or the part of one that names executables, however it is cut out."""
+    return bool(_HAS_ENTRIES.search(code) or _ENTRY.search(code)) and "rclpy" not in code
 
 
 def created_package(words: Sequence[str]) -> tuple[str, str]:
@@ -92,7 +100,8 @@ def _created(code: str) -> Iterator[tuple[str, str]]:
 def _entries(code: str) -> tuple[dict[tuple[str, str], str], set[str]]:
     executables: dict[tuple[str, str], str] = {}
     names = {match[1] for match in _PACKAGE_NAME.finditer(code)} if "setup(" in code else set()
-    for executable, module, _ in _ENTRY.findall(code):
+    plain = _PLAIN_ENTRY.findall(code) if _HAS_ENTRIES.search(code) else []
+    for executable, module, _ in [*_ENTRY.findall(code), *plain]:
         package, _, stem = module.rpartition(".")
         package = package.partition(".")[0]
         if package:

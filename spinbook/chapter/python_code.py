@@ -19,6 +19,7 @@ from spinbook.chapter.node_classes import (
     gives_no_name,
     last_name,
     never_initialized,
+    ros_name,
     used_by_init,
 )
 from spinbook.chapter.program_start import (
@@ -70,7 +71,7 @@ class PythonCode:
     node_classes: tuple[str, ...] = ()
     """Classes whose base is rclpy's Node, in order."""
     ros_name: str | None = None
-    """The first node name it gives, in `super().__init__('…')`, `Node('…')` or `create_node('…')`."""
+    """The first node name it gives, as a text, a constant or a constructor's argument."""
     spins: bool = False
     has_main: bool = False
     has_main_guard: bool = False
@@ -208,7 +209,7 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
     return PythonCode(
         **_imports(everything),
         node_classes=tuple(node_classes),
-        ros_name=next(filter(None, map(_node_name, calls)), None),
+        ros_name=ros_name(everything, classes),
         spins=not called.isdisjoint(_SPINS),
         has_main=any(map(_is_main, tree.body)),
         has_main_guard=any(map(_is_main_guard, tree.body)),
@@ -294,22 +295,6 @@ def _imports_setuptools(tree: ast.Module) -> bool:
         or (isinstance(s, ast.Import) and any(a.name == "setuptools" for a in s.names))
         for s in tree.body
     )
-
-
-def _node_name(call: ast.Call) -> str | None:
-    """Return the name that a call gives a node literally; None if it gives none."""
-    function = last_name(call.func)
-    is_super_init = (
-        function == "__init__"
-        and isinstance(call.func, ast.Attribute)
-        and isinstance(call.func.value, ast.Call)
-        and last_name(call.func.value.func) == "super"
-    )
-    if not (is_super_init or function in {"Node", "create_node"}):
-        return None
-    names = [*call.args[:1], *(k.value for k in call.keywords if k.arg == "node_name")]
-    first = names[0] if names else None
-    return first.value if isinstance(first, ast.Constant) and isinstance(first.value, str) else None
 
 
 def _names(everything: Sequence[ast.AST], code: str) -> tuple[frozenset[str], dict[str, int]]:

@@ -15,8 +15,9 @@ from interface_compiler import prefixes
 from ros_in_python.ros2 import executables
 from spinbook.chapter.classify import CellKind, ClassifiedFence
 from spinbook.chapter.imports import interfaces_of, own_names, remedy, ros_packages
-from spinbook.chapter.launch_files import launched_nodes
+from spinbook.chapter.launch_files import LaunchedNode, NotSupportedError, launched_nodes
 from spinbook.chapter.own_packages import OwnPackages, created_package
+from spinbook.chapter.program_names import ProgramNames
 from spinbook.chapter.terminal import Command, CommandKind
 
 #: Commands that fail if the name they are given does not exist: noun -> verbs.
@@ -100,7 +101,7 @@ class Shells:
                 self._said.add(item.whole)
             if item.kind is CellKind.FILE:
                 self._files.add((item.name or "").rpartition("/")[2])
-            if item.code is not None and item.code.is_launch_file:
+            if _is_launch_file(item):
                 name = item.fence.title or self.named_files.get(item.fence.line) or f"launch file {number}"
                 self._launch_files[name.rsplit("/", 1)[-1]] = item.fence.code
             if item.kind is CellKind.NODE:
@@ -113,17 +114,17 @@ class Shells:
         if all(command.kind is CommandKind.NOTE for command in item.commands):
             return replace(item, kind=CellKind.STATIC, why="it makes a package of interfaces, which is compiled here")
         for command in item.commands:
-            reason = self._refused(command, out)
+            line = item.fence.first_code_line + command.line - 1
+            reason = self._refused(command, out, line)
             if reason is None:
                 self._said.add(command.text if "pub" in command.words or "run" in command.words else "")
                 continue
-            line = item.fence.first_code_line + command.line - 1
             problem = f"{reason.why} (`{command.text}`)."
             self.problems.append(Problem(self.file, line, problem, reason.fix, Severity.NOT_RUN, group=reason.group))
             return replace(item, kind=CellKind.STATIC, why=reason.why, sign=f"{reason.why}.")
         return item
 
-    def _refused(self, command: Command, out: list[ClassifiedFence]) -> _Reason | None:
+    def _refused(self, command: Command, out: list[ClassifiedFence], line: int) -> _Reason | None:
         if command.kind is CommandKind.COLCON:
             return self._colcon(command)
         if command.kind is not CommandKind.ROS2:
@@ -132,26 +133,39 @@ class Shells:
             fix = "Give the parameters with -p NAME:=VALUE."
             return _Reason("it reads a parameter file, which is missing", fix, "files of parameters")
         if command.runs is not None:
-            return self._run(*command.runs, out) or self._lacks_words(command, out)
+            return self._run(*command.runs, out, line) or self._lacks_words(command, out)
         if command.words[1:2] == ("launch",):
             return self._launch(command)
         if command.words[1:3] == ("pkg", "create"):
             return self._create(command)
         return self._types(command) or self._named(command)
 
-    def _run(self, package: str, executable: str, out: list[ClassifiedFence]) -> _Reason | None:
+    def _run(self, package: str, executable: str, out: list[ClassifiedFence], line: int) -> _Reason | None:
         if package == self.package and executable in self.modules:
             return None
-        if not self._is_elsewhere(package) and (number := self._started(package, executable, out)) is not None:
-            known = out[number].executables
-            if (package, executable) not in known:
-                out[number] = replace(out[number], executables=(*known, (package, executable)))
-            return None
+        if not self._is_elsewhere(package):
+            names = ProgramNames({number: out[number] for number in self._nodes.values()}, self.own)
+            number = names.started(package, executable)
+            if number is None and (number := names.similar(package, executable)) is not None:
+                self._say_which(package, executable, out[number].name or "", line)
+            if number is not None:
+                known = dict.fromkeys([*out[number].executables, (package, executable)])
+                out[number] = replace(out[number], executables=tuple(known))
+                return None
+            if package in self.own.names and (close := names.close(executable)):
+                fix = f"Did you mean `{close}`? Otherwise show its program in a fence above."
+                why = f"no fence above shows `{executable}` of `{package}`"
+                return _Reason(why, fix, "programs that no fence shows")
         if package == self.package:
             problem = f"the course's package `{package}` has no executable `{executable}`"
             fix = f"Its node cells make these: {', '.join(sorted(self.modules)) or 'none'}."
             return _Reason(problem, fix, "")
         return self._foreign(package, executable)
+
+    def _say_which(self, package: str, executable: str, node: str, line: int) -> None:
+        problem = f"no fence above says which program `{executable}` of `{package}` is: `{node}` is started."
+        fix = f"Did you mean `{node}`? Otherwise show the program, or the line of setup.py that names it."
+        self.problems.append(Problem(self.file, line, problem, fix, Severity.WARNING, group="the name of a program"))
 
     def _is_elsewhere(self, package: str) -> bool:
         """Return whether a package is part of ROS or Spinbook, so that it is not a program of the chapter."""
@@ -170,12 +184,20 @@ class Shells:
         return None
 
     def _launch(self, command: Command) -> _Reason | None:
-        names = [word for word in command.words[2:] if not word.startswith("-") and ":=" not in word]
-        if any(_file_name(name) in self._files for name in names):
+        names = _launch_words(command)
+        if self._runs_whole(command):
             return None
+        try:
+            self._launched_nodes(command)
+        except NotSupportedError as error:
+            fix = "It starts nothing here, because a part of it would be missing. Start its nodes with `ros2 run`."
+            return _Reason(f"its launch file can't run here: {error}", fix, "")
         package = names[0] if len(names) > 1 else ""
         if not package or package in {self.package, *self.own.names, *ros_packages()}:
-            return _Reason("no fence above is its launch file", "Show it in a fence above.", "launch files")
+            file = _file_name(names[-1]) if names else ""
+            close = difflib.get_close_matches(file, [*self._files, *self._launch_files], n=1)
+            fix = f"Did you mean `{close[0]}`?" if close else "Show it in a fence above."
+            return _Reason("no fence above is its launch file", fix, "" if close else "launch files")
         fix = "Install it, or show its launch file and its programs in fences of the chapter."
         return _Reason(f"there is no package `{package}` here", fix, package)
 
@@ -203,22 +225,6 @@ class Shells:
         fix = f"Did you mean `{close[0]}`?" if close else "Install it, or show its program in a fence of the chapter."
         return _Reason(f"there is no package `{package}` here", fix, package)
 
-    def _started(self, package: str, executable: str, out: Sequence[ClassifiedFence]) -> int | None:
-        """Return the number of the node above that `ros2 run` means, by setup.py, file name, node name or class."""
-        stem = executable.removesuffix(".py")
-        module = self.own.executables.get((package, executable))
-        for name in (module, stem):
-            if name in self._nodes:
-                return self._nodes[name]
-        for number in reversed(self._nodes.values()):
-            code = out[number].code
-            ros_name = code.ros_name if code else None
-            if (ros_name and stem in {ros_name, ros_name.removesuffix("_node")}) or f"{stem}_node" == ros_name:
-                return number
-        unnamed = [number for number in self._nodes.values() if not out[number].named]
-        is_own = package in self.own.names and module is not None
-        return unnamed[-1] if is_own and len(unnamed) == 1 else None
-
     def _lacks_file(self, command: Command) -> bool:
         """Return whether a command reads a parameter file that no cell above has put into the package."""
         words = command.words
@@ -235,20 +241,32 @@ class Shells:
         return command
 
     def _launched(self, command: Command) -> list[Command]:
-        """Replace `ros2 launch` of a launch file above by a comment and the commands that start its nodes."""
-        if command.kind is not CommandKind.ROS2 or command.words[1:2] != ("launch",):
+        """Replace `ros2 launch` of a launch file above by a comment and the commands that start all its nodes."""
+        if command.kind is not CommandKind.ROS2 or command.words[1:2] != ("launch",) or self._runs_whole(command):
             return [command]
-        files = [word for word in command.words[2:] if word.endswith(".py")]
-        if any(_file_name(word) in self._files for word in command.words[2:]):
-            return [command]
-        code = self._launch_files.get(files[0].rsplit("/", 1)[-1] if files else "", "")
-        if not code and len(self._launch_files) == 1 and files:
-            (code,) = self._launch_files.values()
-        nodes = launched_nodes(code) if code else []
-        if not nodes:
+        try:
+            nodes = self._launched_nodes(command)
+        except NotSupportedError:
             return [command]
         note = Command(CommandKind.NOTE, f"# {command.text} starts:", (), command.line)
-        return [note, *(node.command(command.line) for node in nodes)]
+        return [note, *(node.command(command.line) for node in nodes)] if nodes else [command]
+
+    def _runs_whole(self, command: Command) -> bool:
+        """Return whether a cell above has put the launch file into the course's package."""
+        names = _launch_words(command)
+        is_ours = len(names) < 2 or names[0] == self.package
+        return is_ours and any(_file_name(name) in self._files for name in names)
+
+    def _launched_nodes(self, command: Command) -> list[LaunchedNode]:
+        """Return the nodes of the launch file above that a command names; none if there is no such file.
+
+        Raises NotSupportedError if the file can't be run as a whole.
+        """
+        file = next((_file_name(word) for word in _launch_words(command) if word.endswith(".py")), "")
+        unnamed = [name for name in self._launch_files if not name.endswith(".py")]
+        code = self._launch_files.get(file) or (self._launch_files[unnamed[-1]] if file and len(unnamed) == 1 else "")
+        pairs = [word.partition(":=") for word in command.words]
+        return launched_nodes(code, {name: value for name, mark, value in pairs if mark}) if code else []
 
     def _create(self, command: Command) -> _Reason | None:
         name, build_type = created_package(command.words)
@@ -308,6 +326,16 @@ def _last_name(path: str) -> str:
     """Return the part of a name that a program contains: the last one, or the node's for its parameter services."""
     node, _, last = path.strip("/").lower().rpartition("/")
     return _last_name(node) if last in OWN_SERVICES and node else last
+
+
+def _is_launch_file(item: ClassifiedFence) -> bool:
+    is_file = item.kind is CellKind.FILE and (item.name or "").endswith(".py")
+    return is_file or (item.code is not None and item.code.is_launch_file)
+
+
+def _launch_words(command: Command) -> list[str]:
+    """Return the package and the file of `ros2 launch`, without options and arguments."""
+    return [word for word in command.words[2:] if not word.startswith("-") and ":=" not in word]
 
 
 def _file_name(path: str) -> str:

@@ -25,6 +25,10 @@ _WORDS = {
         "command starts a program that no fence shows",
         "commands start programs that no fence shows",
     ),
+    "the name of a program": (
+        "command starts a program by a name that no fence gives it",
+        "commands start programs by names that no fence gives them",
+    ),
     "packages that no fence shows": ("command builds what no cell makes", "commands build what no cell makes"),
     "names that nothing makes": (
         "command asks for a name that nothing makes",
