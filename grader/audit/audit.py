@@ -13,6 +13,7 @@ from grader.audit.candidates import (
     baselines,
     judged,
     mistakes,
+    nothings,
     over_seed,
     problems_of,
     right_solutions,
@@ -20,7 +21,18 @@ from grader.audit.candidates import (
 )
 from grader.audit.check_list import AuditedCheck, ChecksJob, problems_in_text
 from grader.audit.mutants.maker import Mutant, mutants_of
-from grader.audit.result import LEAST_SCORE, Audit, AuditProblem, AuditProgress, MutantResult, Trial, Until, score_of
+from grader.audit.result import (
+    LEAST_SCORE,
+    Audit,
+    AuditProblem,
+    AuditProgress,
+    MutantResult,
+    RuleResult,
+    Trial,
+    Until,
+    score_of,
+)
+from grader.audit.rules import problems_of_rules, rule_results
 from grader.audit.store import RecordedRuns, Store, tidy
 from grader.audit.survivors import listed, problems_of_survivors, result_of, stale
 from grader.audit.trial import Trials
@@ -33,6 +45,8 @@ from grader.audit.worth import (
     worth_running_on,
 )
 from grader.exercise.exercise import Exercise
+from grader.exercise.mistakes import mistakes_of
+from grader.exercise.rules import rules_of
 from grader.grading.grade import Options
 from grader.grading.grading import grading_of
 from grader.grading.reference import solution_file
@@ -55,6 +69,7 @@ class AuditPlan:
 
     right: list[Candidate]
     seeds: list[Seed]
+    nothings: list[Candidate]
     baselines: list[Candidate]
     mistakes: list[Candidate]
     mutants: tuple[Mutant, ...]
@@ -63,11 +78,15 @@ class AuditPlan:
 
 
 def planned(trials: Trials, quick: bool, most: int | None, seeds: int = SEEDS) -> AuditPlan:
-    """Choose what to try. A quick audit leaves out the other right solutions and the seeds.
+    """Choose what to try.
+
+    A quick audit leaves out the other right solutions, the seeds and the baselines. Baselines need a task that marks
+    its rules.
 
     Choose at most `most` mutants.
     """
     exercise = trials.grading.runner.exercise
+    reference = trials.grading.references[trials.grading.runner.scenarios[0].name]
     right = right_solutions(exercise)
     every = mutants_of(solution_file(exercise).read_text(encoding="utf-8"), exercise)
     limit = SAMPLE if quick and most is None else most
@@ -75,7 +94,8 @@ def planned(trials: Trials, quick: bool, most: int | None, seeds: int = SEEDS) -
     return AuditPlan(
         right=right[:1] if quick else right,
         seeds=[] if quick else seeds_of(trials, seeds),
-        baselines=baselines(exercise),
+        nothings=nothings(exercise),
+        baselines=baselines(exercise, reference) if rules_of(exercise.task) and not quick else [],
         mistakes=mistakes(exercise),
         mutants=chosen,
         quick=quick,
@@ -154,7 +174,7 @@ def run_on(plan: AuditPlan, tried: Tried, trials: Trials, store: Store) -> None:
 
 
 def _programs(plan: AuditPlan) -> list[Candidate]:
-    return [*plan.right, *plan.baselines, *plan.mistakes]
+    return [*plan.right, *plan.nothings, *plan.baselines, *plan.mistakes]
 
 
 @dataclass(frozen=True)
@@ -207,9 +227,9 @@ def audit(
 
     mutants = tuple(result_of(mutant, tried.mutants[mutant.id], reasons) for mutant in plan.mutants)
     different = {r.mutant.id: tried.mutants[r.mutant.id] for r in mutants if r.fate != "equivalent"}
-    mistakes = {mistake.name: tried.programs[mistake.name] for mistake in plan.mistakes}
-    evidence = {**mistakes, **{f"the mutant {id_}": trial for id_, trial in different.items()}}
-    programs = [*plan.right, *plan.baselines, *plan.mistakes]
+    trials_of_mistakes = {mistake.name: tried.programs[mistake.name] for mistake in plan.mistakes}
+    evidence = {**trials_of_mistakes, **{f"the mutant {id_}": trial for id_, trial in different.items()}}
+    programs = _programs(plan)
     problems = problems_of(programs, tried.programs, checks)
     for number, with_seed in tried.seeds.items():
         problems += problems_of(plan.right, with_seed, checks, number)
@@ -223,6 +243,13 @@ def audit(
         problems += stale(exercise, reasons, {r.mutant.id: r.fate for r in mutants})
         problems += _low_score(exercise, mutants)
 
+    results = tuple(judged(program, tried.programs[program.name]) for program in programs)
+    rules: tuple[RuleResult, ...] = ()
+    if not quick:
+        edits = mistakes_of(exercise)
+        rules = rule_results(exercise, checks, edits, {m.name: tried.programs[f"mistakes/{m.name}"] for m in edits})
+        problems += problems_of_rules(exercise, rules, edits, results)
+
     scenarios = scenario_results(grading.runner.scenarios, checks, tried.all)
     return Audit(
         exercise=exercise.name,
@@ -232,13 +259,14 @@ def audit(
         seeds=1 + len(plan.seeds) if plan.seeds else 0,
         randomised=tuple(scenario.name for scenario in plan.seeds[0].randomised) if plan.seeds else (),
         problems=tuple(problems),
-        programs=tuple(judged(program, tried.programs[program.name], checks) for program in programs),
+        programs=results,
         mutants=mutants,
-        checks=check_results(checks, scenarios, different, mistakes),
+        checks=check_results(checks, scenarios, different, trials_of_mistakes),
         scenarios=scenarios,
         seconds=time.monotonic() - began,
         made=store.made,
         kept=store.kept,
+        rules=rules,
     )
 
 

@@ -1,4 +1,4 @@
-"""The programs that an audit tries: the author's files and three baselines, and the score that each must get."""
+"""The programs that an audit tries: the author's files, and some without work in them; the score that each must get."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
+from grader.audit.baselines import programs
 from grader.audit.check_list import AuditedCheck, problem_of
 from grader.audit.result import AuditProblem, Judged, Trial
 from grader.audit.store import Store
@@ -35,7 +36,7 @@ class Candidate:
     For a mistake, `caught_by` names the checks that must catch it, and `line` is where its file names them.
     """
 
-    kind: Literal["solution", "right", "mistake", "nothing"]
+    kind: Literal["solution", "right", "mistake", "nothing", "baseline"]
     name: str
     file: Path
     title: str
@@ -62,7 +63,15 @@ def _of_mistake(mistake: Mistake, exercise: Exercise) -> Candidate:
     return Candidate("mistake", name, file, title, submission, mistake.caught_by, mistake.line)
 
 
-def baselines(exercise: Exercise) -> list[Candidate]:
+def baselines(exercise: Exercise, reference: Recording) -> list[Candidate]:
+    """Return the programs without work in them, which may get few points. `reference` is as in `programs`."""
+    return [
+        Candidate("baseline", name, solution_file(exercise), name, of_source(name, source.encode(), exercise))
+        for name, source in programs(exercise, reference).items()
+    ]
+
+
+def nothings(exercise: Exercise) -> list[Candidate]:
     """Return the programs that must get no points: the starter, an empty file, and a node that does nothing."""
     solution = solution_file(exercise)
     sources = {
@@ -166,9 +175,9 @@ def _content(scenario: Scenario) -> Scenario:
     return replace(scenario, name="", title="", computer_time="apart")
 
 
-def judged(candidate: Candidate, trial: Trial, checks: tuple[AuditedCheck, ...]) -> Judged:
+def judged(candidate: Candidate, trial: Trial) -> Judged:
     """Return the result of a program."""
-    return Judged(candidate.name, candidate.kind, candidate.title, trial.failed, _score(trial, checks))
+    return Judged(candidate.name, candidate.kind, candidate.title, trial.failed, trial.score)
 
 
 def problems_of(
@@ -182,7 +191,7 @@ def problems_of(
             problems += _nothing(candidate, trial, checks)
         elif candidate.kind == "mistake":
             problems += _mistake(candidate, trial, checks)
-        else:
+        elif candidate.kind != "baseline":
             problems += _right(candidate, trial, seed)
     return problems
 
@@ -244,7 +253,3 @@ def _mistake(candidate: Candidate, trial: Trial, checks: tuple[AuditedCheck, ...
             fix = "If the check should pass here, fix it. Otherwise add it under “Caught by:”."
             problems.append(problem(name, text, fix))
     return problems
-
-
-def _score(trial: Trial, checks: tuple[AuditedCheck, ...]) -> float:
-    return sum(check.points for check in checks if trial.statuses.get(check.name) == "passed")

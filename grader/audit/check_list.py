@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 class AuditedCheck:
     """One check as its author wrote it.
 
-    `scenarios` are those that it uses, and `rule` is the sentence of the task that it is based on. `seconds` is how
-    long it took to judge the solution. `file` and `line` say where the check is.
+    `scenarios` are those that it uses, and `rules` are the sentences of the task that it is based on, or their ids.
+    `seconds` is how long it took to judge the solution. `file` and `line` say where the check is.
     """
 
     name: str
@@ -42,7 +42,7 @@ class AuditedCheck:
     points: float
     hint: str
     depends: tuple[str, ...]
-    rule: str
+    rules: tuple[str, ...]
     hidden: bool
     scenarios: tuple[str, ...]
     file: Path
@@ -92,7 +92,7 @@ class _Listing(Checks):
             points=mark.points,
             hint=mark.hint,
             depends=mark.depends,
-            rule=mark.rule,
+            rules=mark.rules,
             hidden=item.path.name == "hidden_checks.py",
             scenarios=tuple(name for name in item.fixturenames if name in self._scenarios),
             file=item.path,
@@ -118,11 +118,11 @@ def problems_in_text(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> li
 def _rules(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
     problems = []
     for check in checks:
-        if check.hidden and not check.rule:
+        if check.hidden and not check.rules:
             text = f"the hidden check {check.name} does not name the sentence of the task that it is based on"
             problems.append(problem_of(check, text, 'Add rule="…" to @check, with the sentence of task.md.'))
-        elif check.rule:
-            for error in rule_that_the_task_lacks(exercise.task, check.rule, check.file, check.line):
+        for rule in check.rules:
+            for error in rule_that_the_task_lacks(exercise.task, rule, check.file, check.line):
                 problems.append(problem_of(check, error.problem.problem, error.problem.fix))
     return problems
 

@@ -28,6 +28,8 @@ def show(audit: Audit, console: Console) -> None:
     _show_programs(audit, console)
     for problem in audit.problems:
         _show_problem(problem, console)
+    if audit.rules:
+        console.print(_rules(audit))
     if audit.mutants and not audit.quick:
         console.print(_checks(audit))
     _show_score(audit, console)
@@ -42,6 +44,11 @@ def _show_programs(audit: Audit, console: Console) -> None:
     if audit.mutants:
         tried += f", {len(audit.mutants)} mutants" + (", a sample" if audit.sampled else "")
     console.print(Text(tried, style="dim"))
+    if scores := [f"{p.title} {p.score:g}" for p in audit.programs if p.kind == "baseline"]:
+        console.print(Text(f"points without any work: {', '.join(scores)}", style="dim"))
+    elif not audit.quick:
+        text = "task.md marks no rules, so nothing is known rule by rule, and what a program without any work gets"
+        console.print(Text(text, style="dim"))
 
 
 def _show_problem(problem: AuditProblem, console: Console) -> None:
@@ -58,6 +65,24 @@ def _short(place: str) -> str:
     """Return the path relative to the current folder."""
     here = f"{Path.cwd()}/"
     return place.removeprefix(here)
+
+
+def _rules(audit: Audit) -> Table:
+    """Return the rules of the task, each with its points, and the mistakes that break it with what they cost."""
+    table = Table(box=None, pad_edge=False, header_style="dim", padding=(0, 1))
+    for name in ("rule", "points", "mistake", "costs", "caught by"):
+        table.add_column(name, justify="right" if name in ("points", "costs") else "left", overflow="fold")
+    for rule in audit.rules:
+        first = (rule.id, f"{rule.points:g}")
+        for broken in rule.mistakes or [None]:
+            costs = f"{broken.lost:g}{'' if broken.judged else '*'}" if broken else ""
+            table.add_row(
+                *first, broken.name if broken else "none", costs, " ".join(broken.caught_by if broken else ())
+            )
+            first = ("", "")
+    table.caption = "* its program ends by itself, or does not have what every other check needs"
+    table.caption_justify = "left"
+    return table
 
 
 def _checks(audit: Audit) -> Table:

@@ -35,7 +35,8 @@ class Trial:
 
     `statuses` has the status of each check that could be judged, `findings` those of the checks that failed or crashed.
     `run_in` are the scenarios that were needed. `differences` are the differences from the solution there, and
-    `messages` is the number of messages that arrived. `seconds` is the duration of each run.
+    `messages` is the number of messages that arrived. `earned` has the points by check, `seconds` the duration of each
+    run.
     """
 
     message: str
@@ -44,12 +45,18 @@ class Trial:
     run_in: tuple[str, ...]
     messages: int
     differences: tuple[RecordingDifference, ...]
+    earned: dict[str, float] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict, compare=False)
 
     @property
     def failed(self) -> tuple[str, ...]:
         """Return the checks that failed, in their order."""
         return tuple(name for name, status in self.statuses.items() if status == "failed")
+
+    @property
+    def score(self) -> float:
+        """Return the points of all checks that were judged."""
+        return round(sum(self.earned.values()), 1)
 
     @property
     def caught(self) -> bool:
@@ -77,10 +84,41 @@ class Judged:
     """
 
     name: str
-    kind: Literal["solution", "right", "mistake", "nothing"]
+    kind: Literal["solution", "right", "mistake", "nothing", "baseline"]
     title: str
     failed: tuple[str, ...]
     score: float
+
+
+@dataclass(frozen=True)
+class BrokenRule:
+    """One mistake, which breaks these `rules`: the checks that catch it, and the points that it costs.
+
+    It is not `judged` if its program ends by itself in the first scenario, or fails a check on which every other check
+    depends. Then it may cost everything.
+    """
+
+    name: str
+    title: str
+    rules: tuple[str, ...]
+    caught_by: tuple[str, ...]
+    lost: float
+    score: float
+    judged: bool
+
+
+@dataclass(frozen=True)
+class RuleResult:
+    """One rule of the task: its line in task.md, the checks that are based on it and their points, and the mistakes
+    that break it.
+    """
+
+    id: str
+    text: str
+    line: int
+    points: float
+    checks: tuple[str, ...]
+    mistakes: tuple[BrokenRule, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -108,7 +146,7 @@ class CheckResult:
     title: str
     points: float
     hidden: bool
-    rule: str
+    rules: tuple[str, ...]
     kills: int
     score: float
     alone: int
@@ -136,7 +174,8 @@ class Audit:
     """The audit of one exercise.
 
     `sampled` says that not all mutants were tried. `seeds` is the number of seeds that the randomised scenarios were
-    run with. `made` and `kept` count the programs tried now and those reused from earlier audits.
+    run with. `made` and `kept` count the programs tried now and those reused from earlier audits. `rules` are those of
+    the task; a quick audit has none, because it does not know what a mistake costs.
     """
 
     exercise: str
@@ -153,6 +192,7 @@ class Audit:
     seconds: float
     made: int
     kept: int
+    rules: tuple[RuleResult, ...] = ()
 
     def count(self, fate: Fate) -> int:
         """Return the number of mutants with this result."""

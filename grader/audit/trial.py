@@ -37,6 +37,15 @@ def differences(recording: Recording, reference: Recording) -> tuple[RecordingDi
     return tuple(RecordingDifference(recording.scenario, text) for text in texts)
 
 
+def _differs(recording: Recording, reference: Recording) -> bool:
+    """Return whether a check may see a difference.
+
+    The depth of a queue counts here. It alone makes no program different, because it may not matter to the task.
+    """
+    mine, its = (Counter((end, end.depth) for end in ends.end_points) for ends in (recording, reference))
+    return mine != its or bool(differences(recording, reference))
+
+
 def _named(names: tuple[str, ...]) -> str:
     return ", ".join(names) or "none"
 
@@ -167,7 +176,7 @@ class Trials:
         If nothing differs from the solution, every check passes, as it does for the solution.
         """
         references = self.grading.references
-        if not any(differences(recording, references[name]) for name, recording in recordings.items()):
+        if not any(_differs(recording, references[name]) for name, recording in recordings.items()):
             return {c.name: Verdict(c.name, c.title, "passed", c.points, c.hint) for c in self.checks}
         missing = Ending("did-not-start", "not run")
         places = {
@@ -180,7 +189,8 @@ class Trials:
     ) -> list[Scenario]:
         """Return the scenarios that unblocked checks need."""
         done = set(recordings)
-        passed = {c.name for c in self.checks if set(c.scenarios) <= done and verdicts[c.name].status == "passed"}
+        known = [check.name for check in self.checks if set(check.scenarios) <= done]
+        passed = {name for name in known if not verdicts[name].blocks}
         asked = {
             scenario
             for check in self.checks
@@ -213,7 +223,7 @@ class Trials:
             # A check whose scenarios were not run is blocked, or was not requested.
             if check in decided:
                 statuses[check.name] = verdicts[check.name].status
-            elif any(statuses.get(name, "passed") != "passed" for name in check.depends):
+            elif any(name in statuses and verdicts[name].blocks for name in check.depends):
                 statuses[check.name] = "blocked"
         text = {name: verdicts[name] for name, status in statuses.items() if status in ("failed", "error")}
         findings = {name: verdict.finding or Finding(verdict.error) for name, verdict in text.items()}
@@ -224,6 +234,7 @@ class Trials:
             findings=findings,
             run_in=tuple(recordings),
             messages=sum(len(recording.received) for recording in recordings.values()),
+            earned={name: verdicts[name].earned for name, status in statuses.items() if status != "blocked"},
             differences=tuple(d for name, r in recordings.items() for d in differences(r, references[name])),
             seconds={name: recording.seconds for name, recording in recordings.items()},
         )

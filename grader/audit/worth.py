@@ -160,7 +160,7 @@ def check_results(
             title=check.title,
             points=check.points,
             hidden=check.hidden,
-            rule=check.rule,
+            rules=check.rules,
             kills=kills[check.name],
             score=kills[check.name] / len(mutants) if mutants else 0.0,
             alone=sum(trial.failed == (check.name,) for trial in mutants.values()),

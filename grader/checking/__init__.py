@@ -1,16 +1,18 @@
-"""The names for authors of checks: `check` marks a function as a check, `fail` ends it, and fixtures give it runs.
+"""The names for authors of checks: `check` marks a function as a check, `fail` ends it, `each` judges several
+things, and fixtures give it runs.
 
 See docs/writing-checks.md.
 """
 
 from typing import TYPE_CHECKING, Any
 
+from grader.checking.partial import each
 from grader.checking.verdict import Wrong, check, fail
 
 if TYPE_CHECKING:
     from grader.checking.run import Exchange, Message, Run
 
-__all__ = ["Exchange", "Message", "Run", "Wrong", "check", "fail"]
+__all__ = ["Exchange", "Message", "Run", "Wrong", "check", "each", "fail"]
 
 
 def __getattr__(name: str) -> Any:

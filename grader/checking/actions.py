@@ -5,13 +5,15 @@ They judge the raw status and feedback topics and the responses, never an Action
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable
 from typing import Any
 
 from grader.checking.comparator import TOLERANCE, shown
+from grader.checking.partial import each
 from grader.checking.recorded_run import RecordedRun
-from grader.recording.events import By, Cancel, Goal
+from grader.recording.events import By, Cancel, Feedback, Goal
 from grader.scenario.times import SECOND
 
 _FORGOT = (
@@ -144,15 +146,19 @@ def must_match_feedback(
     _must_answer(run, student, accepted=True)
     pairs = list(zip(reference.feedback, student.feedback, strict=False))
     messages = [(expected.fields, got.fields) for expected, got in pairs]
-    for number, (expected, got) in enumerate(pairs, start=1):
+    expected_count, count = len(reference.feedback), len(student.feedback)
+
+    def judge(numbered: tuple[int, tuple[Feedback | None, Feedback | None]]) -> None:
+        number, (expected, got) = numbered
+        if expected is None or got is None:
+            text = f"expected {expected_count} feedback messages, got {count}."
+            never = "" if count else "Your node never publishes feedback."
+            run.wrong_at(student.at, text, _part(student), f"{expected_count} messages", count, never)
         part = f"{_part(student)}, feedback {number}"
         run.compare_at(got.at, part, field, got.fields, expected.fields, tolerance, student.action, messages)
         run.time_at(got.at, expected.at, part, time, since=student.at)
-    expected_count, count = len(reference.feedback), len(student.feedback)
-    if count != expected_count:
-        text = f"expected {expected_count} feedback messages, got {count}."
-        never = "" if count else "Your node never publishes feedback."
-        run.wrong_at(student.at, text, _part(student), f"{expected_count} messages", count, never)
+
+    each(enumerate(itertools.zip_longest(reference.feedback, student.feedback), start=1), judge)
 
 
 def must_match_goals(

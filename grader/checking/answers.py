@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any
 
 from grader.checking.comparator import TOLERANCE, difference, equal, shown
 from grader.checking.graph import subscriptions
 from grader.checking.late_answers import AT_ONCE, delay, how_late, in_general, is_late, is_one_late
 from grader.checking.message import Exchange, Message
+from grader.checking.partial import each
 from grader.checking.patterns import common, fixed_step
 from grader.checking.recorded_run import RecordedRun
 
@@ -26,13 +28,20 @@ def must_match(
     missing answers are ignored, because another check judges them.
     """
     unit = _unit(run, field)
-    for exchange in run.exchanges:
-        if exchange.expected and (exchange.answers or not missing_ok):
-            got = _answer(run, exchange)
-            if per:
-                _compare_each(run, exchange, got, field, per, unit, tolerance)
-            else:
-                _compare(run, exchange, got, field, unit, tolerance)
+
+    def compare(exchange: Exchange) -> None:
+        got = _answer(run, exchange)
+        if per:
+            _compare_each(run, exchange, got, field, per, unit, tolerance)
+        else:
+            _compare(run, exchange, got, field, unit, tolerance)
+
+    each((exchange for exchange in _expected(run) if exchange.answers or not missing_ok), compare)
+
+
+def _expected(run: RecordedRun) -> list[Exchange]:
+    """Return the messages that the solution answers."""
+    return [exchange for exchange in run.exchanges if exchange.expected]
 
 
 def _unit(run: RecordedRun, field: str) -> str:
@@ -41,12 +50,14 @@ def _unit(run: RecordedRun, field: str) -> str:
 
 def must_answer(run: RecordedRun) -> None:
     """Check that the node answers every message that the solution answers, once."""
-    for exchange in run.exchanges:
-        if exchange.expected:
-            _answer(run, exchange)
-            if len(exchange.answers) > 1:
-                count = len(exchange.answers)
-                run.wrong(exchange, f"one answer was expected, got {count}.", expected="1", got=str(count))
+
+    def answered_once(exchange: Exchange) -> None:
+        _answer(run, exchange)
+        if len(exchange.answers) > 1:
+            count = len(exchange.answers)
+            run.wrong(exchange, f"one answer was expected, got {count}.", expected="1", got=str(count))
+
+    each(_expected(run), answered_once)
 
 
 def must_answer_at_once(run: RecordedRun, within: float = AT_ONCE) -> None:
@@ -54,12 +65,15 @@ def must_answer_at_once(run: RecordedRun, within: float = AT_ONCE) -> None:
 
     Missing answers are ignored, because another check judges them.
     """
-    for exchange in run.exchanges:
-        for answer in exchange.answers if exchange.expected else ():
+
+    def in_time(exchange: Exchange) -> None:
+        for answer in exchange.answers:
             if is_late(exchange, answer, within):
                 late = delay(run, exchange, answer)
                 text = f"an answer was expected at once; it arrived {late}.{in_general(run)}"
                 run.wrong(exchange, text, "", "an answer at once", late)
+
+    each(_expected(run), in_time)
 
 
 def must_vary(run: RecordedRun, field: str, per: str = "") -> None:
@@ -184,6 +198,7 @@ def _compare_each(
             run.wrong(exchange, text, str(name), "nothing", shown(value, unit))
 
 
+@lru_cache(maxsize=8)  # every wrong answer needs it
 def pattern(run: RecordedRun, field: str, per: str = "", unit: str = "") -> str:
     """Return a sentence about what all values of `field` have in common, beginning with a space; empty if nothing.
 

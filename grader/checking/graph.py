@@ -94,9 +94,9 @@ def must_have_interface(run: RecordedRun, only: bool = False) -> None:
         _has_no_others(run, [(kind, name) for kind, name, _ in declared])
 
 
-def must_have_qos(run: RecordedRun, topic: str = "") -> None:
+def must_have_qos(run: RecordedRun, topic: str = "", depth: bool = False) -> None:
     """Check that the node's endpoints on `topic`, or on all topics, have the reliability and durability of
-    exercise.toml.
+    exercise.toml; with `depth`, the depth of their queues, too.
     """
     for declared in run.exercise.topics:
         if topic not in ("", declared.name):
@@ -107,6 +107,10 @@ def must_have_qos(run: RecordedRun, topic: str = "") -> None:
             if got != expected:
                 text = f"your {end.kind} on {end.topic} is {got}. Expected {expected}."
                 _wrong(text, expected, got, _of_qos(end, declared.durability))
+            if depth and end.depth != declared.depth:
+                expected, got = f"a depth of {declared.depth}", f"{end.depth}" if end.depth else "one that keeps all"
+                text = f"your {end.kind} on {end.topic} has another queue. Expected {expected}, got {got}."
+                _wrong(text, expected, got)
 
 
 def must_have_nodes(run: RecordedRun) -> None:

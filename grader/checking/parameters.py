@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from grader.checking.comparator import TOLERANCE, equal, shown
+from grader.checking.partial import each
 from grader.checking.recorded_run import RecordedRun
 from grader.recording.events import ParameterChange, ParameterReading
 
@@ -25,14 +26,12 @@ def kind_of(value: Any) -> str:
 
 def must_take(run: RecordedRun, name: str, value: Any = ANY) -> None:
     """Check that the node accepts each `value` that the scenario sets for this parameter."""
-    for change in _changes(run, name, value):
-        _see(run, change, taken=True)
+    each(_changes(run, name, value), lambda change: _see(run, change, taken=True))
 
 
 def must_refuse(run: RecordedRun, name: str, value: Any = ANY) -> None:
     """Check that the node refuses each `value` that the scenario sets for this parameter, and continues to run."""
-    for change in _changes(run, name, value):
-        _see(run, change, taken=False)
+    each(_changes(run, name, value), lambda change: _see(run, change, taken=False))
 
 
 def must_take_and_refuse_as_the_solution(run: RecordedRun) -> None:

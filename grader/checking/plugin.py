@@ -149,10 +149,10 @@ class Checks:
             pytest.skip("blocked by " + ", ".join(blocking))
 
     def _blocking(self, name: str) -> tuple[str, ...]:
-        """Return the checks that must pass first and failed, without those that are blocked themselves."""
+        """Return the checks without which it can't be judged, except those that are blocked themselves."""
         blocking: dict[str, None] = {}
         for other in self._marks[name].depends:
-            if self.verdicts[other].status != "passed":
+            if self.verdicts[other].blocks:
                 blocking.update(dict.fromkeys(self.verdicts[other].blocked_by or (other,)))
         return tuple(blocking)
 
@@ -175,8 +175,11 @@ class Checks:
         if isinstance(error, pytest.skip.Exception):
             return Verdict(item.name, title, "blocked", *common, blocked_by=self._blocking(item.name))
         if isinstance(error, AssertionError):
-            finding = error.finding if isinstance(error, Wrong) else Finding(str(error))
-            return Verdict(item.name, title, "failed", *common, finding=finding.shortened())
+            wrong = error if isinstance(error, Wrong) else Wrong(Finding(str(error)))
+            finding = wrong.finding.shortened()
+            return Verdict(
+                item.name, title, "failed", *common, finding=finding, share=wrong.share, partial=mark.partial
+            )
         return Verdict(item.name, title, "error", *common, error=_describe(error, item.path))
 
 

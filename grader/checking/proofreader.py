@@ -18,6 +18,7 @@ from grader.checking.judge import Listed, listed
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from grader.exercise.mistakes import each_mistake
+from grader.exercise.rules import named_by, rules_of, without_markup
 from grader.exercise.starter import MarkerError, starter
 from grader.scenario.declared import declared
 from groundwork.child_process import run_program
@@ -84,7 +85,7 @@ def same_name_twice(file: Path) -> Iterator[ExerciseError]:
 
 
 def rules_that_the_task_lacks(task: str, check_files: Iterable[Path]) -> Iterator[ExerciseError]:
-    """Yield checks whose `rule` is not a sentence of `task`, the text of task.md."""
+    """Yield checks whose `rule` is neither a sentence of `task`, the text of task.md, nor the id of a rule there."""
     for file in check_files:
         for line, rule in _rules(file):
             yield from rule_that_the_task_lacks(task, rule, file, line)
@@ -93,21 +94,17 @@ def rules_that_the_task_lacks(task: str, check_files: Iterable[Path]) -> Iterato
 def rule_that_the_task_lacks(
     task: str, rule: str, file: Path, line: int, subject: str = "a check"
 ) -> Iterator[ExerciseError]:
-    """Yield the error for a check in this line of `file` if its `rule` is not a sentence of `task`."""
-    if _without_marks(rule) not in _without_marks(task):
+    """Yield the error for a check in this line of `file` if its `rule` is not in `task`."""
+    if without_markup(rule) not in without_markup(task) and not named_by(rule, rules_of(task)):
         problem = f"{subject} is based on a sentence that is not in task.md: “{rule}”"
         yield ExerciseError(file, problem, "Write the sentence in task.md, or quote a sentence that is there.", line)
 
 
-def _without_marks(text: str) -> str:
-    """Return a text of task.md or of a rule without Markdown markup, with whitespace reduced to single spaces."""
-    return " ".join(re.sub(r"[*`]", "", text).split())
-
-
 def _rules(file: Path) -> Iterator[tuple[int, str]]:
     for node in ast.walk(_parsed(file)):
-        if isinstance(node, ast.keyword) and node.arg == "rule" and isinstance(node.value, ast.Constant):
-            yield node.value.lineno, str(node.value.value)
+        if isinstance(node, ast.keyword) and node.arg == "rule":
+            several = node.value.elts if isinstance(node.value, (ast.Tuple, ast.List)) else [node.value]
+            yield from ((each.lineno, str(each.value)) for each in several if isinstance(each, ast.Constant))
 
 
 def _parsed(file: Path) -> ast.Module:
@@ -162,8 +159,8 @@ def _of_mistakes(exercise: Exercise, checks: tuple[Listed, ...]) -> Iterator[Exe
         if isinstance(mistake, ExerciseError):
             yield mistake
             continue
-        if mistake.breaks:
-            yield from rule_that_the_task_lacks(exercise.task, mistake.breaks, mistake.file, mistake.line, mistake.name)
+        for rule in mistake.breaks:
+            yield from rule_that_the_task_lacks(exercise.task, rule, mistake.file, mistake.line, mistake.name)
         for name in mistake.caught_by:
             if name not in known:
                 problem = f"{mistake.name} is to be caught by {name}, and there is no such check"

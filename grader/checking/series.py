@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from grader.checking.comparator import TOLERANCE, equal, shown
+from grader.checking.partial import each
 from grader.checking.patterns import COMPUTER_CLOCK, shift
 from grader.checking.recorded_run import RecordedRun, seconds
 from grader.recording.recording import ReceivedMessage
@@ -50,19 +51,23 @@ def must_match_series(
     pairs = list(zip(expected, got, strict=False))
     too_early = _at_the_start(expected, got)
     shifted = shift(_values(expected, field), _values(got, field), tolerance)
-    for number, (reference, message) in enumerate(pairs, start=1):
+    messages = [(e.fields, g.fields) for e, g in pairs]
+
+    def judge(numbered: tuple[int, tuple[ReceivedMessage | None, ReceivedMessage | None]]) -> None:
+        number, (reference, message) = numbered
         part = f"message {number} on {name}"
-        messages = [(e.fields, g.fields) for e, g in pairs]
+        if reference is None or message is None:
+            text = f"expected {len(expected)} messages on {name}, got {len(got)}."
+            in_all = shifted or too_early or f"{_stops(expected, got)} {run.waits()}"
+            run.wrong_at(None, text, "", f"{len(expected)} messages", len(got), in_all)
         if not shifted:
             run.compare_at(
                 message.at, part, field, message.fields, reference.fields, tolerance, name, messages, too_early
             )
         if time is not None and abs(message.at - reference.at) > time * SECOND + 1:
             _wrong_time(run, part, reference, message, pairs)
-    if len(got) != len(expected):
-        text = f"expected {len(expected)} messages on {name}, got {len(got)}."
-        in_all = shifted or too_early or f"{_stops(expected, got)} {run.waits()}"
-        run.wrong_at(None, text, "", f"{len(expected)} messages", len(got), in_all)
+
+    each(enumerate(itertools.zip_longest(expected, got), start=1), judge)
     if shifted:
         run.wrong_at(got[0].at, "the messages are shifted.", name, "each at its place", "shifted by one", shifted)
 
@@ -118,11 +123,15 @@ def must_stamp(run: RecordedRun, topic: str = "", field: str = "header.stamp", w
     name = topic or run.output.name
     messages = run.messages_on(name)
     stamps = [_nanoseconds(field_of(message.fields, field)) for message in messages]
-    for number, (message, stamp) in enumerate(zip(messages, stamps, strict=True), start=1):
+
+    def judge(numbered: tuple[int, tuple[ReceivedMessage, int]]) -> None:
+        number, (message, stamp) = numbered
         if abs(stamp - message.at) > within * SECOND:
             expected, got = shown(_stamp(message.at)), shown(_stamp(stamp))
             text = f"expected {field} {expected}, the time when it was published, got {got}."
             run.wrong_at(message.at, text, f"message {number} on {name}", expected, got, _of_stamps(stamps))
+
+    each(enumerate(zip(messages, stamps, strict=True), start=1), judge)
 
 
 def _values(messages: Sequence[ReceivedMessage], field: str) -> list[Any]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NoReturn
 
 from grader.checking.comparator import TOLERANCE, shown
+from grader.checking.partial import each
 from grader.checking.recorded_run import RecordedRun
 from grader.recording.events import By, Call
 from grader.scenario.times import SECOND
@@ -20,30 +21,36 @@ def calls(run: RecordedRun, service: str = "", by: By = "grader") -> tuple[Call,
 
 def must_respond(run: RecordedRun, service: str = "", within: float | None = None) -> None:
     """Check that the node responds to every request that the solution responds to, within this many seconds."""
-    for number, call, reference in _numbered(run, service, "grader"):
+
+    def judge(numbered: tuple[int, Call, Call]) -> None:
+        number, call, reference = numbered
         if reference.answered is None:
-            continue
+            return
         if call.answered is None:
             _no_response(run, number, call)
-            continue
         late = (call.answered - call.at) / SECOND
         if within is not None and late > within + 1e-9:
             text = f"a response was expected within {within:g} s, got it {late:.2f} s after the request."
             run.wrong_at(call.at, text, _part(number, call), f"{within:g} s", f"{late:.2f} s", _all_late(run, call))
+
+    each(_numbered(run, service, "grader"), judge)
 
 
 def must_match_responses(run: RecordedRun, field: str = "", service: str = "", tolerance: float = TOLERANCE) -> None:
     """Check that every response has the same `field` as the solution's. By default every field counts."""
     numbered = _numbered(run, service, "grader")
     pairs = [(r.response, c.response) for _, c, r in numbered if r.response is not None and c.response is not None]
-    for number, call, reference in numbered:
+
+    def judge(one: tuple[int, Call, Call]) -> None:
+        number, call, reference = one
         if reference.response is None:
-            continue
+            return
         if call.response is None:
             _no_response(run, number, call)
-            continue
         part, got, expected = _part(number, call), call.response, reference.response
         run.compare_at(call.at, part, field, got, expected, tolerance, call.service, pairs)
+
+    each(numbered, judge)
 
 
 def must_call(run: RecordedRun, service: str = "", count: int | None = None) -> None:
@@ -87,7 +94,7 @@ def _reference_calls(run: RecordedRun, service: str, by: By) -> tuple[Call, ...]
     return tuple(call for call in run.reference.calls if call.service == service and call.by == by)
 
 
-def _no_response(run: RecordedRun, number: int, call: Call) -> None:
+def _no_response(run: RecordedRun, number: int, call: Call) -> NoReturn:
     servers = sorted({end.topic for end in run.recording.end_points if end.kind == "server"})
     same = [other for other in calls(run, call.service) if other.answered is not None]
     if not call.served or call.service not in servers:

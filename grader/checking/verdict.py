@@ -37,11 +37,15 @@ def _shortened(text: str) -> str:
 
 
 class Wrong(AssertionError):
-    """Raised by a check that the student's node does not pass."""
+    """Raised by a check that the student's node does not pass.
 
-    def __init__(self, finding: Finding) -> None:
+    `share` is how much of what the check looked at is right all the same, between 0 and 1.
+    """
+
+    def __init__(self, finding: Finding, share: float = 0.0) -> None:
         super().__init__(finding.text)
         self.finding = finding
+        self.share = share
 
 
 def fail(text: str, *, expected: object = "", got: object = "", at: float | None = None) -> NoReturn:
@@ -60,8 +64,9 @@ Status = Literal["passed", "failed", "blocked", "error"]
 class Verdict:
     """One check's verdict. `name` is its function, `title` its docstring.
 
-    A failed check has a `finding`. `blocked_by` names the checks without which a blocked one can't be judged. `error`
-    says what crashed in the check, with file and line.
+    A failed check has a `finding`, and `share` is how much of what it looked at is right, between 0 and 1. If it is
+    `partial`, that gives part of the points. `blocked_by` names the checks without which a blocked one can't be judged.
+    `error` says what crashed in the check, with file and line.
     """
 
     name: str
@@ -74,11 +79,23 @@ class Verdict:
     finding: Finding | None = None
     blocked_by: tuple[str, ...] = ()
     error: str = ""
+    share: float = 0.0
+    partial: bool = False
 
     @property
     def earned(self) -> float:
-        """Return the points that it gave."""
-        return self.points if self.status == "passed" else 0.0
+        """Return the points that it gave.
+
+        A partial check gives twice what is right above one half: all points for all of it, none for half of it.
+        """
+        if self.status == "passed":
+            return self.points
+        return round(self.points * max(2 * self.share - 1, 0.0), 1) if self.partial else 0.0
+
+    @property
+    def blocks(self) -> bool:
+        """Return whether checks that depend on it can't be judged: unless more than half is right."""
+        return self.status != "passed" and self.share <= 0.5
 
 
 Test = TypeVar("Test", bound=Callable[..., None])
@@ -91,14 +108,15 @@ ATTRIBUTE = "__check__"
 class CheckOptions:
     """The arguments of the `check` decorator of a test function.
 
-    `depends` are names of other checks, `rule` is a sentence of task.md.
+    `depends` are names of other checks. `rules` name rules of task.md, each by its id or by a sentence.
     """
 
     points: float
     hint: str
     depends: tuple[str, ...]
     misconception: str
-    rule: str = ""
+    rules: tuple[str, ...] = ()
+    partial: bool = False
 
 
 def check(
@@ -107,19 +125,23 @@ def check(
     hint: str,
     depends: Sequence[Callable[..., Any] | str] = (),
     misconception: str = "",
-    rule: str = "",
+    rule: str | Sequence[str] = (),
+    partial: bool = False,
 ) -> Callable[[Test], Test]:
     """Make a test function a check that gives `points`. Its docstring is the check's title.
 
     `hint` says where to look to a student who fails the check. `depends` lists checks (functions of the same file, or
-    names) without which this one can't be judged: unless all of them passed, it counts as blocked, not as failed.
-    `misconception` names the common mistake behind a failure, in two or three words. `rule` is the sentence of task.md
-    that the check is based on, word for word: `spinbook audit` needs one for each hidden check, and looks for it there.
+    names) without which this one can't be judged: unless each of them passed, or more than half of what it looks at is
+    right, it counts as blocked, not as failed. `misconception` names the common mistake behind a failure, in two or
+    three words. `rule` names the rules of task.md that the check is based on, each by its id or by a sentence of it,
+    word for word: `spinbook audit` needs one for each hidden check. A `partial` check gives part of its points for what
+    is right.
     """
     names = tuple(item if isinstance(item, str) else item.__name__ for item in depends)
+    rules = (rule,) if isinstance(rule, str) else tuple(rule)
 
     def mark(test: Test) -> Test:
-        setattr(test, ATTRIBUTE, CheckOptions(points, hint, names, misconception, rule))
+        setattr(test, ATTRIBUTE, CheckOptions(points, hint, names, misconception, rules, partial))
         return test
 
     return mark

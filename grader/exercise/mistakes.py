@@ -1,7 +1,8 @@
 """The usual mistakes in an exercise: edits of the solution in `mistakes.md`, or whole programs in `mistakes/*.py`.
 
-Each says in its first line what is wrong, quotes the sentence of the task that it breaks, and names the checks that
-catch it. An edit says so in its section of `mistakes.md`, a whole program in its docstring:
+Each says in its first line what is wrong, names the rule of the task that it breaks, by its id or by a sentence in
+quotation marks, and names the checks that catch it. An edit says so in its section of `mistakes.md`, a whole program
+in its docstring:
 
     It adds two.
 
@@ -30,8 +31,9 @@ EDITS, WHOLE = "mistakes.md", "mistakes"
 class Mistake:
     """One usual mistake, as a whole program.
 
-    `summary` says in a sentence what is wrong. `breaks` is the sentence of the task that it breaks, empty if it names
-    none. `caught_by` are the checks that it names. `line`, counted from 1, is the line of `file` that names them.
+    `summary` says in a sentence what is wrong. `breaks` are the rules of the task that it breaks, ids or sentences;
+    most break one. `caught_by` are the checks that it names. `line`, counted from 1, is the line of `file` that names
+    them.
     """
 
     name: str
@@ -39,7 +41,7 @@ class Mistake:
     source: str
     file: Path
     line: int
-    breaks: str = ""
+    breaks: tuple[str, ...] = ()
     caught_by: tuple[str, ...] = ()
 
 
@@ -113,8 +115,16 @@ def _mistake(name: str, source: str, text: str, file: Path, line: int) -> Mistak
     summary = " ".join(text.partition("\n\n")[0].split()) or name.replace("_", " ")
     breaks = re.search(r"^Breaks: *(.+?)(?:\n\n|\Z)", text, re.MULTILINE | re.DOTALL)
     caught_by = re.findall(r"\btest_\w+", text.partition("Caught by:")[2])
-    sentence = " ".join(breaks[1].split()).strip("“”\"'") if breaks else ""
-    return Mistake(name, summary, source, file, line, sentence, tuple(caught_by))
+    return Mistake(name, summary, source, file, line, _rules(breaks[1]) if breaks else (), tuple(caught_by))
+
+
+def _rules(text: str) -> tuple[str, ...]:
+    """Return the rules that are named after `Breaks:`: quoted sentences, or ids with commas between them."""
+    if quoted := re.findall(r"“(.+?)”", text, re.DOTALL):
+        return tuple(" ".join(sentence.split()) for sentence in quoted)
+    if re.fullmatch(r"[a-z0-9_]+(, *[a-z0-9_]+)*", text.strip()):
+        return tuple(name.strip() for name in text.split(","))
+    return (" ".join(text.split()).strip("\"'"),)
 
 
 def _docstring(source: str) -> str:

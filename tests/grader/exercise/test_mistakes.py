@@ -50,7 +50,7 @@ def test_a_mistake_is_the_solution_with_some_lines_replaced(exercise: Exercise) 
     )
     (mistake,) = mistakes_of(exercise)
     assert mistake.source == SOLUTION.replace("self.count = 0", "self.count = 1", 1)
-    assert (mistake.name, mistake.summary, mistake.breaks) == ("wrong", "It counts from one.", "Count from zero.")
+    assert (mistake.name, mistake.summary, mistake.breaks) == ("wrong", "It counts from one.", ("Count from zero.",))
     assert mistake.caught_by == ("test_first", "test_second")
     assert mistake.line == 1
 

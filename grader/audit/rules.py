@@ -1,0 +1,126 @@
+"""The rules of a task one by one: which mistakes break them, what catches these, and what they cost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from grader.audit.check_list import AuditedCheck
+from grader.audit.result import AuditProblem, BrokenRule, Judged, RuleResult, Trial
+from grader.exercise.exercise import Exercise
+from grader.exercise.mistakes import Mistake
+from grader.exercise.rules import Rule, ids_used_twice, named_by, rules_of
+
+#: How many mistakes break each rule, at least.
+FEWEST = 2
+
+#: A mistake may cost at most this many times the points of the rules that it breaks.
+DEAREST = 2.0
+
+#: The largest share of the points that a program without work in it may get.
+LARGEST = 0.15
+
+
+def rule_results(
+    exercise: Exercise, checks: tuple[AuditedCheck, ...], mistakes: tuple[Mistake, ...], trials: dict[str, Trial]
+) -> tuple[RuleResult, ...]:
+    """Return every rule of the task with the mistakes that break it; `trials` are those of mistakes, by name."""
+    rules = rules_of(exercise.task)
+    needed = set(_needed_by_all(checks))
+    broken = {mistake.name: _ids(mistake.breaks, rules) for mistake in mistakes}
+    results = []
+    for rule in rules:
+        mine = tuple(check for check in checks if rule.id in _ids(check.rules, rules))
+        result = RuleResult(rule.id, rule.text, rule.line, sum(c.points for c in mine), tuple(c.name for c in mine))
+        breaking = [mistake for mistake in mistakes if rule.id in broken[mistake.name]]
+        details = tuple(_broken(m, trials[m.name], broken[m.name], needed, checks) for m in breaking)
+        results.append(replace(result, mistakes=details))
+    return tuple(results)
+
+
+def _ids(names: tuple[str, ...], rules: tuple[Rule, ...]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(rule for name in names for rule in named_by(name, rules)))
+
+
+def _broken(
+    mistake: Mistake, trial: Trial, rules: tuple[str, ...], needed: set[str], checks: tuple[AuditedCheck, ...]
+) -> BrokenRule:
+    lost = round(sum(check.points for check in checks) - trial.score, 1)
+    unjudged = bool(trial.message) or any(name in needed and not trial.earned.get(name) for name in trial.failed)
+    return BrokenRule(mistake.name, mistake.summary, rules, trial.failed, lost, trial.score, not unjudged)
+
+
+def _needed_by_all(checks: tuple[AuditedCheck, ...]) -> list[str]:
+    """Return the checks on which every other one depends, directly or through others."""
+    above: dict[str, set[str]] = {}
+    for check in checks:
+        above[check.name] = {*check.depends, *(name for other in check.depends for name in above.get(other, ()))}
+    return [c.name for c in checks if all(c.name in above[other.name] for other in checks if other is not c)]
+
+
+def problems_of_rules(
+    exercise: Exercise, results: tuple[RuleResult, ...], mistakes: tuple[Mistake, ...], programs: tuple[Judged, ...]
+) -> list[AuditProblem]:
+    """Return what is wrong with the rules, their mistakes and the points; nothing if the task marks no rules."""
+    if not results:
+        return []
+    task = exercise.folder / "task.md"
+    found = [_twice(task, rule) for rule in ids_used_twice(rules_of(exercise.task))]
+    for result in results:
+        found += _of_rule(task, result)
+    files = {mistake.name: (mistake.file, mistake.line) for mistake in mistakes}
+    points = {result.id: result.points for result in results}
+    best = max((program for program in programs if program.kind == "baseline"), key=lambda p: p.score, default=None)
+    for broken in {each.name: each for result in results for each in result.mistakes}.values():
+        found += _of_mistake(*files[broken.name], broken, sum(points[rule] for rule in broken.rules), best)
+    named = {each.name for result in results for each in result.mistakes}
+    found += [_names_none(mistake) for mistake in mistakes if mistake.name not in named]
+    return found + list(_of_baselines(exercise, programs))
+
+
+def _twice(task: Path, rule: Rule) -> AuditProblem:
+    return AuditProblem(
+        task, rule.line, f"there are two rules with the id {rule.id}", "Give each its own.", about=rule.id
+    )
+
+
+def _of_rule(task: Path, result: RuleResult) -> Iterator[AuditProblem]:
+    subject = f"the rule {result.id} (“{result.text}”)"
+    if not result.checks:
+        fix = 'Name it in the check that judges it, with rule="…", or take it out of the task.'
+        yield AuditProblem(task, result.line, f"no check is based on {subject}", fix, about=result.id)
+    caught = [mistake for mistake in result.mistakes if mistake.caught_by]
+    if len(caught) < FEWEST:
+        text = f"{len(caught)} of the mistakes in mistakes.md break {subject} and are caught; there must be {FEWEST}"
+        yield AuditProblem(task, result.line, text, "Write mistakes that break it and nothing else.", about=result.id)
+
+
+def _of_mistake(
+    file: Path, line: int, broken: BrokenRule, points: float, best: Judged | None
+) -> Iterator[AuditProblem]:
+    subject = f"the mistake mistakes/{broken.name} (“{broken.title}”)"
+    if not broken.judged:
+        return
+    if broken.lost > DEAREST * points:
+        text = f"{subject} costs {broken.lost:g} points, more than {DEAREST:g} times the {points:g} of its rules"
+        fix = "Let fewer checks depend on what it fails, or let checks judge only their own rule."
+        yield AuditProblem(file, line, text, fix, about=broken.name)
+    if best and broken.score < best.score:
+        text = f"{subject} gets {broken.score:g} points, fewer than {best.score:g} for {best.title}"
+        fix = "Let the checks that that program passes depend on one that it fails."
+        yield AuditProblem(file, line, text, fix, about=broken.name)
+
+
+def _names_none(mistake: Mistake) -> AuditProblem:
+    text = f"the mistake mistakes/{mistake.name} (“{mistake.summary}”) names no rule of the task that it breaks"
+    fix = "Write “Breaks:” and the id of a rule, or words of it in quotation marks."
+    return AuditProblem(mistake.file, mistake.line, text, fix, about=mistake.name)
+
+
+def _of_baselines(exercise: Exercise, programs: tuple[Judged, ...]) -> Iterator[AuditProblem]:
+    for program in programs:
+        if program.kind == "baseline" and program.score > LARGEST * exercise.points:
+            text = f"{program.title} gets {program.score:g} of {exercise.points:g} points, more than {LARGEST:.0%}"
+            fix = "Let the checks that it passes depend on one that looks at what the messages hold."
+            yield AuditProblem(exercise.folder, None, text, fix, about=program.name)
