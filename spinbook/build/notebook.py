@@ -39,7 +39,8 @@ class Location:
     """Where a piece of prose is from: the course's root, the folder of its file, and what its links may lead to.
 
     `notebooks` are what chapters are called, by their file. `pictures` collects the files that the prose shows: name of
-    the attachment -> media type -> content in base 64. `file` is the chapter itself, where it is one.
+    the attachment -> media type -> content in base 64. `file` is the chapter itself, where it is one. `references` are
+    the chapter's definitions `[label]: target`: a notebook's cells do not share them.
     """
 
     root: Path
@@ -48,6 +49,7 @@ class Location:
     repository: str = ""
     pictures: dict[str, dict[str, str]] = field(default_factory=dict)
     file: Path | None = None
+    references: Mapping[str, Any] = field(default_factory=dict)
 
     def target(self, target: str, is_image: bool) -> str | None:
         """Return the target that a link or an image needs in a notebook; None leaves it as it is."""
@@ -82,7 +84,7 @@ def portable(prose: str, location: Location) -> str:
     Links to files of the course point into its repository, those to other chapters to their notebooks; pictures are
     collected in `location`.
     """
-    return linked("\n".join(_plain(prose.split("\n"))), location.target)
+    return linked("\n".join(_plain(prose.split("\n"))), location.target, location.references)
 
 
 def _joined(folder: str, path: str) -> str:
@@ -202,7 +204,7 @@ def _cells(chapter: Chapter, course: Course) -> Iterator[dict[str, Any]]:
     setup = _SETUP.format(name=chapter.name, package=course.package.name, workspace=course.package.workspace)
     setup_cell = _code("spinbook-setup", setup, {"kind": "setup", "line": 1})
     folder = chapter.file.parent.as_posix()
-    location = Location(course.root, folder, course.names, course.repository, file=chapter.file)
+    location = Location(course.root, folder, course.names, course.repository, {}, chapter.file, chapter.references)
     waiting = True
     for cell in chapter.cells:
         # The chapter's heading comes first, then what makes its cells work.

@@ -40,6 +40,18 @@ _PAIR = re.compile(r"""([A-Za-z_][\w-]*)\s*[=:]\s*(?:\{?\s*"([^"]*)"\s*\}?|\{?\s
 _EXERCISE = re.compile(r"^<!--\s*exercise:\s*([\w-]+)\s*-->")
 _OPTION = re.compile(r"^:([\w-]+):\s*(.*)$")
 _SNIPPET = re.compile(r"\s*(?:#|//)?\s*-+8<-+\s+[\"'](.+?)[\"']\s*$")
+#: Components that hold a box whose kind is a property, and those that fold what they hold.
+_BOXES = frozenset({"Admonition", "Aside", "Callout", "Alert", "Notice", "Message", "Box", "Infobox"})
+_FOLDED = frozenset(
+    {"details", "accordion", "accordionitem", "expandable", "collapsible", "dropdown", "toggle", "spoiler"}
+)
+_PICTURE = r"[^\"'`{}]+\.(?:png|jpe?g|gif|svg|webp|avif)"
+_PICTURE_PATH = re.compile(rf"""["'`]({_PICTURE})["'`]""", re.IGNORECASE)
+_PICTURE_IMPORT = re.compile(
+    rf"""^import\s+(\w+)\s+from\s+["']({_PICTURE})["'];?[ \t]*$""", re.MULTILINE | re.IGNORECASE
+)
+#: A tag of HTML in a line, with a property that is code; code between backticks is matched so that it is skipped.
+_JSX = re.compile(r"`[^`]*`|<[a-z]\w*\s(?:[^<>{}]|\{(?:[^{}]|\{[^{}]*\})*\})*>")
 _PROPERTY = re.compile(r"\s+([\w-]+)=\{((?:[^{}]|\{[^{}]*\})*)\}")
 _PATH = re.compile(r"""(["'`])([^"'`]+)\1""")
 _QUOTED = re.compile(r"\"((?:[^\"\\]|\\.){12,})\"|'((?:[^'\\]|\\.){12,})'")
@@ -117,7 +129,7 @@ def container(name: str, argument: str, colon: bool = False) -> tuple[str | None
     if name in {"dropdown", "details", "collapse", "toggle"}:
         return "details", "note", argument or "Details"
     if name in {"tab-set", "tabs", "code-group", "grid", "grid-item", "grid-item-card", "card", "div", "column"}:
-        return "group", "", ""
+        return "group", "", argument if name.endswith("card") else ""
     if name in _STYLE:
         own_title = argument if colon or name in {"admonition", "topic", "exercise", "sidebar"} else ""
         return "admonition", _STYLE[name], own_title
@@ -151,16 +163,18 @@ def paired(name: str, properties: dict[str, str], words: str) -> tuple[str, str,
             "",
             properties.get("label") or properties.get("title") or properties.get("value") or positional.strip("\"'"),
         )
-    if name.lower() == "details":
-        return "details", "note", properties.get("title") or properties.get("summary") or ""
-    if name == "Admonition":
-        return "admonition", _STYLE.get(properties.get("type", "note"), "note"), properties.get("title", "")
+    title = properties.get("title") or properties.get("summary") or properties.get("header") or ""
+    if name.lower() in _FOLDED:
+        return "details", "note", title or properties.get("label", "")
+    if name in _BOXES:
+        kind = next((properties[key] for key in ("type", "variant", "kind", "severity") if key in properties), "note")
+        return "admonition", _STYLE.get(kind.lower(), "note"), title
     if name == "hint":
         return "admonition", _STYLE.get(properties.get("style", "info"), "note"), ""
     if name.lower() in _STYLE and name not in {"highlight"}:
         title = properties.get("title") or ("" if name.lower() in STYLES else in_words(name))
         return "admonition", _STYLE[name.lower()], title
-    return ("dropped", "", "") if name == "comment" else ("group", "", "")
+    return ("dropped", "", "") if name == "comment" else ("group", "", title if name[:1].isupper() else "")
 
 
 def in_words(name: str) -> str:
@@ -174,6 +188,30 @@ def words_of(name: str, properties: str) -> list[str]:
     title = pairs(properties).get("title", "")
     sentences = [text for text in sentences if " " in text and text != title]
     return [f"> **{title or in_words(name)}**", ">", *(f"> - {text}" for text in sentences), ""] if sentences else []
+
+
+def imported_pictures(text: str) -> str:
+    """Return an MDX chapter with the paths of the pictures that it imports, where their names are used: `src={arm}`."""
+    for name, path in _PICTURE_IMPORT.findall(text):
+        quoted = f'"{path}"'.replace("\\", r"\\")
+        text = re.sub(rf"(?<=\bsrc=)\{{\s*{name}(?:\.\w+)?\s*\}}", quoted, text)
+    return text
+
+
+def picture(properties: str) -> str:
+    """Return the picture that a component shows, as Markdown or HTML; "" if it shows none."""
+    path = _PICTURE_PATH.search(properties)
+    return image(path[1], pairs(as_html(f" {properties}"))) if path else ""
+
+
+def has_jsx(text: str) -> bool:
+    """Return whether a tag of HTML in a text has a property that is code, as in MDX."""
+    return "={" in text and any("={" in match and match[0] == "<" for match in _JSX.findall(text))
+
+
+def without_jsx(text: str) -> str:
+    """Return a line whose tags have HTML's properties only."""
+    return _JSX.sub(lambda match: as_html(match[0]) if match[0].startswith("<") else match[0], text)
 
 
 def as_html(tag: str) -> str:

@@ -22,7 +22,7 @@ _DEEPEST = 12
 
 #: Containers of plain Markdown. They stay as they are unless a block inside is not plain Markdown.
 _HOLDERS = frozenset({"blockquote_open", "bullet_list_open", "ordered_list_open"})
-_MARKDOWN = _HOLDERS | {"heading_open"}
+_MARKDOWN = _HOLDERS | {"heading_open", "paragraph_open"}
 
 
 @dataclass(frozen=True)
@@ -85,17 +85,23 @@ class _Reader:
 
     def _is_block(self, token: Token) -> bool:
         """Return whether it is a fence, an exercise or a book tool's block, so that its container must be read, too."""
-        if token.type == "html_block":
-            return bool(attributes.exercise(token.content))
+        if token.type in {"html_block", "inline"}:
+            return bool(attributes.exercise(token.content)) or attributes.has_jsx(token.content)
         return token.type not in _MARKDOWN and hasattr(self, f"_{token.type}")
 
     def _heading_open(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         return [Block(BlockKind.HEADING, lines)]
 
+    def _paragraph_open(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
+        if not attributes.has_jsx("\n".join(line.text for line in lines)):
+            return [Block(BlockKind.TEXT, lines)]
+        new = tuple(replace(line, text=attributes.without_jsx(line.text)) for line in lines)
+        return [Block(BlockKind.TEXT, lines, new=new)]
+
     def _html_block(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         name = attributes.exercise(token.content)
         if not name:
-            return [Block(BlockKind.TEXT, lines)]
+            return self._paragraph_open(token, lines)
         rest = [Block(BlockKind.TEXT, lines[1:])] if len(lines) > 1 else []
         return [Block(BlockKind.EXERCISE, lines[:1], title=name), *rest]
 
@@ -279,9 +285,18 @@ class _Reader:
                 )
             ]
         if token.content:
-            inner = token.content.rpartition("</")[0].strip()
-            return [Block(BlockKind.TEXT, lines, new=(SourceLine(inner, lines[0].number),))]
+            return [self._one_line(token, lines, token.content.rpartition("</")[0].strip())]
+        if picture := attributes.picture(token.info):
+            return [Block(BlockKind.TEXT, lines, new=(SourceLine(picture, lines[0].number),))]
         return [Block(BlockKind.DROPPED, lines, new=_words(token, lines))]
+
+    def _one_line(self, token: Token, lines: tuple[SourceLine, ...], words: str) -> Block:
+        """Return the block of a component that opens and closes on its line."""
+        inner = (SourceLine(words, lines[0].number),)
+        kind, style, title = attributes.paired(token.tag, attributes.pairs(token.info), token.info)
+        if kind == "group" and not title:
+            return Block(BlockKind.TEXT, lines, new=inner)
+        return Block(BlockKind(kind), lines, self.inside(inner), title, style)
 
     def _blockquote_open(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         return [Block(BlockKind.QUOTE, lines, self.inside([unquoted(line) for line in lines]))]
@@ -312,6 +327,7 @@ class _Reader:
 
 def read_blocks(text: str, include: Include) -> tuple[Block, ...]:
     """Return the blocks of a chapter's text."""
+    text = attributes.imported_pictures(text)
     lines = [SourceLine(content, number) for number, content in enumerate(text.split("\n"), start=1)]
     return _Reader(include).blocks(lines)
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from spinbook.chapter.block import BlockKind, SourceLine
 from spinbook.chapter.classify import CellKind, ClassifiedFence
@@ -77,6 +78,8 @@ class Chapter:
     static_fences: tuple[StaticFence, ...] = ()
     uses: tuple[Path, ...] = ()
     """The files of the course that it includes or shows, relative to the course."""
+    references: Mapping[str, Any] = field(default_factory=dict)
+    """Its definitions `[label]: target`, as markdown-it keeps them."""
 
     @property
     def interfaces(self) -> Iterator[ChapterCell]:

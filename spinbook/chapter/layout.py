@@ -58,7 +58,7 @@ class ChapterLayout:
             inner.new is not None
             or inner.kind in _RESHAPED
             or inner.kind is BlockKind.DROPPED
-            or (inner.kind is BlockKind.DETAILS and not inner.lines[0].text.lstrip().startswith("<"))
+            or (inner.kind is BlockKind.DETAILS and not inner.lines[0].text.lstrip().startswith("<details"))
             or (inner.kind is BlockKind.FENCE and bool(self.sign(inner)))
             for inner in block.walk()
         )
@@ -105,7 +105,7 @@ class ChapterLayout:
         )
 
     def _group(self, block: Block, depth: int) -> list[Piece]:
-        return _spaced(self._children(block.children, depth), block)
+        return self._titled(block, depth)
 
     def _admonition(self, block: Block, depth: int) -> list[Piece]:
         style = block.style if block.style in STYLES else "note"
@@ -113,7 +113,11 @@ class ChapterLayout:
         opening = (
             [f"{colons}{{admonition}} {block.title}", f":class: {style}"] if block.title else [f"{colons}{{{style}}}"]
         )
-        return _wrapped(self._children(block.children, depth + 1), opening, [colons], block)
+        inside = self._children(block.children, depth + 1)
+        first = next((piece for piece in inside if not piece.is_blank), None)
+        # A box that begins with a cell has no text to be around; its title stays.
+        title = _bold(block) if first is not None and first.block is not None else []
+        return [*title, *_wrapped(inside, opening, [colons], block)]
 
     def _tab(self, block: Block, depth: int) -> list[Piece]:
         if not self._holds_cell(block):
@@ -124,10 +128,7 @@ class ChapterLayout:
         return self._titled(block, depth) if self._holds_cell(block) else self._folded(block, depth, is_open=False)
 
     def _titled(self, block: Block, depth: int) -> list[Piece]:
-        title = (
-            _lines([SourceLine(f"**{block.title}**", block.line), SourceLine("", block.line)]) if block.title else []
-        )
-        return _spaced([*title, *self._children(block.children, depth)], block)
+        return _spaced([*_bold(block), *self._children(block.children, depth)], block)
 
     def _folded(self, block: Block, depth: int, *, is_open: bool) -> list[Piece]:
         title = block.title or block.style.capitalize()
@@ -169,6 +170,12 @@ def _item(pieces: list[Piece], marker: str, item: Block) -> list[Piece]:
         elif not in_item:
             out.append(piece)
     return out if out else [Piece(SourceLine(marker.rstrip(), item.line))]
+
+
+def _bold(block: Block) -> list[Piece]:
+    """Return the title of a block as a paragraph; nothing if it has none."""
+    lines = [SourceLine(f"**{block.title}**", block.line), SourceLine("", block.line)]
+    return _lines(lines) if block.title else []
 
 
 def _lines(lines: Iterable[SourceLine]) -> list[Piece]:

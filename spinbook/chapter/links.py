@@ -6,29 +6,41 @@ markdown-it parses; wrappers around its rules for links, images and HTML record 
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from html import escape, unescape
 from html.parser import HTMLParser
+from types import MappingProxyType
 from typing import Any
 
 from markdown_it import MarkdownIt
+from markdown_it.common.utils import normalizeReference
 from markdown_it.rules_inline import StateInline
+from markdown_it.token import Token
 
 #: (target, whether it is an image) -> the new target, or None to leave it.
 Target = Callable[[str, bool], str | None]
 _ATTRIBUTES = {"img": "src", "a": "href", "source": "src", "video": "src"}
 
+_SIZE = re.compile(r"""\b(width|height)\s*[=:]\s*(?:([\w.%]+)|["']([^"']+)["'])""")
+
 
 @dataclass(frozen=True)
 class _LinkTarget:
-    """A target in an inline token's content: from `start` to `end`."""
+    """A target in an inline token's content: from `start` to `end`.
+
+    With `is_html`, the target is all of a tag; with `is_reference`, what is there is the `[label]` of a definition that
+    is elsewhere, with this title.
+    """
 
     start: int
     end: int
     target: str
     is_image: bool
     is_html: bool = False
+    is_reference: bool = False
+    title: str = ""
 
 
 @functools.cache
@@ -48,27 +60,48 @@ def rule_of(md: MarkdownIt, name: str) -> Any:
 
 def _watched(rule: Any, is_image: bool) -> Any:
     def watch(state: StateInline, silent: bool) -> bool:
-        start = state.pos
+        start, before = state.pos, len(state.tokens)
         if not rule(state, silent):
             return False
         if not silent and state.src == state.env.get("watched"):
-            if place := _destination(state, start + is_image, is_image):
-                state.env["found"].append(place)
-            _attribute_list(state)
+            token = next(item for item in state.tokens[before:] if item.type in {"image", "link_open"})
+            state.env["found"].extend(_targets(state, start, token))
         return True
 
     return watch
 
 
-def _destination(state: StateInline, label: int, is_image: bool) -> _LinkTarget | None:
-    """Return the place of `target` in `[text](target "title")`; None for a reference, whose target is elsewhere."""
+def _targets(state: StateInline, start: int, token: Token) -> Iterator[_LinkTarget]:
+    """Yield what may have to be replaced in the link or image that begins at `start` and was parsed just now."""
+    is_image = token.type == "image"
+    attributes = _attribute_list(state)
+    end = state.pos + len(attributes)
+    size = " ".join(f'{name}="{width or quoted}"' for name, width, quoted in _SIZE.findall(attributes))
+    if is_image and size:
+        html = f'<img src="{escape(str(token.attrs["src"]))}" alt="{escape(token.content)}" {size}>'
+        yield _LinkTarget(start, end, html, is_image, is_html=True)
+        return
+    if place := _destination(state, start + is_image, token):
+        yield place
+    if attributes:
+        yield _LinkTarget(state.pos, end, "", False)
+
+
+def _destination(state: StateInline, label: int, token: Token) -> _LinkTarget | None:
+    """Return the place of `target` in `[text](target "title")`, or of `[label]` in a reference that has to change."""
     # Links in links are not allowed, but images are: the end of the label must be searched again.
-    pos = state.pos
+    pos, is_image = state.pos, token.type == "image"
     label_end = state.md.helpers.parseLinkLabel(state, label, not is_image)
     state.pos = pos
     at = label_end + 1
-    if label_end < 0 or state.src[at : at + 1] != "(":
+    if label_end < 0:
         return None
+    if state.src[at : at + 1] != "(":
+        name = state.src[at + 1 : pos - 1] or state.src[label + 1 : label_end]
+        target = str(token.attrs.get("src") or token.attrs.get("href") or "")
+        is_local = normalizeReference(name) in state.env["local"]
+        place = _LinkTarget(at, pos, target, is_image, is_reference=True, title=str(token.attrs.get("title", "")))
+        return place if target and (is_image or not is_local) else None
     at += 1
     while state.src[at : at + 1] in {" ", "\n"}:
         at += 1
@@ -76,12 +109,11 @@ def _destination(state: StateInline, label: int, is_image: bool) -> _LinkTarget 
     return _LinkTarget(at, found.pos, found.str, is_image) if found.ok and found.str else None
 
 
-def _attribute_list(state: StateInline) -> None:
-    """Remove kramdown's and MkDocs' `{:style="…"}` after a link or an image, which only styles it."""
+def _attribute_list(state: StateInline) -> str:
+    """Return kramdown's, Pandoc's and MkDocs' `{:style="…"}` after a link or an image, which styles it; "" if none."""
     rest = state.src[state.pos :]
-    if rest.startswith("{") and "}" in rest and (rest[1] in ":.#" or "=" in rest.partition("}")[0]):
-        end = state.pos + rest.index("}") + 1
-        state.env["found"].append(_LinkTarget(state.pos, end, "", False))
+    text = rest[: rest.find("}") + 1]
+    return text if text.startswith("{") and (text[1] in ":.#" or "=" in text) else ""
 
 
 def _watched_html(rule: Any) -> Any:
@@ -96,15 +128,30 @@ def _watched_html(rule: Any) -> Any:
     return watch
 
 
-def linked(text: str, target: Target) -> str:
-    """Return `text` with the targets of its links and images replaced. No line is added or lost."""
-    if not any(mark in text for mark in ("](", "]:", "<")):
+def references_in(text: str) -> dict[str, Any]:
+    """Return the definitions `[label]: target "title"` in a text, as markdown-it keeps them."""
+    env: dict[str, Any] = {}
+    if "]:" in text:
+        _parser().parse(text, env)
+    return dict(env.get("references", {}))
+
+
+def linked(text: str, target: Target, references: Mapping[str, Any] = MappingProxyType({})) -> str:
+    """Return `text` with the targets of its links and images replaced. No line is added or lost.
+
+    `references` are definitions that are elsewhere: links and images that use them get their targets. An image with a
+    width or a height in an attribute list becomes HTML.
+    """
+    if not any(mark in text for mark in ("](", "]:", "<", *(["["] if references else []))):
         return text
     md = _parser()
     env: dict[str, Any] = {}
     lines = text.split("\n")
     at = [0] * len(lines)
-    for token in md.parse(text, env):
+    tokens = md.parse(text, env)
+    local = env.get("references", {})
+    env = {"references": {**references, **local}, "local": local}
+    for token in tokens:
         first = (token.map or (0, 0))[0]
         if token.type == "inline":
             env |= {"watched": token.content, "found": []}
@@ -114,7 +161,7 @@ def linked(text: str, target: Target) -> str:
             for number, line in enumerate(token.content.rstrip("\n").split("\n"), start=first):
                 if line and (place := lines[number].find(line)) >= 0:
                     lines[number] = lines[number][:place] + in_html(line, target) + lines[number][place + len(line) :]
-    _references(lines, env.get("references", {}), target)
+    _references(lines, local, target)
     return "\n".join(lines)
 
 
@@ -155,9 +202,14 @@ def _new(content: str, item: _LinkTarget, target: Target) -> str | None:
     if not item.target:
         return ""
     new = target(item.target, item.is_image)
-    if new is None:
-        return None
-    return f"<{new}>" if " " in new else new
+    if item.is_reference:
+        title = f' "{item.title}"' if item.title else ""
+        return f"({_in_brackets(new or item.target)}{title})"
+    return None if new is None else _in_brackets(new)
+
+
+def _in_brackets(target: str) -> str:
+    return f"<{target}>" if " " in target else target
 
 
 def _references(lines: list[str], references: dict[str, Any], target: Target) -> None:

@@ -20,6 +20,7 @@ from spinbook.chapter.fence import Fence, interface_of, interface_package
 from spinbook.chapter.files import is_elsewhere, locate, read_included
 from spinbook.chapter.labels import Heading, Label, References, headings, labels, words_of
 from spinbook.chapter.layout import ChapterLayout, Piece
+from spinbook.chapter.links import references_in
 from spinbook.chapter.own_packages import OwnPackages, named_files, own_packages
 from spinbook.chapter.programs import Programs
 from spinbook.chapter.shells import Shells
@@ -95,6 +96,7 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResu
         summary=str(parsed.source.front_matter.get("summary", "")),
         cells=cells,
         uses=_uses(parsed, root, file),
+        references=references_in(parsed.source.text),
         static_fences=tuple(
             StaticFence(item.fence.line, item.fence.language, item.why, item.sign)
             for item in classified

@@ -82,8 +82,9 @@ def _list(tokens: list[tuple[str, str]], at: int) -> tuple[list[Any], int]:
     return found, at + 1
 
 
-# The known files are mkdocs.yml, _toc.yml (Jupyter Book), myst.yml, _quarto.yml, sidebars.js (Docusaurus), SUMMARY.md
-# (mdBook, GitBook) and _sidebar.md (docsify). In a folder without any of them, all Markdown files are chapters.
+# The known files are mkdocs.yml, _toc.yml (Jupyter Book), myst.yml, _quarto.yml, sidebars.js (Docusaurus),
+# astro.config.mjs (Starlight), SUMMARY.md (mdBook, GitBook) and _sidebar.md (docsify). In a folder without any of them,
+# all Markdown files are chapters.
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,7 @@ def read_book(path: Path) -> Book:
     root = _root(path, contents)
     pages = Pages(root)
     if contents is None:
-        return _book(root, pages, None, "", root, list(pages.in_folder(root)))
+        return _book(root, pages, None, "", root, [*pages.by_parents(root)])
     reader = next((read for name, read in _READERS.items() if contents.name.startswith(name)), None)
     if reader is None:
         found = "this file does not list the chapters of a book."
@@ -224,6 +225,33 @@ def _items(item: Any, folder: Path, pages: Pages) -> Iterator[str | Path]:
             yield from _items(list(item.values()), folder, pages)
 
 
+def _starlight(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
+    """Read astro.config.*: the title and the `sidebar` of Starlight. The file is read, never run."""
+    text = file.read_text(encoding="utf-8", errors="replace")
+    folder = next((path for path in (file.parent / "src/content/docs", file.parent / "docs") if path.is_dir()), None)
+    folder = folder or file.parent
+    start = re.search(r"\bsidebar\s*:\s*(?=\[)", text)
+    sidebar = _value(list(_tokens(text[start.end() :])), 0)[0] if start else []
+    title = re.search(r"""starlight\(\{.*?\btitle\s*:\s*(["'`])(.+?)\1""", text, re.DOTALL)
+    listed = [item for entry in sidebar or [] for item in _sidebar_items(entry, folder, pages)]
+    return title[2] if title else "", folder, listed or list(pages.in_folder(folder))
+
+
+def _sidebar_items(item: Any, folder: Path, pages: Pages) -> Iterator[str | Path]:
+    """Yield the pages of an entry in Starlight's sidebar."""
+    if isinstance(item, str):
+        yield item
+    if not isinstance(item, dict):
+        return
+    if isinstance(item.get("autogenerate"), dict):
+        yield from pages.in_folder(folder / str(item["autogenerate"].get("directory", ".")))
+    link = item.get("slug") or item.get("link")
+    if isinstance(link, str) and "://" not in link:
+        yield link.partition("#")[0]
+    for inner in item.get("items") or ():
+        yield from _sidebar_items(inner, folder, pages)
+
+
 def _list_of_links(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
     tokens = MarkdownIt("commonmark").parse(file.read_text(encoding="utf-8", errors="replace"))
     targets = [str(child.attrs.get("href", "")) for token in tokens for child in token.children or []]
@@ -239,6 +267,7 @@ _READERS: dict[str, _Reader] = {
     "myst.yml": _myst,
     "_quarto.yml": _quarto,
     "sidebars.": _docusaurus,
+    "astro.config.": _starlight,
     "SUMMARY.md": _list_of_links,
     "_sidebar.md": _list_of_links,
 }

@@ -16,7 +16,10 @@ from spinbook.chapter.source import read_source
 
 _ENDINGS = (".md", ".mdx", ".qmd", ".markdown")
 #: Folders without chapters.
-_SKIPPED = frozenset({"node_modules", "build", "blog", "i18n", "versioned_docs", "vendor", "site", "_site", "dist"})
+_SKIPPED = frozenset(
+    {"node_modules", "build", "blog", "i18n", "versioned_docs", "vendor", "site", "_site", "dist", "venv"}
+    | {"_includes", "_layouts", "_sass", "_data", "_drafts", "_templates", "__pycache__"}
+)
 #: Files about a repository, not of a book.
 _NOT_CHAPTERS = frozenset(
     {
@@ -79,8 +82,22 @@ class Pages:
             else:
                 yield entry
 
+    def by_parents(self, folder: Path) -> list[Path]:
+        """Return the chapters below a folder; with Jekyll's `parent` in the front matter, each after its parent."""
+        files = list(self.in_folder(folder))
+        parents = {file: str(self._front_matter(file).get("parent") or "") for file in files}
+        titles = {str(self._front_matter(file).get("title") or ""): file for file in reversed(files)}
+        below: dict[Path | None, list[Path]] = {}
+        for file in sorted(files, key=lambda file: self._place(file)[0]) if any(parents.values()) else files:
+            parent = titles.get(parents[file])
+            below.setdefault(parent if parent != file else None, []).append(file)
+        ordered = _descended(below, None)
+        return [*ordered, *(file for file in files if file not in ordered)]
+
     def _is_wanted(self, entry: Path) -> bool:
         if entry.name.startswith(".") or entry.name in _SKIPPED:
+            return False
+        if not entry.is_dir() and self._front_matter(entry).get("draft") is True:
             return False
         if entry.is_dir():
             return not (entry / "course.toml").exists()
@@ -101,7 +118,9 @@ class Pages:
             about = about or (self._front_matter(index) if index else {})
         else:
             about = self._front_matter(entry)
-        for key in ("position", "sidebar_position", "nav_order", "weight", "order"):
+        sidebar = about.get("sidebar")
+        about = {**(sidebar if isinstance(sidebar, dict) else {}), **about}
+        for key in ("position", "sidebar_position", "nav_order", "weight", "order", "sort"):
             try:
                 return float(about[key])
             except (KeyError, TypeError, ValueError):
@@ -116,6 +135,12 @@ class Pages:
     def title_of(self, file: Path) -> str:
         """Return the title of a page, or its folder's name in words."""
         return str(self._front_matter(file).get("title") or self._root.name.replace("-", " ").replace("_", " "))
+
+
+def _descended(below: dict[Path | None, list[Path]], parent: Path | None) -> list[Path]:
+    """Return the pages below a page, each followed by those below it."""
+    pages = below.pop(parent, [])
+    return [item for page in pages for item in (page, *_descended(below, page))]
 
 
 def _listed(folder: Path, entries: list[Path]) -> list[Path]:

@@ -183,7 +183,7 @@ def _chapter(
     ran = _ran(course, chapter)
     folder = chapter.file.parent.as_posix()
     prose = {
-        cell.id: rich(cell.source, links, folder, "chapters", drawings.html)
+        cell.id: rich(cell.source, links, folder, "chapters", drawings.html, chapter.references)
         for cell in chapter.cells
         if cell.kind is CellKind.PROSE
     }

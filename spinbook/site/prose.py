@@ -9,6 +9,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 from urllib.parse import quote, unquote
 
 from markdown_it.token import Token
@@ -67,10 +69,24 @@ class Links:
         return name
 
 
-def rich(text: str, links: Links, folder: str, page_folder: str, draw: Draw) -> str:
-    """Return `text`, from a file in `folder`, for a page in `page_folder`; without the authors' comments."""
+def rich(
+    text: str,
+    links: Links,
+    folder: str,
+    page_folder: str,
+    draw: Draw,
+    references: Mapping[str, Any] = MappingProxyType({}),
+) -> str:
+    """Return `text`, from a file in `folder`, for a page in `page_folder`; without the authors' comments.
+
+    `references` are the definitions `[label]: target` in the rest of the file.
+    """
     plain = without_comments(text, keep_lines=True)
-    lines = linked(plain, lambda target, is_image: links.target(target, is_image, folder, page_folder)).split("\n")
+
+    def target(target: str, is_image: bool) -> str | None:
+        return links.target(target, is_image, folder, page_folder)
+
+    lines = linked(plain, target, references).split("\n")
     # This comes after the links, because a drawing's address leads to the site, not to a file of the course.
     for token in parser().parse("\n".join(lines)):
         if token.type == "fence" and token.map:

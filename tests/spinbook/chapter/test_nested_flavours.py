@@ -23,6 +23,9 @@ FLAVOURS = {
     "quarto": (("::: {.callout-tip}", "WORDS", ":::"), "Tip"),
     "mkdocs": (('!!! note "Look"', "    WORDS"), "Look"),
     "mdx": (('<Admonition type="warning" title="Sharp">', "WORDS", "</Admonition>"), "Sharp"),
+    "starlight": (('<Aside type="caution" title="Keep off">', "WORDS", "</Aside>"), "Keep off"),
+    "nextra": (("<Callout title={'Read'} type=\"info\">", "  WORDS", "</Callout>"), "Read"),
+    "one-line": (('<Aside type="tip" title="Short">WORDS</Aside>',), "Short"),
     "gitbook": (('{% hint style="danger" %}', "WORDS", "{% endhint %}"), "Caution"),
     "kramdown": (("WORDS", "{: .warning }"), "Warning"),
     "docsify": (("?> WORDS",), "Tip"),
@@ -108,7 +111,9 @@ def test_a_page_shows_it_with_its_title(built: Built, flavour: str, holder: str)
 
 
 def test_nothing_of_a_book_tools_own_language_is_left(built: Built) -> None:
-    marks = r":::|!!!|\?\?\?|===|\{%|\{:|\{/\*|\)=|8<|</?Tab|</?Adm|import Tabs|toctree|[!?]&gt; |[!?]> "
+    marks = (
+        r":::|!!!|\?\?\?|===|\{%|\{:|\{/\*|\)=|8<|</?Tab|</?Adm|</?Aside|</?Call|import Tabs|toctree|[!?]&gt; |[!?]> "
+    )
 
     assert re.findall(marks, built.notebook) == []
     assert re.findall(marks, built.page.partition("<article")[2].partition("</article>")[0]) == []

@@ -117,6 +117,62 @@ def test_a_folder_without_a_table_of_contents_goes_by_positions_and_numbers(tmp_
     assert order(root) == ["zero.md", "2-middle.md", "10-last.md", "deep/a.md"]
 
 
+STARLIGHT = """\
+import { defineConfig } from 'astro/config';
+import starlight from '@astrojs/starlight';
+export default defineConfig({
+  site: 'https://example.org', // {
+  integrations: [
+    starlight({
+      title: 'Robots by night',
+      sidebar: [
+        'index',
+        { label: 'Parts', items: [{ label: 'Two', slug: 'part/second' }, { link: '/part/first/' },
+          { label: 'Elsewhere', link: 'https://example.org' }] },
+        { label: 'More', autogenerate: { directory: 'more' } },
+      ],
+    }),
+  ],
+});
+"""
+
+
+def test_starlights_sidebar_gives_the_order_and_its_front_matter_the_titles(tmp_path: Path) -> None:
+    docs = "src/content/docs"
+    root = book(tmp_path / "b", *(f"{docs}/{name}.md" for name in ("index", "part/first", "part/second", "more/a")))
+    (root / docs / "more/b.mdx").write_text("---\ntitle: Before a\nsidebar:\n  order: 1\n---\nText.\n")
+    (root / "astro.config.mjs").write_text(STARLIGHT)
+
+    said = spinbook_import(root)
+
+    assert said.stdout.startswith("Robots by night: 5 chapters, in the order of astro.config.mjs")
+    names = ("index.md", "part/second.md", "part/first.md", "more/b.mdx", "more/a.md")
+    assert order(root) == [f"{docs}/{name}" for name in names]
+    assert "# Before a" in (root / "build/notebooks/b.ipynb").read_text()
+
+
+@pytest.mark.parametrize("key", ["sort", "nav_order"])
+def test_jekylls_front_matter_gives_the_order(tmp_path: Path, key: str) -> None:
+    root = book(tmp_path / "b", "_includes/part.md")
+    for name, place in (("c", 1), ("a", 2), ("b", 3)):
+        (root / f"{name}.md").write_text(f"---\ntitle: {name}\n{key}: {place}\n---\nText.\n")
+
+    assert spinbook_import(root).returncode == 0
+    assert order(root) == ["c.md", "a.md", "b.md"]
+
+
+def test_jekylls_pages_follow_their_parents(tmp_path: Path) -> None:
+    root = tmp_path / "b"
+    root.mkdir()
+    pages = (("z", 1, ""), ("arm", 2, ""), ("grip", 2, "arm"), ("base", 1, "arm"), ("knob", 1, "grip"))
+    for name, place, parent in pages:
+        above = f"parent: {parent}\n" if parent else ""
+        (root / f"{name}.md").write_text(f"---\ntitle: {name}\nnav_order: {place}\n{above}---\nText.\n")
+
+    assert spinbook_import(root).returncode == 0
+    assert order(root) == ["z.md", "arm.md", "base.md", "grip.md", "knob.md"]
+
+
 def test_docusaurus_finds_pages_by_their_ids_without_numbers(tmp_path: Path) -> None:
     root = book(tmp_path / "robots", "docs/02-topics/01-start.md", "docs/intro.md")
     (root / "docs/intro.md").write_text("---\nid: hello\n---\n# Hello\n")
