@@ -1,5 +1,15 @@
 """`python -m grader`."""
 
-from grader.command import grade
+from groundwork.clean_environment import restart_if_polluted
 
-grade(prog_name="python -m grader")
+
+def main() -> None:
+    """Run `spinbook grade`, which is all that the grader has without Spinbook."""
+    restart_if_polluted("grader.__main__")
+    from grader.command import grade
+
+    grade(prog_name="python -m grader")
+
+
+if __name__ == "__main__":
+    main()

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 __version__ = "0.1.0"
 
 
-def load_ipython_extension(shell: Any) -> None:
+def load_ipython_extension(shell: object) -> None:
     """Called by `%load_ext spinbook`."""
     from spinbook.kernel.extension import load
 

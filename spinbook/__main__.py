@@ -1,5 +1,6 @@
 """`python -m spinbook`."""
 
-from spinbook.cli import main
+from spinbook.start import main
 
-main()
+if __name__ == "__main__":
+    main()

@@ -162,7 +162,7 @@ def main() -> None:
     """Run `spinbook` as a program; invalid input prints a message and exits with 1, wrong usage with 2."""
     atexit.register(gc.freeze)  # runs last: the system frees the memory anyway, so there is nothing to collect
     try:
-        spinbook()
+        spinbook(prog_name="spinbook")
     except SpinbookError as error:
         click.echo(str(error), err=True)
         sys.exit(1)

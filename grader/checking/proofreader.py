@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ast
 import json
+import os
 import re
 import subprocess
 import sys
@@ -22,6 +23,7 @@ from grader.exercise.rules import named_by, rules_of, without_markup
 from grader.exercise.starter import MarkerError, starter
 from grader.scenario.declared import declared
 from groundwork.child_process import run_program
+from groundwork.clean_environment import module_command, without_foreign
 from groundwork.problem import Problem
 
 #: The time limit (s) for importing an exercise's files.
@@ -32,9 +34,9 @@ def problems_of(folder: Path) -> tuple[Problem, ...]:
     """Return everything that is wrong in the files of the exercise in `folder`, as far as it shows without running
     a node.
     """
-    command = [sys.executable, "-m", "grader.checking.proofreader", str(folder)]
+    command = module_command("grader.checking.proofreader", str(folder))
     try:
-        run = run_program(command, TIME_LIMIT_S)
+        run = run_program(command, TIME_LIMIT_S, env=without_foreign(dict(os.environ)))
         entries = json.loads(run.stdout.splitlines()[-1])
     except subprocess.TimeoutExpired:
         problem = f"reading its Python files takes more than {TIME_LIMIT_S} s"
@@ -170,6 +172,11 @@ def _of_mistakes(exercise: Exercise, checks: tuple[Listed, ...]) -> Iterator[Exe
             yield ExerciseError(mistake.file, problem, fix, mistake.line)
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Print the problems of the exercise that the command line names, as JSON."""
     problems = [error.problem for error in faults(Path(sys.argv[1]))]
     print(json.dumps([(str(p.file), p.line, p.problem, p.fix) for p in problems]))
+
+
+if __name__ == "__main__":
+    main()

@@ -13,9 +13,11 @@ from pathlib import Path
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.starter import MarkerError, starter
+from grader.grading.machine import machine_key
 from grader.grading.scenario_runner import ScenarioRunner
 from grader.recording.recording import Recording, from_json, to_json
 from grader.submission.reader import of_source
+from grader.workers.pool import HostFault
 from groundwork.files import cached, write_if_changed
 from interface_compiler import activation
 from rmw_lockstep.library import SOURCES, sources
@@ -56,16 +58,27 @@ def _version(*names: str) -> str:
 def reference(runner: ScenarioRunner) -> dict[str, Recording]:
     """Return the solution's recordings, by scenario.
 
-    They are made again when anything that they depend on has changed; then the exercise itself is tested: the
-    solution must pass every check and the points must add up. Raises `ExerciseError` otherwise.
+    They are made again when anything that they depend on has changed, the machine included; then the exercise itself is
+    tested: the solution must pass every check and the points must add up. Raises `ExerciseError` otherwise, or
+    `HostFault` if the same solution has passed before, so that no student pays for what has changed since.
     """
-    kept = _kept_in(runner)
+    of_exercise = f"{runner.exercise.name}-{reference_key(runner)[:24]}"
+    kept = cache_folder() / f"{of_exercise}-{machine_key(runner.isolation)[:12]}.json"
     try:
         return from_json(kept.read_text(encoding="utf-8"))
     except (OSError, ValueError, KeyError, TypeError):
         pass
-    recordings = _made(runner)
-    _prove(runner, recordings)
+    try:
+        recordings = _made(runner)
+        _prove(runner, recordings)
+    except ExerciseError as error:
+        if not any(cache_folder().glob(f"{of_exercise}-*.json")):
+            raise
+        raise HostFault(
+            f"the solution of {runner.exercise.name} got full marks here before, and no longer does: "
+            f"{error.problem.problem}. Python, its packages, the sandbox or the machine have changed since: "
+            "run spinbook doctor"
+        ) from None
     with contextlib.suppress(OSError):  # if nothing can be stored, they are made again each time
         write_if_changed(kept, to_json(recordings))
     return recordings
@@ -97,10 +110,6 @@ def reference_key(runner: ScenarioRunner) -> str:
         "pace": runner.options.pace,
     }
     return hashlib.sha256(json.dumps(key, sort_keys=True).encode()).hexdigest()
-
-
-def _kept_in(runner: ScenarioRunner) -> Path:
-    return cache_folder() / f"{runner.exercise.name}-{reference_key(runner)[:24]}.json"
 
 
 def _made(runner: ScenarioRunner) -> dict[str, Recording]:

@@ -14,7 +14,7 @@ from typing import Literal
 import groundwork
 import rmw_lockstep
 from grader.sandbox.middleware import library_folder
-from grader.sandbox.program import HUB, SUBMISSION, Paths, ProgramSpec
+from grader.sandbox.program import HUB, SUBMISSION
 from interface_compiler import activation
 
 HOME = "/home/student"
@@ -144,44 +144,6 @@ def write_file(folder: Path, name: str, content: bytes) -> None:
         (folder / parent).chmod(0o755)
     path.write_bytes(content)
     path.chmod(0o444)
-
-
-def environment(program: ProgramSpec, paths: Paths) -> dict[str, str]:
-    """Return a program's whole environment: the variables of Python, of ROS 2 and of its folders, and its own."""
-    needed = {name: os.environ[name] for name in (*RUNTIME_VARIABLES, "LD_PRELOAD") if name in os.environ}
-    hub = {"RMW_LOCKSTEP_SOCKET": paths.hub} if paths.hub else {}
-    return {
-        **needed,
-        **hub,
-        "PATH": f"{sys.prefix}/bin:/usr/local/bin:/usr/bin:/bin",
-        "HOME": paths.home,
-        "TMPDIR": paths.temporary,
-        "PYTHONUNBUFFERED": "1",
-        "ROS_LOG_DIR": f"{paths.home}/log",
-        "USER": "student",
-        "LOGNAME": "student",
-        **program.environment,
-    }
-
-
-# What Python and ROS 2 themselves need from the environment. Nothing else from it reaches a sandbox.
-RUNTIME_VARIABLES = (
-    "PATH",
-    "LANG",
-    "LD_LIBRARY_PATH",
-    "_ROS_WHEELS_BOOTSTRAP_COMPLETE",
-    "PYTHONPATH",
-    "PYTHONHASHSEED",
-    "PYTHONDONTWRITEBYTECODE",
-    "OPENBLAS_NUM_THREADS",
-    "MALLOC_ARENA_MAX",
-    "AMENT_PREFIX_PATH",
-    "RMW_IMPLEMENTATION",
-    "ROS_DISTRO",
-    "ROS_VERSION",
-    "ROS_PYTHON_VERSION",
-    "CONDA_PREFIX",
-)
 
 
 def ros_prefixes() -> tuple[Path, ...]:

@@ -9,16 +9,17 @@ import pickle
 import signal
 import socket
 import subprocess
-import sys
 from collections.abc import Sequence
 from types import TracebackType
 
 from grader.sandbox import bubblewrap, filesystem, namespaces
 from grader.sandbox.confine import StartRequest
+from grader.sandbox.environment import RUNTIME_VARIABLES, for_trusted
 from grader.sandbox.isolation import forget
 from grader.sandbox.middleware import variables
 from grader.sandbox.monitor import Monitor, ProcessExit, ProgramOutput
 from grader.sandbox.program import START_REQUEST, Isolation, Limits, ProgramSpec, SandboxError
+from groundwork.clean_environment import module_command
 
 _START_S = 30.0
 _DEATH_S = 30.0
@@ -221,14 +222,14 @@ class _Zygote:
 
     def __init__(self, preload: Sequence[str]) -> None:
         self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        environment = {name: os.environ[name] for name in filesystem.RUNTIME_VARIABLES if name in os.environ}
+        environment = for_trusted(RUNTIME_VARIABLES)
         environment |= variables(environment)
         # One thread: a child forked from several could hang. A fixed hash seed: sets have the same order in each run.
         environment |= {"OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1"}
         # Address space is limited, and by default many threads would reserve 64 MiB of it each.
         environment |= {"MALLOC_ARENA_MAX": "4"}
         self._owner = os.getpid()
-        command = [sys.executable, "-m", "grader.sandbox.zygote", str(theirs.fileno()), *preload]
+        command = module_command("grader.sandbox.zygote", str(theirs.fileno()), *preload)
         self._process = subprocess.Popen(
             command,
             pass_fds=[theirs.fileno()],

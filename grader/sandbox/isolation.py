@@ -18,8 +18,9 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from grader.sandbox import filesystem
+from grader.sandbox.environment import RUNTIME_VARIABLES, for_trusted
 from grader.sandbox.program import Isolation, SandboxUnavailable
+from groundwork.clean_environment import module_command
 from groundwork.files import cached, write_if_changed
 
 _TRIAL_S = 30.0
@@ -81,11 +82,10 @@ def _reason_against(level: Isolation) -> str | None:
 def _tried(level: Isolation) -> str | None:
     if not sys.platform.startswith("linux"):
         return None if level is Isolation.NONE else "it needs Linux"
-    environment = {name: os.environ[name] for name in filesystem.RUNTIME_VARIABLES if name in os.environ}
     try:
         trial = subprocess.run(
-            [sys.executable, "-m", "grader.sandbox.trial", level.value],
-            env=environment,
+            module_command("grader.sandbox.trial", level.value),
+            env=for_trusted(RUNTIME_VARIABLES),
             capture_output=True,
             text=True,
             timeout=_TRIAL_S,
@@ -102,8 +102,8 @@ def _tried(level: Isolation) -> str | None:
 def has_worked(level: Isolation) -> bool:
     """Return whether a trial of this level has worked under the same circumstances."""
     try:
-        return _file(level).exists()
-    except OSError:  # another user's folder: try each time
+        return _file(level).stat().st_uid == os.geteuid()
+    except OSError:  # not tried yet, or another user's folder
         return False
 
 
@@ -129,14 +129,16 @@ def _circumstances() -> Iterator[str]:
     for name in _NAMESPACES:
         with contextlib.suppress(OSError):
             yield os.readlink(f"/proc/self/ns/{name}")  # noqa: PTH115 - no path
-    yield repr([resource.getrlimit(which) for which in (resource.RLIMIT_NPROC, resource.RLIMIT_AS)])
-    yield repr((sys.executable, sys.version))
-    for name in sorted({*filesystem.RUNTIME_VARIABLES} - {"PATH"}):
-        yield f"{name}={sorted(os.environ.get(name, '').split(os.pathsep))}"  # ROS wheels add entries in any order
+    limits = (getattr(resource, name) for name in sorted(vars(resource)) if name.startswith("RLIMIT_"))
+    yield repr([resource.getrlimit(which) for which in dict.fromkeys(limits)])
+    yield repr((sys.executable, sys.version, os.uname(), os.geteuid(), sorted(os.getgroups())))
+    for name, value in sorted(for_trusted(RUNTIME_VARIABLES).items()):
+        yield f"{name}={sorted(value.split(os.pathsep))}"  # ROS wheels add entries in any order
     bubblewrap = shutil.which("bwrap")
-    for file in (*sorted(Path(__file__).parent.glob("*.py")), *([Path(bubblewrap)] if bubblewrap else [])):
-        found = file.stat()
-        yield f"{file} {found.st_mtime_ns} {found.st_size} {found.st_mode}"
+    programs = [Path(sys.executable).resolve(), *([Path(bubblewrap)] if bubblewrap else [])]
+    for file in (*sorted(Path(__file__).parent.glob("*.py")), *programs):
+        status = file.stat()
+        yield f"{file} {status.st_mtime_ns} {status.st_size} {status.st_mode} {status.st_uid}"
 
 
 def _text(file: str) -> str:

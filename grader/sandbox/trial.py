@@ -15,7 +15,15 @@ _WORD = "works"
 _PROGRAM = f"import rclpy.exceptions, sys\nprint({_WORD!r})\n"
 
 
-def main(level: Isolation) -> str | None:
+def main() -> None:
+    """Try the level that the command line names."""
+    reason = reason_against(Isolation(sys.argv[1]))
+    if reason is not None:
+        print(reason.replace("\n", " "))
+        sys.exit(1)
+
+
+def reason_against(level: Isolation) -> str | None:
     """Return why a level does not work here; None if it does."""
     if level is Isolation.LANDLOCK and not landlock.version():
         return "the kernel has no Landlock (Linux 5.13 and newer have it, unless it is switched off)"
@@ -31,7 +39,4 @@ def main(level: Isolation) -> str | None:
 
 
 if __name__ == "__main__":
-    reason = main(Isolation(sys.argv[1]))
-    if reason is not None:
-        print(reason.replace("\n", " "))
-        sys.exit(1)
+    main()

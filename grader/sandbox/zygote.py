@@ -22,9 +22,11 @@ from pathlib import Path
 from grader import preloaded
 from grader.sandbox import callers, filesystem, heap, middleware, seccomp, syscalls, uncaught
 from grader.sandbox import middleware as type_support
+from grader.sandbox.environment import for_program
 from grader.sandbox.middleware import choosable
 from grader.sandbox.program import START_REQUEST, Paths, ProgramSpec
 from grader.sandbox.supervisor import StudentToRun, refuse, supervise
+from groundwork.clean_environment import own_path
 from rmw_lockstep import IDENTIFIER
 
 #: The number of cores that a program sees. It runs on one core, but rclpy's MultiThreadedExecutor starts this many
@@ -42,7 +44,7 @@ def run_program(program: ProgramSpec, paths: Paths) -> None:
     KeyboardInterrupt ends the process by SIGINT. Threads, atexit and the rest of the end are the interpreter's own.
     """
     path = str(Path(paths.folder, program.main))
-    variables = filesystem.environment(program, paths)
+    variables = for_program(program, paths)
     for name in os.environ.keys() - variables.keys():
         del os.environ[name]
     for name, value in variables.items():
@@ -66,7 +68,7 @@ def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
     """Make this interpreter look as if it had been started with the file."""
     sys.argv = [path, *arguments]
     sys.orig_argv = [sys.executable, *sys.argv]
-    sys.path[0] = str(Path(path).parent)
+    sys.path.insert(0, str(Path(path).parent))
     imported = [entry for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep) if entry]
     sys.path[1:1] = [entry for entry in imported if entry not in sys.path]
     sys.path_importer_cache.clear()
@@ -123,9 +125,10 @@ _LONGEST_MESSAGE = 1024
 _MOST_DESCRIPTORS = 8
 
 
-def main(arguments: list[str]) -> None:
+def main() -> None:
     """Serve until the last user of the socket is gone. Return only as a student whose program has ended."""
-    requests, modules = int(arguments[0]), arguments[1:]
+    requests, modules = int(sys.argv[1]), sys.argv[2:]
+    sys.path[:] = own_path(sys.path)  # a .pth file may have added another installation's modules
     os.chdir("/")
     fault = _load(modules)
     _prepare_for_forks()
@@ -224,4 +227,4 @@ def _import(name: str) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

@@ -8,7 +8,6 @@ import os
 import shutil
 import socket
 import subprocess
-import sys
 import tempfile
 import threading
 from collections.abc import Callable, Iterable
@@ -17,8 +16,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from grader.sandbox.environment import for_trusted
 from grader.sandbox.middleware import require_middleware
 from grader.workers.shared import SharedObjects
+from groundwork.clean_environment import module_command
 
 if TYPE_CHECKING:
     from grader.checking.verdict import Verdict
@@ -170,14 +171,11 @@ class WorkerPool:
     def _start(self) -> None:
         self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._worker = subprocess.Popen(
-            [
-                *(sys.executable, "-m", "grader.workers.worker"),
-                *(str(theirs.fileno()), str(self._temporary)),
-            ],
+            module_command("grader.workers.worker", str(theirs.fileno()), str(self._temporary)),
             pass_fds=[theirs.fileno()],
             stdin=subprocess.DEVNULL,
             start_new_session=True,
-            env={**os.environ, **WORKER_ENVIRONMENT, "TMPDIR": str(self._temporary)},
+            env={**for_trusted(), **WORKER_ENVIRONMENT, "TMPDIR": str(self._temporary)},
         )
         theirs.close()
         for content in self._sent:

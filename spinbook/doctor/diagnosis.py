@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import dataclasses
 import importlib
 import json
@@ -19,6 +20,7 @@ from rich.table import Table
 from rich.text import Text
 
 from groundwork.child_process import run_program
+from groundwork.clean_environment import GUARD, IGNORED, module_command
 
 
 class State(str, Enum):
@@ -117,6 +119,8 @@ class MachineCheck:
     needs: tuple[str, ...] = ()
 
 
+#: The checks of what programs find that are not Spinbook's, with the terminal's own variables.
+OF_TERMINAL = ("libraries", "ros", "colcon")
 #: The checks that every node depends on.
 _NODE = ("ros", "libraries", "middleware", "logs")
 
@@ -170,22 +174,38 @@ def diagnose(checks: Sequence[MachineCheck], done: Callable[[MachineFinding], No
 
 def examine(check: MachineCheck) -> MachineFinding:
     """Run one check in a process of its own; a crash or a timeout is a finding, too."""
-    argv = [sys.executable, "-m", "spinbook.doctor.diagnosis", check.function, check.name]
+    argv = module_command("spinbook.doctor.diagnosis", check.function, check.name)
     try:
-        done = run_program(argv, check.seconds)
+        done = run_program(argv, check.seconds, env=_of_terminal() if check.word in OF_TERMINAL else None)
+        if IGNORED in os.environ and not _reported(done.stdout):
+            # It can't even start with the terminal's variables: the check of variables says which these are.
+            done = run_program(argv, check.seconds)
     except subprocess.TimeoutExpired:
         return missing(
             check.name,
             f"the check did not finish within {check.seconds:g} s",
             f"Run it alone, when the machine is less busy: spinbook doctor {check.word}",
         )
+    return _reported(done.stdout) or missing(
+        check.name, _how_it_ended(done.returncode, done.stderr), "See the message, and docs/installing.md."
+    )
+
+
+def _reported(output: str) -> MachineFinding | None:
     try:
-        fields = json.loads(done.stdout)
+        fields = json.loads(output.splitlines()[-1])
         return MachineFinding(fields["name"], State(fields["state"]), fields["found"], fields["fix"])
-    except (ValueError, KeyError, TypeError):
-        return missing(
-            check.name, _how_it_ended(done.returncode, done.stderr), "See the message, and docs/installing.md."
-        )
+    except (ValueError, KeyError, TypeError, IndexError):
+        return None
+
+
+def _of_terminal() -> dict[str, str]:
+    """Return the terminal's variables: this command has been started again without those of another installation."""
+    ignored = ast.literal_eval(os.environ.get(IGNORED, "{}"))
+    terminal = {**os.environ, **ignored}
+    if GUARD in ignored and "LD_LIBRARY_PATH" not in ignored:
+        terminal.pop("LD_LIBRARY_PATH", None)
+    return terminal
 
 
 def _how_it_ended(code: int, err: str) -> str:
@@ -197,8 +217,12 @@ def _how_it_ended(code: int, err: str) -> str:
 # Each check runs in its own process, because it may end that: rclpy does so if its middleware is not installed.
 
 
-def main(function: str, name: str) -> None:
-    """Run a check, given as `module:name`. Its finding goes to stdout; what libraries print goes to stderr."""
+def main() -> None:
+    """Run a check, given as `module:name`, and its name.
+
+    Its finding goes to stdout; what libraries print goes to stderr.
+    """
+    function, name = sys.argv[1:]
     original_stdout = os.dup(1)
     os.dup2(2, 1)
     module, _, attribute = function.partition(":")
@@ -208,4 +232,4 @@ def main(function: str, name: str) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()

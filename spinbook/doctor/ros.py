@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import os
 import sys
@@ -9,7 +10,7 @@ from importlib.metadata import version as distribution_version
 from pathlib import Path
 from xml.etree import ElementTree
 
-from ros_in_python.ros2.executables import GUARD
+from groundwork.clean_environment import GUARD, IGNORED
 from spinbook.doctor.diagnosis import MachineFinding, missing, ok, warning
 from spinbook.doctor.ros_origin import NoRos, ros_origin, this_machine
 from spinbook.kernel.environment import HIGHEST, LOOPBACK_PROFILE
@@ -88,11 +89,25 @@ _WATCHED = (
 
 def examine_ros_settings(name: str) -> MachineFinding:
     """Check the variables that decide which nodes discover each other."""
-    surprises = [*_about_domain(), *_about_profiles(), *_about_discovery()]
+    surprises = [*_about_other_installations(), *_about_domain(), *_about_profiles(), *_about_discovery()]
     if surprises:
         return warning(name, "; ".join(found for found, _ in surprises), "\n".join(fix for _, fix in surprises))
     is_set = [f"{variable}={os.environ[variable]}" for variable in _WATCHED if os.environ.get(variable)]
     return ok(name, ", ".join(is_set) or "none set: domain 0, notebooks in domains of their own")
+
+
+def _about_other_installations() -> list[tuple[str, str]]:
+    ignored = ast.literal_eval(os.environ.get(IGNORED, "{}"))
+    names = sorted(ignored.keys() - {GUARD})
+    if not names:
+        return []
+    values = ", ".join(f"{name}={ignored[name]}" for name in names)
+    return [
+        (
+            f"of another installation, so Spinbook's programs do not use it: {values}",
+            f"Jupyter and your own programs still do. If they fail: unset {' '.join(names)}",
+        )
+    ]
 
 
 def _about_domain() -> list[tuple[str, str]]:
@@ -136,7 +151,7 @@ def _about_discovery() -> list[tuple[str, str]]:
         surprises.append(
             (
                 "ROS_DISCOVERY_SERVER is set",
-                "Nodes of notebooks would use that server for discovery: unset ROS_DISCOVERY_SERVER",
+                "Nodes in terminals use that server for discovery, and notebooks do not: unset ROS_DISCOVERY_SERVER",
             )
         )
     return surprises

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,6 +21,7 @@ from grader.submission.notebook import RECORD, Notebook, NotebookCell, read_note
 from grader.submission.problems import AmbiguousProgram, Unreadable
 from grader.submission.program_choice import digest_of
 from grader.submission.python_code import definitions
+from groundwork.clean_environment import module_command
 from spinbook.kernel.cell_output import DisplayLimit
 from spinbook.kernel.process import CellFailed, KeptProcess
 from spinbook.kernel.session import Session
@@ -149,7 +149,7 @@ def checked(exercise: Path, code: Code, seconds: float) -> dict[str, str]:
         folder = Path(temporary)
         folder.chmod(0o711)
         (folder / "code").write_text(as_text(code), encoding="utf-8", errors="replace")
-        argv = [sys.executable, "-m", "spinbook.submit.program", os.fspath(exercise), "code", "result"]
+        argv = module_command("spinbook.submit.program", os.fspath(exercise), "code", "result")
         process = KeptProcess(argv, {**os.environ, "TMPDIR": temporary}, folder)
         try:
             status = process.wait(seconds)
@@ -225,7 +225,7 @@ def submit_cell(session: Session, shell: Any, name: str, course: str, student: s
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(content)
         is_single = len(result.code.files) == 1
-        command = [sys.executable, "-u", "-m", "spinbook", "submit", os.fspath(exercise.folder)]
+        command = module_command("spinbook.start", "submit", os.fspath(exercise.folder), flags=("-u",))
         command += [os.fspath(notebook)] if notebook else []
         command += ["--code", os.fspath(file if is_single else Path(folder, exercise.name))]
         command += ["--student", student] if student is not None else []

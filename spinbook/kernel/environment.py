@@ -19,6 +19,17 @@ LOG_FORMAT = "[{severity}] [{name}]: {message}"
 EXECUTING = "SPINBOOK_EXECUTING"
 #: The file into which a notebook writes its ROS domain, for an observer.
 DOMAIN_NOTE = "SPINBOOK_DOMAIN_NOTE"
+#: What would let nodes look for others elsewhere than in their domain on this machine, or keep them from starting.
+OF_OTHER_NETWORKS = (
+    *(
+        "ROS_DISCOVERY_SERVER",
+        "ROS_STATIC_PEERS",
+        "ROS_LOCALHOST_ONLY",
+        "ROS_SUPER_CLIENT",
+        "FASTDDS_BUILTIN_TRANSPORTS",
+    ),
+    *("ROS_SECURITY_ENABLE", "ROS_SECURITY_STRATEGY", "RCL_ASSERT_RMW_ID_MATCHES", "CYCLONEDDS_URI"),
+)
 
 
 def for_domain(domain: int, environment: Mapping[str, str]) -> dict[str, str]:

@@ -8,6 +8,7 @@ import sysconfig
 import warnings
 from typing import Any
 
+from groundwork.clean_environment import without_foreign
 from spinbook.kernel import environment, magics
 from spinbook.kernel import environment as domain
 from spinbook.kernel.process import KeptProcess
@@ -23,6 +24,7 @@ def load(shell: Any) -> None:
     """Set up a notebook; loading twice changes nothing."""
     if getattr(shell, "spinbook_session", None) is not None:
         return
+    _leave_other_installations()
     if name := environment.missing_middleware(os.environ):
         warnings.warn(
             f"RMW_IMPLEMENTATION names {name}, which is not installed here; the notebook uses the default middleware.",
@@ -35,6 +37,18 @@ def load(shell: Any) -> None:
     magics.register(shell, session)
     _find_scripts()
     atexit.register(farewell, session)
+
+
+def _leave_other_installations() -> None:
+    """Let everything that this notebook starts use this installation's modules and libraries, and say so."""
+    before = dict(os.environ)
+    clean = without_foreign(before)
+    removed = {name: value for name, value in before.items() if clean.get(name) != value}
+    os.environ.update(clean)
+    for name in before.keys() - clean.keys():
+        del os.environ[name]
+    for name in removed.keys() & {"PYTHONPATH", "AMENT_PREFIX_PATH"}:
+        print(f"Nodes and checks of this notebook do not use {name}={removed[name]}, which is of another installation.")
 
 
 def _find_scripts() -> None:

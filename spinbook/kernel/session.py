@@ -158,6 +158,8 @@ class Session:
     def use_domain(self, domain: Domain) -> None:
         """Let everything that starts from now on use this domain, including snippets in the kernel."""
         self.domain = domain
+        for name in environment.OF_OTHER_NETWORKS:
+            os.environ.pop(name, None)
         os.environ.update(environment.for_domain(domain.number, os.environ))
         if note := os.environ.get(environment.DOMAIN_NOTE):
             Path(note).write_text(str(domain.number), encoding="utf-8")

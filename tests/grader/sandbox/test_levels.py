@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -102,9 +103,33 @@ def test_a_level_that_has_worked_is_not_tried_again_until_something_changes(
     assert [choose(), choose()] == [Isolation.BUBBLEWRAP] * 2
     assert tried == [Isolation.BUBBLEWRAP]
 
-    monkeypatch.setenv("AMENT_PREFIX_PATH", "/opt/ros/another")
+    monkeypatch.setenv("LANG", "xx_XX.UTF-8")
     choose()
     assert tried == [Isolation.BUBBLEWRAP] * 2
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda patch: patch.setattr(os, "geteuid", lambda: 4711),
+        lambda patch: patch.setattr(os, "uname", lambda: ("Linux", "node", "99.0", "#1", "x86_64")),
+        lambda patch: patch.setattr(isolation.sys, "executable", "/bin/sh"),
+        lambda patch: patch.setattr(isolation.resource, "getrlimit", lambda which: (7, 7)),
+    ],
+    ids=["user", "kernel", "program", "limits"],
+)
+def test_an_answer_of_another_user_kernel_or_program_is_not_taken_over(
+    tried: list[Isolation], monkeypatch: pytest.MonkeyPatch, change: Callable[[pytest.MonkeyPatch], None]
+) -> None:
+    choose()
+    change(monkeypatch)
+
+    assert not any(isolation.has_worked(level) for level in Isolation)
+
+
+def test_an_answer_is_for_its_level_only(tried: list[Isolation]) -> None:
+    choose()
+    assert [level for level in Isolation if isolation.has_worked(level)] == [Isolation.BUBBLEWRAP]
 
 
 def test_a_level_that_did_not_work_is_tried_each_time(

@@ -108,7 +108,11 @@ def test_a_loop_without_end_is_reported_and_the_kernel_goes_on(kernel: Kernel) -
 
 def checks_of(kernel: Kernel) -> list[psutil.Process]:
     """Return the check processes that run in this kernel."""
-    return [one for one in beneath(psutil.Process(kernel.process_id)) if "spinbook.submit.program" in command_of(one)]
+    return [
+        one
+        for one in beneath(psutil.Process(kernel.process_id))
+        if "spinbook.submit.program" in " ".join(command_of(one))
+    ]
 
 
 def test_a_check_ends_with_its_bound_and_leaves_nothing_behind(kernel: Kernel) -> None:

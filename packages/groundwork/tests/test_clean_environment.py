@@ -1,0 +1,78 @@
+"""Programs find this installation's modules and libraries, whatever a terminal's variables name."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from groundwork.clean_environment import GUARD, module_command, own_path, without_foreign
+
+WHEELS = Path(sys.prefix, "lib", f"python{sys.version_info.major}.{sys.version_info.minor}", "site-packages", "rclpy")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("PYTHONHOME", "PYTHONSTARTUP", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "PYTHONINSPECT", "PYTHONSAFEPATH"),
+        *("LD_PRELOAD", "LD_AUDIT", "LD_DEBUG", "CMAKE_PREFIX_PATH"),
+    ],
+)
+def test_what_changes_how_programs_start_is_left_out(name: str) -> None:
+    assert without_foreign({name: "1", "HOME": "/home/ana"}) == {"HOME": "/home/ana"}
+
+
+def test_foreign_folders_leave_the_search_paths_and_own_ones_stay(tmp_path: Path) -> None:
+    compiled, cluster = tmp_path / "compiled", tmp_path / "cluster"
+    for folder in (compiled / "lib", cluster / "numpy"):
+        folder.mkdir(parents=True)
+    environment = {
+        "COMPILED_INTERFACES": str(compiled),
+        "PYTHONPATH": f"{cluster}:{compiled / 'lib'}::/nowhere",
+        "LD_LIBRARY_PATH": f"{cluster}:{sys.prefix}/lib:{compiled / 'lib'}",
+        GUARD: "1",
+    }
+
+    clean = without_foreign(environment)
+
+    assert clean["PYTHONPATH"] == str(compiled / "lib")
+    assert clean["LD_LIBRARY_PATH"] == f"{sys.prefix}/lib:{compiled / 'lib'}"
+    assert clean[GUARD] == "1"
+    assert without_foreign(clean) == clean
+
+
+@pytest.mark.skipif(not WHEELS.exists(), reason="ROS 2 is a sourced one here")
+def test_beside_the_wheels_another_ros_is_left_out_with_the_workspaces_on_top_of_it(tmp_path: Path) -> None:
+    ros, workspace = tmp_path / "humble", tmp_path / "ws" / "install" / "arm"
+    modules = workspace / "lib" / "python3.10" / "site-packages"
+    for folder in (ros / "share" / "rcl_interfaces", modules):
+        folder.mkdir(parents=True)
+    alone = {"AMENT_PREFIX_PATH": str(workspace), "PYTHONPATH": str(modules)}
+
+    assert without_foreign(alone) == alone
+    assert without_foreign({**alone, "AMENT_PREFIX_PATH": f"{workspace}:{ros}"}) == {}
+
+
+def test_the_guard_of_another_installations_wheels_is_left_out() -> None:
+    assert GUARD not in without_foreign({GUARD: "1", "LD_LIBRARY_PATH": "/another/lib"})
+
+
+def test_a_module_runs_without_the_current_folders_files(tmp_path: Path) -> None:
+    (tmp_path / "json.py").write_text("raise SystemExit('the wrong one')")
+    (tmp_path / "tool").mkdir()
+    (tmp_path / "tool" / "show.py").write_text("import json, sys\ndef main(): print(sys.argv[1:])\n")
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path / "tool")}
+
+    done = subprocess.run(
+        module_command("show", "a", "b"), cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
+
+    assert (done.stdout, done.stderr) == ("['a', 'b']\n", "")
+
+
+def test_a_path_that_a_pth_file_adds_is_not_an_own_one(tmp_path: Path) -> None:
+    assert own_path([str(tmp_path), *sys.path]) == own_path(sys.path)
+    assert os.path.dirname(os.__file__) in own_path(sys.path)  # noqa: PTH120

@@ -1,0 +1,13 @@
+"""Starts the `spinbook` command with this installation's modules, whatever the terminal's variables name."""
+
+from __future__ import annotations
+
+from groundwork.clean_environment import restart_if_polluted
+
+
+def main() -> None:
+    """Run `spinbook`. Nothing else may be imported before another installation's modules are out of the way."""
+    restart_if_polluted("spinbook.start")
+    from spinbook.cli import main as run
+
+    run()
