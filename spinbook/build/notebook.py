@@ -241,7 +241,8 @@ def _runnable(cell: ChapterCell) -> dict[str, Any]:
         source = "\n".join(_shell_line(command, cell) for command in cell.commands)
     else:
         source = cell.source
-    return _code(cell.id, source, metadata, ["raises-exception"] if cell.raises else [])
+    tags = dict.fromkeys([*cell.tags, *(["raises-exception"] if cell.raises else [])])
+    return _code(cell.id, source, metadata, list(tags))
 
 
 def _how(cell: ChapterCell) -> str:
@@ -316,10 +317,19 @@ def _prose(cell_id: str, prose: str, line: int, location: Location) -> dict[str,
     return {**cell, "attachments": location.pictures} if location.pictures else cell
 
 
+#: What JupyterLab folds -> the tags of MyST that fold or remove it on a page.
+_HIDDEN = {
+    "source_hidden": {"hide-input", "hide-cell", "remove-input", "remove-cell"},
+    "outputs_hidden": {"hide-output", "hide-cell", "remove-output", "remove-cell"},
+}
+
+
 def _code(cell_id: str, source: str, metadata: dict[str, Any], tags: list[str] | None = None) -> dict[str, Any]:
     shown: dict[str, Any] = {"spinbook": metadata}
     if tags:
         shown["tags"] = tags
+    if hidden := {name: True for name, words in _HIDDEN.items() if words & set(tags or ())}:
+        shown["jupyter"] = hidden
     return {
         "cell_type": "code",
         "id": cell_id,

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from html import unescape
 
+import yaml
+
 #: The styles in which admonitions are shown; below, the names that book tools have for them.
 STYLES = ("note", "tip", "important", "warning", "caution")
 _STYLE = {
@@ -76,19 +78,30 @@ def not_included(code: str) -> str:
 
 
 def options(lines: list[str]) -> tuple[dict[str, str], int]:
-    """Return a directive's options (`:key: value` lines, or YAML between two `---`), and how many lines they take."""
+    """Return a directive's options (`:key: value` lines, or YAML between two `---`), and how many lines they take.
+
+    The items of a list are joined with commas.
+    """
     values: dict[str, str] = {}
     if lines and lines[0].strip() == "---" and "---" in (rest := [line.strip() for line in lines[1:]]):
         end = rest.index("---")
-        for line in lines[1 : end + 1]:
-            key, _, value = line.partition(":")
-            values[key.strip()] = value.strip()
-        return values, end + 2
+        return _yaml_options("\n".join(lines[1 : end + 1])), end + 2
     count = 0
     while count < len(lines) and (match := _OPTION.match(lines[count].strip())):
         values[match[1]] = match[2].strip()
         count += 1
     return values, count
+
+
+def _yaml_options(text: str) -> dict[str, str]:
+    try:
+        values = yaml.safe_load(text)
+    except yaml.YAMLError:
+        values = dict(line.partition(":")[::2] for line in text.split("\n"))
+    if not isinstance(values, dict):
+        return {}
+    lists = {key: ", ".join(map(str, value)) for key, value in values.items() if isinstance(value, list)}
+    return {str(key).strip(): lists.get(key, str(value).strip()) for key, value in values.items()}
 
 
 def pairs(text: str) -> dict[str, str]:

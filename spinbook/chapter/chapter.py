@@ -43,6 +43,8 @@ class ChapterCell:
     keeps: bool = False
     executables: tuple[tuple[str, str], ...] = ()
     commands: tuple[Command, ...] = ()
+    tags: tuple[str, ...] = ()
+    """Tags of Jupyter and MyST, such as `hide-input`."""
 
     @property
     def module(self) -> str:
@@ -154,6 +156,7 @@ def _runnable(item: ClassifiedFence, ids: _Ids) -> ChapterCell:
         keeps=item.keeps,
         executables=item.executables,
         commands=item.commands,
+        tags=fence.tags,
     )
 
 

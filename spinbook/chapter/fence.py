@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from interface_compiler import prefixes, shipped
 from interface_compiler.definition import KINDS
+from spinbook.chapter.attributes import options
 
 # The info string is the text after the opening backticks: a language, then attributes such as
 # `title="joint_publisher.py"` (the form Docusaurus and others use) or bare words. MyST's `{code-cell} python` with its
@@ -25,7 +27,6 @@ ATTRIBUTES = {
 
 _ATTRIBUTE = re.compile(r"""([A-Za-z_][\w-]*)=(?:"([^"]*)"|'([^']*)'|(\S+))|(\S+)""")
 _DIRECTIVE = re.compile(r"\{([A-Za-z][\w:-]*)\}(.*)$")
-_OPTION = re.compile(r"^:([\w-]+):\s*(.*)$")
 
 #: Endings of files whose names are titles, whatever the attribute is called.
 _FILES = (".py", ".msg", ".srv", ".action")
@@ -64,6 +65,11 @@ class Fence:
     def title(self) -> str | None:
         """The file name that the author gave it."""
         return self.attributes.get("title") or None
+
+    @property
+    def tags(self) -> tuple[str, ...]:
+        """The tags of a MyST code cell, such as `hide-input`."""
+        return _tags(self.attributes)
 
     @property
     def first_code_line(self) -> int:
@@ -129,15 +135,41 @@ def make_fence(info: str, content: str, line: int) -> Fence:
     skipped = 0
     if info.strip().startswith("{code-cell}"):
         lines = content.splitlines(keepends=True)
-        while skipped < len(lines) and (option := _OPTION.match(lines[skipped].rstrip("\n"))):
-            attributes[option.group(1)] = option.group(2).strip() or "true"
+        values, skipped = options([line.rstrip("\n") for line in lines])
+        attributes |= {key: value or "true" for key, value in values.items()}
+        while skipped and skipped < len(lines) and not lines[skipped].strip():
             skipped += 1
         content = "".join(lines[skipped:])
-    if "raises-exception" in attributes.get("tags", ""):
+    if info.strip().startswith("{"):
+        attributes |= _quarto(content)
+    if "raises-exception" in _tags(attributes):
         attributes["raises"] = "true"
     if attributes.get("caption", "").endswith(_FILES):
         attributes["title"] = attributes["caption"]
     return Fence(language=language, code=content, line=line, attributes=attributes, skipped=skipped)
+
+
+#: Quarto's `#| key: value` in a cell -> the tag that means the same in MyST.
+_CELL_OPTIONS = {
+    ("eval", "false"): "skip-execution",
+    ("error", "true"): "raises-exception",
+    ("echo", "false"): "remove-input",
+    ("output", "false"): "remove-output",
+    ("include", "false"): "remove-cell",
+}
+
+
+def _quarto(code: str) -> dict[str, str]:
+    """Return the tags that stand for Quarto's options in the first lines of a cell."""
+    lines = itertools.takewhile(lambda line: line.startswith("#|"), code.split("\n"))
+    pairs = (line[2:].partition(":") for line in lines)
+    tags = [_CELL_OPTIONS.get((key.strip(), value.strip().lower())) for key, _, value in pairs]
+    return {"tags": ", ".join(filter(None, tags))} if any(tags) else {}
+
+
+def _tags(attributes: Mapping[str, str]) -> tuple[str, ...]:
+    words = re.findall(r"[\w.:-]+", attributes.get("tags", ""))
+    return tuple(word.replace("_", "-") for word in words if word != "true")
 
 
 _TITLE = re.compile(r"(?:(?P<package>\w+)/)?(?P<kind>msg|srv|action)/(?P<name>[\w-]+)\.(?P=kind)")

@@ -5,7 +5,7 @@ Each addition is a block rule of markdown-it, so fences and code in a line are n
 - containers `:::note[Title]`, `::: tip`, `:::{warning}` (Docusaurus, VitePress, MyST, Quarto): mdit-py-plugins
 - `!!! note "Title"`, `??? tip` (MkDocs): mdit-py-plugins, and tabs `=== "Title"` (pymdownx.tabbed)
 - tags of MDX on lines of their own, `<Tabs>`, `<TabItem label="Python">`, and `import …`, `export …`, `{/* … */}`
-- `{% tab %}`, `{% hint %}` (Jekyll, GitBook), kramdown's `{: .note }`, docsify's `!> text`, MyST's `(label)=`
+- `{% tab %}`, `{% hint %}` (Jekyll, GitBook), kramdown's `{: .note }`, docsify's `!> text`, MyST's `(label)=` and `+++`
 - `--8<-- "file.py"` (pymdownx.snippets)
 """
 
@@ -36,6 +36,7 @@ _LINES = (
     ("callout", re.compile(r"(?P<name>[!?])> (?P<info>.*)")),
     ("label", re.compile(r"\((?P<name>[\w:./-]+)\)=$")),
     ("dropped", re.compile(r"\{/\*")),
+    ("dropped", re.compile(r"\+\+\+(?:\s*\{.*\})?$")),
     ("dropped", re.compile(r"""import\s+(?:[\w*{][\w\s{},*]*\s+from\s+)?["'][^"']+["'];?$""")),
     ("dropped", re.compile(r"export\s+(?:const|default|function|let)\b")),
 )

@@ -14,7 +14,7 @@ from groundwork.problem import Problem, Severity
 from spinbook.chapter.block import Block, BlockKind, SourceLine
 from spinbook.chapter.blocks import read_blocks
 from spinbook.chapter.chapter import Chapter, StaticFence, make_cells
-from spinbook.chapter.classify import CellKind, ClassifiedFence, first_look, with_language
+from spinbook.chapter.classify import CellKind, ClassifiedFence, first_look, node_name, with_language
 from spinbook.chapter.excerpts import excerpts, is_excerpt
 from spinbook.chapter.fence import Fence, interface_of, interface_package
 from spinbook.chapter.files import is_elsewhere, locate, read_included
@@ -26,6 +26,9 @@ from spinbook.chapter.programs import Programs
 from spinbook.chapter.shells import Shells
 from spinbook.chapter.shown_interfaces import one_each, shown_interfaces
 from spinbook.chapter.source import Source, read_source
+
+#: The tag of cells that a notebook has but that a build does not run: nbclient's own.
+SKIPPED = "skip-execution"
 
 
 @dataclass(frozen=True)
@@ -178,6 +181,7 @@ def _classify(
 ) -> tuple[list[ClassifiedFence], list[Problem]]:
     problems: list[Problem] = []
     items: list[ClassifiedFence] = []
+    not_executed: dict[int, ClassifiedFence] = {}
     own = interface_package(surroundings.package)
     repeated = excerpts([with_language(block.fence) for block in parsed.fences if block.fence])
     for block, fence in _fences(parsed, own):
@@ -188,6 +192,10 @@ def _classify(
         if item.kind is CellKind.INTERFACE and (fault := surroundings.not_compiled.get((file, fence.first_code_line))):
             why = "its definition is not compiled"
             item, fence_problems = ClassifiedFence(fence, CellKind.STATIC, why, fault.problem), [fault]
+        if SKIPPED in fence.tags:
+            if item.kind in {CellKind.NODE, CellKind.SNIPPET, CellKind.SHELL}:
+                not_executed[len(items)] = item
+            item, fence_problems = ClassifiedFence(fence, CellKind.STATIC, "its tags say that it is not run"), []
         bad = _bad_seconds(item, file)
         items.append(replace(item, fence=_without_seconds(item.fence)) if bad else item)
         problems += [*fence_problems, *bad]
@@ -207,6 +215,8 @@ def _classify(
         interfaces=surroundings.interfaces,
     )
     items = shells.decide(items)
+    for number, item in not_executed.items():
+        items[number] = replace(item, name=node_name(item, "", file)[0] if item.kind is CellKind.NODE else None)
     return items, problems + programs.problems + shells.problems
 
 

@@ -112,7 +112,7 @@ def _code(cell: ChapterCell, ran: ExecutedNotebook, source_link: str, download: 
     return {
         "cell_type": "code",
         "id": cell.id,
-        "metadata": {"spinbook": about},
+        "metadata": {"spinbook": about, "tags": list(cell.tags)},
         "source": cell.source.rstrip("\n"),
         "outputs": outputs,
         "execution_count": None,

@@ -133,7 +133,28 @@ def _describe(cell: nodes.container, about: dict[str, Any]) -> None:
             _pictures(part, about["alts"], about["stills"])
             words = "Output: it fails, as expected" if about["fails"] else "Output"
             part.insert(0, nodes.raw("", f'<p class="output-name">{words}</p>', format="html"))
+    _fold(cell)
     cell.insert(0, nodes.raw("", _head(kind, about), format="html"))
+
+
+#: MyST's tags -> what is folded: hide-input, hide-output, both of them, hide-cell.
+_FOLDED = {
+    "input": {"cell_code_source"},
+    "output": {"cell_code_output"},
+    "input+output": {"cell_code_source", "cell_code_output"},
+    "all": {"cell_code_source", "cell_code_output"},
+}
+
+
+def _fold(cell: nodes.container) -> None:
+    """Fold what the cell's tags hide. myst-nb would do it later, but does not recognise a cell with a head."""
+    hidden = _FOLDED.get(cell.attributes.pop("hide_mode", ""), set())
+    for part in [child for child in cell.children if isinstance(child, nodes.container)]:
+        if part.get("nb_element") in hidden:
+            words = "Show the code" if part["nb_element"] == "cell_code_source" else "Show the output"
+            opening = f'<details class="hidden-part"><summary>{words}</summary>'
+            cell.insert(cell.index(part), nodes.raw("", opening, format="html"))
+            cell.insert(cell.index(part) + 1, nodes.raw("", "</details>", format="html"))
 
 
 def _language(kind: str, about: dict[str, Any]) -> str:
