@@ -6,37 +6,48 @@ They judge the raw status and feedback topics and the responses, never an Action
 from __future__ import annotations
 
 import itertools
-import re
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
+from grader.checking.cause import UNKNOWN, Cause
 from grader.checking.comparator import TOLERANCE, shown
+from grader.checking.graph import lacking
+from grader.checking.hint_texts import hints
 from grader.checking.partial import each
 from grader.checking.recorded_run import RecordedRun
 from grader.recording.events import By, Cancel, Feedback, Goal
 from grader.scenario.times import SECOND
 
-_FORGOT = (
-    "The result is filled in, but the goal was aborted: a server that is done must call goal_handle.succeed(), "
-    "not abort()."
+#: rclpy's log line for a goal whose execute callback returned without a state.
+_NO_STATE = "Goal state not set, assuming aborted"
+
+_ENDS = hints("goal_ends")
+_FORGOT = Cause("Your execute callback returned without goal_handle.succeed(), so rclpy aborted the goal.", *_ENDS)
+_GAVE_UP = Cause("Your execute callback called goal_handle.abort(), which is for a goal that it gives up.", *_ENDS)
+
+_CANCEL = hints("cancel")
+_DISREGARDED = Cause("Your node accepted the request to cancel, and then called succeed() anyway.", *_CANCEL)
+_REFUSED = Cause(
+    "Your node rejected the request to cancel: without a cancel callback, a server rejects every cancel request.",
+    *_CANCEL,
 )
-_ABORTED = "Does execute raise, return without goal_handle.succeed(), or call canceled() without a request to cancel?"
-_DISREGARDED = "Your node accepted the request to cancel, and then called succeed() anyway."
-_REFUSED = "Your node rejected the request to cancel: without a cancel callback, a server rejects every cancel request."
-_WENT_ON = (
-    "Your node accepted the request to cancel, but continued: execute must check goal_handle.is_cancel_requested."
+_WENT_ON = Cause(
+    "Your node accepted the request to cancel, but continued: execute must check goal_handle.is_cancel_requested.",
+    *_CANCEL,
 )
-_NO_ANSWER = "Your node never answered the request to cancel: execute blocks the executor."
-_OVER = "The goal had ended before the request to cancel arrived."
-_TOO_LATE = "Your node answered the request to cancel only after the goal had ended: execute blocks the executor."
-_NEVER = "The goal never ended."
-_STUCK = (
-    "Your node did nothing after it began to execute the goal. Does execute wait for the node's clock, with one "
-    "thread? That thread then reads no clock: run the node in a MultiThreadedExecutor."
+_NO_ANSWER = Cause("Your node never answered the request to cancel: execute blocks the executor.", *_CANCEL)
+_OVER = Cause("The goal had ended before the request to cancel arrived.", *hints("ended_before"))
+_TOO_LATE = Cause(
+    "Your node answered the request to cancel only after the goal had ended: execute blocks the executor.", *_CANCEL
 )
-_UNASKED = "canceled() is only for a goal with a request to cancel; call abort() to give up any other."
-#: rclpy's log line for an exception in execute.
-_RAISED = re.compile(r"Error raised in execute callback: (.*?)(?:, at \S+:\d+)?$", re.MULTILINE)
+_NEVER = Cause("The goal never ended.", *hints("never_ends"))
+_STUCK = Cause(
+    "The goal never ended. Your node did nothing after it began to execute the goal. Does execute wait for the node's "
+    "clock, with one thread? That thread then reads no clock: run the node in a MultiThreadedExecutor.",
+    *hints("one_thread"),
+)
+_NO_FEEDBACK = Cause("Your node never publishes feedback.", *hints("no_feedback"))
 
 
 def goals(run: RecordedRun, action: str = "", by: By = "grader") -> tuple[Goal, ...]:
@@ -152,7 +163,7 @@ def must_match_feedback(
         number, (expected, got) = numbered
         if expected is None or got is None:
             text = f"expected {expected_count} feedback messages, got {count}."
-            never = "" if count else "Your node never publishes feedback."
+            never = UNKNOWN if count else _NO_FEEDBACK
             run.wrong_at(student.at, text, _part(student), f"{expected_count} messages", count, never)
         part = f"{_part(student)}, feedback {number}"
         run.compare_at(got.at, part, field, got.fields, expected.fields, tolerance, student.action, messages)
@@ -172,7 +183,11 @@ def must_match_goals(
     got, expected = len(goals(run, name, by="node")), len(_reference_goals(run, name, "node"))
     if got != expected:
         clients = sorted({end.topic for end in run.recording.end_points if end.kind == "action client"})
-        never = "" if got or name in clients else f"Your node has no action client for {name}."
+        never = (
+            UNKNOWN
+            if got or name in clients
+            else replace(lacking("action client"), seen=f"Your node has no action client for {name}.")
+        )
         text = f"expected {expected} goals for {name}, got {got}."
         run.wrong_at(None, text, "", f"{expected} goals", got, never or run.waits())
 
@@ -207,9 +222,8 @@ def _match(
         expected, got = part_of(reference), part_of(student)
         if expected is not None and got is not None:
             at = student.at if what == "goal" else student.finished
-            raised = _raised(run) if what == "result" and student.status == "aborted" and not _is_filled(got) else ""
             part = f"{_part(student)}, its {what}"
-            run.compare_at(at, part, field, got, expected, tolerance, name, pairs, raised)
+            run.compare_at(at, part, field, got, expected, tolerance, name, pairs)
     return both
 
 
@@ -220,7 +234,7 @@ def _must_answer(run: RecordedRun, goal: Goal, accepted: bool) -> None:
         if goal.action not in servers:
             names = ", ".join(servers) or "none"
             text = f"your node has no action {goal.action}. Its actions are: {names}."
-            run.wrong_at(goal.at, text, "", goal.action, names)
+            run.wrong_at(goal.at, text, "", goal.action, names, lacking("action server"))
         text = "your node never said whether it accepts the goal. Does a callback block it?"
         run.wrong_at(goal.at, text, _part(goal), expected, "no answer")
     if goal.accepted != accepted:
@@ -228,25 +242,16 @@ def _must_answer(run: RecordedRun, goal: Goal, accepted: bool) -> None:
         run.wrong_at(goal.at, f"it must be {expected}, but your node {got} it.", _part(goal), expected, got)
 
 
-def _why(run: RecordedRun, goal: Goal, expected: str) -> str:
-    """Return the common mistake behind a wrong end of a goal; empty if none is known."""
+def _why(run: RecordedRun, goal: Goal, expected: str) -> Cause:
+    """Return the common mistake behind a wrong end of a goal."""
     got, cancel = _ended_as(goal), goal.cancels[0] if goal.cancels else None
     if expected == "canceled" and cancel:
         return _why_not_canceled(goal, cancel, got)
     if expected == "succeeded" and got == "aborted":
-        return _FORGOT if goal.result and _is_filled(goal.result) else _raised(run) or _ABORTED
+        return _FORGOT if _NO_STATE in run.recording.log else _GAVE_UP
     if _ended_at(goal) is not None:
-        return ""
-    return f"{_NEVER} {_STUCK}" if _does_nothing_after(run, goal) else _NEVER
-
-
-def _raised(run: RecordedRun) -> str:
-    """Return what execute raised first in this scenario, according to rclpy's log; empty if it raised nothing."""
-    match = _RAISED.search(run.recording.log)
-    if not match:
-        return ""
-    text = f"Your execute callback raised an exception: {match[1].strip()}."
-    return f"{text} {_UNASKED}" if "event CANCELED" in match[1] else text
+        return UNKNOWN
+    return _STUCK if _does_nothing_after(run, goal) else _NEVER
 
 
 def _does_nothing_after(run: RecordedRun, goal: Goal) -> bool:
@@ -266,7 +271,7 @@ def _reference_goals(run: RecordedRun, action: str, by: By) -> tuple[Goal, ...]:
     return tuple(goal for goal in run.reference.goals if goal.action == action and goal.by == by)
 
 
-def _why_not_canceled(goal: Goal, cancel: Cancel, got: str) -> str:
+def _why_not_canceled(goal: Goal, cancel: Cancel, got: str) -> Cause:
     ended = _ended_at(goal)
     if ended is not None and ended < cancel.at:
         return _OVER
@@ -276,7 +281,7 @@ def _why_not_canceled(goal: Goal, cancel: Cancel, got: str) -> str:
         return _TOO_LATE
     if cancel.accepted is False:
         return _REFUSED
-    return {"succeeded": _DISREGARDED, "aborted": "", "canceled": ""}.get(got, _WENT_ON)
+    return {"succeeded": _DISREGARDED, "aborted": UNKNOWN, "canceled": UNKNOWN}.get(got, _WENT_ON)
 
 
 def _part(goal: Goal) -> str:
@@ -291,10 +296,3 @@ def _ended_as(goal: Goal) -> str:
 def _ended_at(goal: Goal) -> int | None:
     ends = [state.at for state in goal.states if state.state in ("succeeded", "canceled", "aborted")]
     return ends[0] if ends else goal.finished
-
-
-def _is_filled(result: Any) -> bool:
-    """Return whether a result differs from an empty one."""
-    if isinstance(result, dict):
-        return any(_is_filled(part) for part in result.values())
-    return bool(result)

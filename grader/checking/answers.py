@@ -6,13 +6,17 @@ import math
 from functools import lru_cache
 from typing import Any
 
+from grader.checking.cause import Cause
 from grader.checking.comparator import TOLERANCE, difference, equal, shown
-from grader.checking.graph import subscriptions
+from grader.checking.hint_texts import hints
 from grader.checking.late_answers import AT_ONCE, delay, how_late, in_general, is_late, is_one_late
 from grader.checking.message import Exchange, Message
 from grader.checking.partial import each
-from grader.checking.patterns import common, fixed_step
+from grader.checking.patterns import ORDER, common, fixed_step
 from grader.checking.recorded_run import RecordedRun
+from grader.checking.unanswered import why_unanswered
+
+_COPIED = hints("copied")
 
 #: Of a value with more characters than this, only the first difference is shown.
 LONGEST = 80
@@ -70,8 +74,8 @@ def must_answer_at_once(run: RecordedRun, within: float = AT_ONCE) -> None:
         for answer in exchange.answers:
             if is_late(exchange, answer, within):
                 late = delay(run, exchange, answer)
-                text = f"an answer was expected at once; it arrived {late}.{in_general(run)}"
-                run.wrong(exchange, text, "", "an answer at once", late)
+                text = f"an answer was expected at once; it arrived {late}."
+                run.wrong(exchange, text, "", "an answer at once", late, in_general(run))
 
     each(_expected(run), in_time)
 
@@ -87,7 +91,9 @@ def must_vary(run: RecordedRun, field: str, per: str = "") -> None:
         return
     published = [value for values in got.values() for value in values]
     if not published:
-        run.wrong(run.exchanges[-1], f"no {field} was published at all.", "", f"a {field} that changes", "none")
+        answered = any(exchange.answers for exchange in run.exchanges)
+        text = f"no {field} was published {f'with a {per}' if per and answered else 'at all'}."
+        run.wrong(run.exchanges[-1], text, "", f"a {field} that changes", "none")
     if any(len(set(values)) > 1 for values in got.values()):
         return
     alike = len(set(published)) == 1
@@ -132,34 +138,10 @@ def _must_be_silent(run: RecordedRun, exchanges: list[Exchange]) -> None:
 
 def _answer(run: RecordedRun, exchange: Exchange) -> Message:
     if not exchange.answers:
-        late, general = how_late(run, exchange), in_general(run)
+        late = how_late(run, exchange)
         text = f"an answer was expected at once; it arrived {late}." if late else "an answer was expected, got none."
-        text += general or _never(run)
-        if not exchange.sent.heard and subscriptions(run, exchange.sent.topic):
-            text += _unmatched(run, exchange.sent.topic) or (
-                f" Your node did not subscribe to {exchange.sent.topic} yet: create the subscription in __init__."
-            )
-        run.wrong(exchange, text, "", "a message", late or "nothing")
+        run.wrong(exchange, text, "", "a message", late or "nothing", in_general(run) or why_unanswered(run, exchange))
     return exchange.answers[0]
-
-
-def _unmatched(run: RecordedRun, topic: str) -> str:
-    """Explain that no message arrived because a subscription asks for more than the topic's publisher offers."""
-    declared = next((declared for declared in run.exercise.inputs if declared.name == topic), None)
-    if declared is None or any(sent.heard for sent in run.sent if sent.topic == topic):
-        return ""
-    for end in subscriptions(run, topic):
-        for more, name in (("transient_local", "durability"), ("reliable", "reliability")):
-            asked, offered = getattr(end, name), getattr(declared, name)
-            if asked == more != offered:
-                text = f" Your subscription on {topic} is {asked}, but the publisher is {offered}"
-                return f"{text}: the two do not match, and no message arrives."
-    return ""
-
-
-def _never(run: RecordedRun) -> str:
-    answered = sum(bool(exchange.answers) for exchange in run.exchanges)
-    return "" if answered or len(run.sent) == 1 else " Your node never answers in this scenario."
 
 
 def _compare(run: RecordedRun, exchange: Exchange, answer: Message, field: str, unit: str, tolerance: float) -> None:
@@ -172,8 +154,8 @@ def _compare(run: RecordedRun, exchange: Exchange, answer: Message, field: str, 
         place += differing.path if differing.path.startswith("[") else f".{differing.path}"
         got, expected = differing.got, differing.expected
     expected_text, got_text = shown(expected, unit), shown(got, unit)
-    text = f"expected {place} {expected_text}, got {got_text}.{pattern(run, field, unit=unit)}"
-    run.wrong(exchange, text, "", expected_text, got_text)
+    text = f"expected {place} {expected_text}, got {got_text}."
+    run.wrong(exchange, text, "", expected_text, got_text, pattern(run, field, unit=unit))
 
 
 def _compare_each(
@@ -191,7 +173,8 @@ def _compare_each(
             run.wrong(exchange, f"a {field} was expected, but your message does not name it.", name, shown(value), "")
         if not equal(got[name], value, tolerance):
             text = f"expected {field} {shown(value, unit)}, got {shown(got[name], unit)}."
-            run.wrong(exchange, text + pattern(run, field, per, unit), name, shown(value, unit), shown(got[name], unit))
+            cause = pattern(run, field, per, unit)
+            run.wrong(exchange, text, name, shown(value, unit), shown(got[name], unit), cause)
     for name, value in got.items():
         if name not in expected:
             text = f"no {field} was expected, got {shown(value, unit)}."
@@ -199,15 +182,15 @@ def _compare_each(
 
 
 @lru_cache(maxsize=8)  # every wrong answer needs it
-def pattern(run: RecordedRun, field: str, per: str = "", unit: str = "") -> str:
-    """Return a sentence about what all values of `field` have in common, beginning with a space; empty if nothing.
+def pattern(run: RecordedRun, field: str, per: str = "", unit: str = "") -> Cause:
+    """Return what all values of `field` have in common.
 
     `per` names the list of names that `field` goes with; without it, `field` is one number.
     """
     if is_one_late(run):
-        return " Every answer is one message late: it is the right answer to the message before."
+        return Cause("Every answer is one message late: it is the right answer to the message before.", *ORDER)
     if copied := _copied(run, field, per):
-        return f" Every {field} is the {copied} of the message that arrived, unchanged."
+        return Cause(f"Every {field} is the {copied} of the message that arrived, unchanged.", *_COPIED)
     pairs: list[tuple[float, float]] = []
     elapsed: list[float] = []
     for before, exchange in zip([None, *run.exchanges], run.exchanges, strict=False):
@@ -215,9 +198,7 @@ def pattern(run: RecordedRun, field: str, per: str = "", unit: str = "") -> str:
             expected, got = _values(exchange.expected[0], field, per), _values(exchange.answers[0], field, per)
             pairs += [(expected[name], got[name]) for name in expected if name in got]
             elapsed += [_elapsed(before, exchange) for name in expected if name in got]
-    if text := fixed_step(pairs, elapsed, field, unit):
-        return text
-    return common(pairs, field, unit)
+    return fixed_step(pairs, elapsed, field, unit) or common(pairs, field, unit)
 
 
 def _elapsed(before: Exchange | None, exchange: Exchange) -> float:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Literal, NoReturn
 
+from grader.checking.cause import UNKNOWN, Cause, as_cause
+from grader.checking.hint_texts import hints
 from grader.checking.recorded_run import RecordedRun
 from grader.checking.verdict import Finding, Wrong
 from grader.recording.recording import Endpoint
@@ -89,7 +91,7 @@ def must_have_interface(run: RecordedRun, only: bool = False) -> None:
         for end in mine:
             if end.type != type_:
                 text = f"your {kind} on {name} has another type. Expected {type_}, got {end.type}."
-                _wrong(text, type_, end.type)
+                _wrong(text, type_, end.type, _TYPE)
     if only:
         _has_no_others(run, [(kind, name) for kind, name, _ in declared])
 
@@ -123,7 +125,7 @@ def must_have_nodes(run: RecordedRun) -> None:
     elif len(run.nodes) > len(expected):
         text = f"your program creates other nodes, too. Expected {', '.join(expected)}, got {got}."
     if text:
-        _wrong(text, ", ".join(expected), got)
+        _wrong(text, ", ".join(expected), got, _NODES)
 
 
 def must_end_on_ctrl_c(run: RecordedRun) -> None:
@@ -132,10 +134,10 @@ def must_end_on_ctrl_c(run: RecordedRun) -> None:
         raise ValueError(f"the scenario {run.scenario} sends no Ctrl-C. Add interrupt=True to it.")
     if not run.ending.ended_in_time:
         text = "your program was still running 2 s after Ctrl-C. Expected an end within 2 s."
-        _wrong(text, "an end within 2 s", "none")
+        _wrong(text, "an end within 2 s", "none", _STILL_RUNS)
     if run.ending.traceback:
         text = f"after Ctrl-C your program printed a traceback: {run.ending.traceback}"
-        _wrong(text, "no traceback", run.ending.traceback)
+        _wrong(text, "no traceback", run.ending.traceback, _TRACEBACK)
 
 
 def must_survive(run: RecordedRun, program: str = "") -> None:
@@ -161,13 +163,36 @@ def _has_no_others(run: RecordedRun, declared: list[tuple[Kind, str]]) -> None:
 def _lacks(run: RecordedRun, kind: Kind, name: str) -> NoReturn:
     does, others = _WORDS[kind]
     names = ", ".join(sorted({end.topic for end in end_points(run, kind)} - {*OF_EVERY_NODE})) or "none"
-    _wrong(f"your node does not {does} {name}. {others}: {names}.", name, names)
+    _wrong(f"your node does not {does} {name}. {others}: {names}.", name, names, lacking(kind))
 
 
-def _wrong(text: str, expected: str, got: str, at_all: str = "") -> NoReturn:
+#: Kind of endpoint -> the call that creates it.
+_CALLS = {
+    "publisher": "self.create_publisher(Type, 'name', 10)",
+    "subscription": "self.create_subscription(Type, 'name', self.callback, 10)",
+    "server": "self.create_service(Type, 'name', self.callback)",
+    "client": "self.create_client(Type, 'name')",
+    "action server": "ActionServer(self, Type, 'name', self.execute)",
+    "action client": "ActionClient(self, Type, 'name')",
+}
+
+
+def lacking(kind: Kind) -> Cause:
+    """Return the hints for a node that lacks an endpoint of this kind, or has it under another name."""
+    return Cause("", *hints("lacking", kind=kind, call=_CALLS[kind]))
+
+
+_TYPE = Cause("", *hints("type"))
+_NODES = Cause("", *hints("nodes"))
+_STILL_RUNS = Cause("", *hints("still_runs"))
+_TRACEBACK = Cause("", *hints("traceback"))
+
+
+def _wrong(text: str, expected: str, got: str, cause: str | Cause = UNKNOWN) -> NoReturn:
     """End the check: `text` says what is wrong with the program in every scenario."""
-    message = f"{text[0].upper()}{text[1:]} {at_all}".strip()
-    raise Wrong(Finding(message, expected=expected, got=got))
+    known = as_cause(cause)
+    message = f"{text[0].upper()}{text[1:]} {known.seen}".strip()
+    raise Wrong(Finding(message, expected=expected, got=got, cause=known.seen, where=known.where, todo=known.todo))
 
 
 def _of_qos(end: Endpoint, durability: str) -> str:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
+from grader.checking.cause import UNKNOWN, Cause
 from grader.checking.comparator import equal
+from grader.checking.hint_texts import hints
 from grader.checking.message import Exchange, Message
-from grader.checking.patterns import FEWEST
+from grader.checking.patterns import FEWEST, ORDER
 from grader.checking.recorded_run import RecordedRun
 from grader.recording.recording import ReceivedMessage
 from grader.scenario.times import SECOND
@@ -17,10 +20,14 @@ _STAMPS = ("header", "stamp")
 #: An answer within this time (s) counts as immediate: an asyncio loop may poll for messages every millisecond.
 AT_ONCE = 0.01
 
-_NEXT_MESSAGE = " Your node answers each message only when the next one arrives: every answer is one message late."
-_TIMER = (
-    " Your node answers only after the clock has moved on, as a timer does. Publish in the callback that gets the "
-    "message."
+_IN_CALLBACK = hints("in_callback")
+_NEXT_MESSAGE = Cause(
+    "Your node answers each message only when the next one arrives: every answer is one message late.", *ORDER
+)
+_TIMER = Cause(
+    "Your node answers only after the clock has moved on, as a timer does. Publish in the callback that gets the "
+    "message.",
+    *_IN_CALLBACK,
 )
 
 
@@ -46,23 +53,22 @@ def delay(run: RecordedRun, exchange: Exchange, answer: Message) -> str:
     return _delay(run, exchange, answer.at_ns, answer.after)
 
 
-def in_general(run: RecordedRun) -> str:
-    """Return what all late answers have in common, as sentences that begin with a space; empty if nothing."""
+@lru_cache(maxsize=8)  # every late answer needs it
+def in_general(run: RecordedRun) -> Cause:
+    """Return what all late answers have in common."""
     pairs = [(exchange, answer) for exchange in run.exchanges for answer in exchange.answers if exchange.expected]
     late = [(exchange, answer) for exchange, answer in pairs if is_late(exchange, answer, AT_ONCE)]
     if len(late) < FEWEST or len(late) < len(pairs):
-        return ""
+        return UNKNOWN
     if all(answer.after == exchange.number + 1 and _with_next(run, exchange, answer) for exchange, answer in late):
         return _NEXT_MESSAGE
     if all(answer.after == exchange.number and _with_next(run, exchange, answer) for exchange, answer in late[:-1]):
         return _TIMER
     seconds = [answer.at - exchange.sent.at for exchange, answer in late]
     if max(seconds) - min(seconds) <= 0.02 * max(seconds):
-        return f" Every answer comes {_shown(max(seconds))} after its message."
-    return (
-        f" Your node's answers come {_shown(min(seconds))} to {_shown(max(seconds))} after their messages, as from a "
-        "timer, or from a thread that polls."
-    )
+        return Cause(f"Every answer comes {_shown(max(seconds))} after its message.", *_IN_CALLBACK)
+    text = f"Your node's answers come {_shown(min(seconds))} to {_shown(max(seconds))} after their messages, as from a "
+    return Cause(f"{text}timer, or from a thread that polls.", *_IN_CALLBACK)
 
 
 def _with_next(run: RecordedRun, exchange: Exchange, answer: Message) -> bool:

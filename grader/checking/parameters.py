@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from grader.checking.cause import UNKNOWN, Cause
 from grader.checking.comparator import TOLERANCE, equal, shown
+from grader.checking.hint_texts import hints
 from grader.checking.partial import each
 from grader.checking.recorded_run import RecordedRun
 from grader.recording.events import ParameterChange, ParameterReading
@@ -89,13 +91,14 @@ def _see(run: RecordedRun, change: ParameterChange, taken: bool) -> None:
     run.wrong_at(change.at, text, f"parameter {change.name}", expected, got, _never_refuses(run, taken))
 
 
-def _never_refuses(run: RecordedRun, taken: bool) -> str:
+def _never_refuses(run: RecordedRun, taken: bool) -> Cause:
     answers = {change.taken for change in run.recording.parameters}
     if taken and answers == {False}:
-        return "Your node refuses every value: an on-set callback has to return SetParametersResult(successful=True)."
+        every = "refuses every value" if len(run.recording.parameters) > 1 else "refused the only value"
+        return Cause(f"Your node {every} that is set here.", *hints("refuses"))
     if not taken and answers == {True} and len(run.recording.parameters) > 1:
-        return "Your node takes every value. Did you add an on-set callback?"
-    return ""
+        return Cause("Your node takes every value. Did you add an on-set callback?", *hints("takes"))
+    return UNKNOWN
 
 
 def _unknown(run: RecordedRun, at: int, name: str, answered: bool) -> None:

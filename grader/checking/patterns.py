@@ -6,7 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from grader.checking.cause import UNKNOWN, Cause
 from grader.checking.comparator import equal
+from grader.checking.hint_texts import hints
 
 #: The factor in a speed whose time is measured with the computer's clock: see `grader.runner.grader_side`.
 COMPUTER_CLOCK = 0.8
@@ -30,63 +32,88 @@ UNITS = (
 )
 
 
-def fixed_step(pairs: list[tuple[float, float]], elapsed: list[float], field: str, unit: str) -> str:
+_STEP = hints("time_step")
+
+
+def fixed_step(pairs: list[tuple[float, float]], elapsed: list[float], field: str, unit: str) -> Cause:
     """Explain that every rate was computed with one time step, whatever the real time between messages."""
     if not unit.endswith("/s"):
-        return ""
+        return UNKNOWN
     steps = [
         dt * expected / got
         for (expected, got), dt in zip(pairs, elapsed, strict=True)
         if dt > 0 and abs(expected) > SMALLEST and math.isfinite(expected) and math.isfinite(got) and got
     ]
     if len(steps) < FEWEST or not all(math.isclose(step, steps[0], rel_tol=1e-3) for step in steps) or steps[0] <= 0:
-        return ""
+        return UNKNOWN
     if math.isclose(steps[0], 1.0, rel_tol=1e-3):
-        return f" Every {field} is the change between two messages, not divided by the time between them."
+        text = f"Every {field} is the change between two messages, not divided by the time between them."
+        return Cause(text, *_STEP)
     if max(elapsed) - min(elapsed) < 1e-3:
-        return ""  # any factor looks like another time step
-    return f" Every {field} would be right if {steps[0]:.4g} s had passed between the two messages."
+        return UNKNOWN  # any factor looks like another time step
+    return Cause(f"Every {field} would be right if {steps[0]:.4g} s had passed between the two messages.", *_STEP)
 
 
-def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "") -> str:
-    """Return what all pairs of an expected and a received value have in common, in the form of `pattern`.
+def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "") -> Cause:
+    """Return what all pairs of an expected and a received value have in common.
 
     `unit` is the unit that the task asks for. A factor of 0.8 or 1.25 is attributed to the computer's clock.
     """
     telling = [(e, g) for e, g in pairs if abs(e) > SMALLEST and math.isfinite(e) and math.isfinite(g)]
     if len(telling) < FEWEST:
-        return ""
+        return UNKNOWN
     if len({got for _, got in telling}) == 1:
-        return f" Every {field} is {telling[0][1]:.6g}."
+        return _constant(field, telling[0][1])
     ratio = telling[0][1] / telling[0][0]
     if all(math.isclose(g, ratio * e, rel_tol=1e-3, abs_tol=1e-9) for e, g in telling):
         return _ratio(ratio, field, unit)
     offset = telling[0][1] - telling[0][0]
     if all(math.isclose(g - e, offset, rel_tol=1e-3, abs_tol=1e-9) for e, g in telling):
-        return f" Every {field} is {abs(offset):.4g} too {'large' if offset > 0 else 'small'}."
-    return ""
+        return _offset(offset, field)
+    return UNKNOWN
 
 
-def _ratio(ratio: float, field: str, unit: str) -> str:
+def _constant(field: str, value: float) -> Cause:
+    return Cause(f"Every {field} is {value:.6g}.", *hints("constant", field=field))
+
+
+def _offset(offset: float, field: str) -> Cause:
+    text = f"Every {field} is {abs(offset):.4g} too {'large' if offset > 0 else 'small'}."
+    return Cause(text, *hints("offset"))
+
+
+def _ratio(ratio: float, field: str, unit: str) -> Cause:
     if math.isclose(ratio, 1, rel_tol=1e-3):
-        return ""
+        return UNKNOWN
     if math.isclose(ratio, -1, rel_tol=1e-3):
-        return " Every value has the wrong sign."
+        return _SIGN
     for asked, used, factor in UNITS:
         if math.isclose(ratio, factor, rel_tol=1e-3) and (unit.split("/")[0] == asked or (not unit and asked == "rad")):
-            return f" Every {field} is in {used}."
-    text = f" Every {field} is {ratio:.4g} times what it should be"
+            return _unit(field, used, unit or asked)
+    text = f"Every {field} is {ratio:.4g} times what it should be"
     if any(math.isclose(ratio, factor, rel_tol=1e-3) for factor in (COMPUTER_CLOCK, 1 / COMPUTER_CLOCK)):
-        return f"{text}: your node measures time with the computer's clock, which runs at another speed here."
-    return f"{text}."
+        text += ": your node measures time with the computer's clock, which runs at another speed here."
+        return Cause(text, *_STEP)
+    return Cause(f"{text}.", *hints("factor", ratio=f"{ratio:.4g}"))
 
 
-def shift(expected: Sequence[Any], got: Sequence[Any], tolerance: float) -> str:
-    """Say whether each value is the one that was expected before, or the one after; empty if neither."""
+_SIGN = Cause("Every value has the wrong sign.", *hints("wrong_sign"))
+
+
+def _unit(field: str, used: str, asked: str) -> Cause:
+    return Cause(f"Every {field} is in {used}.", *hints("unit", used=used, asked=asked))
+
+
+def shift(expected: Sequence[Any], got: Sequence[Any], tolerance: float) -> Cause:
+    """Say whether each value is the one that was expected before, or the one after; UNKNOWN if neither."""
     if len(expected) < 4 or len(got) < 4 or equal(got[: len(expected)], expected[: len(got)], tolerance):
-        return ""
+        return UNKNOWN
     for mine, its, text in ((got[1:], expected, "one message late"), (got, expected[1:], "one message early")):
         count = min(len(mine), len(its))
         if count >= FEWEST and equal(mine[:count], its[:count], tolerance) and len({repr(value) for value in mine}) > 1:
-            return f"Every message is {text}."
-    return ""
+            return Cause(f"Every message is {text}.", *ORDER)
+    return UNKNOWN
+
+
+#: For values that are right and come one message too late or too early.
+ORDER = hints("order")

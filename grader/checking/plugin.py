@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 import pytest
 
+from grader.checking.ending_message import message_of
 from grader.checking.run import Run
 from grader.checking.verdict import CheckOptions, Finding, Verdict, Wrong, check_options
 from grader.exercise.exercise import ExerciseError
@@ -31,7 +32,7 @@ def _giving(runs: Mapping[str, Run | None], name: str) -> Any:
         run = runs[name]
         assert run, "checks that are only listed are not run"
         if run.ending.outcome != "completed":
-            raise Wrong(Finding(f"{run.ending.message} ({run.title})", run.scenario))
+            run.wrong_at(None, message_of(run.ending, run.exercise))
         return run
 
     return scenario

@@ -5,12 +5,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NoReturn
 
+from grader.checking.cause import UNKNOWN, Cause, as_cause
 from grader.checking.comparator import difference, shown
+from grader.checking.hint_texts import hints
 from grader.checking.message import Exchange, Message, exchanges
+from grader.checking.observed import observed
 from grader.checking.patterns import COMPUTER_CLOCK, common
 from grader.checking.verdict import Finding, Wrong
 from grader.exercise.exercise import Exercise, Role, ServiceOrAction, Topic
@@ -27,7 +30,10 @@ _WAITS = (
 #: A node counts as stuck if it does nothing for this long (s) after its last request while the solution does something.
 _STUCK = 0.2
 
-_SLEEPS = "Does your node wait by the computer's clock, such as with time.sleep? It goes at another speed here."
+_SLEEPS = Cause(
+    "Does your node wait by the computer's clock, such as with time.sleep? It goes at another speed here.",
+    *hints("sleeps"),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,31 +75,57 @@ class RecordedRun:
         """Return each message sent, with the node's answers and the solution's."""
         return exchanges(self.recording, self.reference)
 
-    def wrong(self, exchange: Exchange, text: str, part: str = "", expected: object = "", got: object = "") -> NoReturn:
+    @cached_property
+    def observed(self) -> Cause:
+        """Return what the whole run shows of the cause of any failure in it, such as an exception."""
+        return observed(self.exercise, self.recording, self.reference)
+
+    def wrong(
+        self,
+        exchange: Exchange,
+        text: str,
+        part: str = "",
+        expected: object = "",
+        got: object = "",
+        cause: str | Cause = UNKNOWN,
+    ) -> NoReturn:
         """End the check: `text` says what is wrong with the answers to this exchange's message.
 
         `part` is the wrong part of the message, such as the joint. Reports show `expected` and `got` separately.
+        `cause` is what is probably behind it; what the whole run shows has priority.
         """
         where = f"Message {exchange.number} of {len(self.sent)} ({exchange.sent.at:.2f} s after the start"
         where += f"; {self.title})" if self.title else ")"
         message = f"{where}{f', {part}' if part else ''}: {text}"
-        raise Wrong(Finding(message, self.scenario, exchange.number, exchange.sent.at, part, str(expected), str(got)))
+        self._end(
+            Finding(message, self.scenario, exchange.number, exchange.sent.at, part, str(expected), str(got)), cause
+        )
 
     def wrong_at(
-        self, at: int | None, text: str, part: str = "", expected: object = "", got: object = "", at_all: str = ""
+        self,
+        at: int | None,
+        text: str,
+        part: str = "",
+        expected: object = "",
+        got: object = "",
+        cause: str | Cause = UNKNOWN,
     ) -> NoReturn:
         """End the check: `text` says what is wrong at `at`, in ns of simulated time, or in the whole scenario.
 
-        `part` is what is wrong, such as a service or a goal. `at_all` says what is wrong systematically.
+        `part` is what is wrong, such as a service or a goal. `cause` is as in `wrong`.
         """
         seconds = None if at is None else (at - START) / SECOND
         where = "" if seconds is None else "Before the start" if seconds < 0 else f"At {seconds:.2f} s"
         if self.title:
             where += f" ({self.title})" if where else f"In “{self.title}”"
         message = ", ".join(filter(None, (where, part)))
-        text = f"{text} {at_all.strip()}".strip()
         finding = f"{message}: {text}" if message else text
-        raise Wrong(Finding(finding, self.scenario, None, seconds, part, str(expected), str(got)))
+        self._end(Finding(finding, self.scenario, None, seconds, part, str(expected), str(got)), cause)
+
+    def _end(self, finding: Finding, cause: str | Cause) -> NoReturn:
+        known = self.observed or as_cause(cause)
+        text = f"{finding.text} {known.seen}".strip()
+        raise Wrong(replace(finding, text=text, cause=known.seen, where=known.where, todo=known.todo))
 
     def compare_at(
         self,
@@ -105,7 +137,7 @@ class RecordedRun:
         tolerance: float,
         name: str,
         pairs: Iterable[tuple[dict[str, Any], dict[str, Any]]],
-        otherwise: str = "",
+        otherwise: str | Cause = UNKNOWN,
     ) -> None:
         """End the check unless `field` (or, if it is empty, every field) is the same in both messages.
 
@@ -140,19 +172,19 @@ class RecordedRun:
                 (at - since) / (expected - since), COMPUTER_CLOCK, rel_tol=0.03
             )
             text = f"it was expected at {expected_text}, but happened at {got_text}."
-            self.wrong_at(at, text, part, expected_text, got_text, _SLEEPS if by_computer else "")
+            self.wrong_at(at, text, part, expected_text, got_text, _SLEEPS if by_computer else UNKNOWN)
 
-    def waits(self) -> str:
-        """Return advice for a student whose node sent a request or a goal and then did nothing; empty otherwise."""
+    def waits(self) -> Cause:
+        """Return whether the node sent a request or a goal and then did nothing."""
         asked = max(_requests(self.recording), default=None)
         if asked is None:
-            return ""
+            return UNKNOWN
         last = max([asked[0], *(message.at for message in self.recording.received)])
         later = [message.at for message in self.reference.received] + [at for at, _, _ in _requests(self.reference)]
         if last > asked[0] or max(later, default=0) - last < _STUCK * SECOND:
-            return ""
+            return UNKNOWN
         at, name, request = asked
-        return _WAITS.format(request=request, name=name, at=seconds(at))
+        return Cause(_WAITS.format(request=request, name=name, at=seconds(at)), *hints("do_not_wait"))
 
     def unit_of(self, field: str, name: str = "") -> str:
         """Return the unit of a field in exercise.toml: of the topic, service or action `name`, or of any."""

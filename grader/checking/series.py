@@ -6,11 +6,14 @@ import itertools
 from collections.abc import Sequence
 from typing import Any
 
+from grader.checking.cause import UNKNOWN, Cause
 from grader.checking.comparator import TOLERANCE, equal, shown
+from grader.checking.graph import lacking
+from grader.checking.hint_texts import hints
 from grader.checking.partial import each
 from grader.checking.patterns import COMPUTER_CLOCK, shift
 from grader.checking.recorded_run import RecordedRun, seconds
-from grader.recording.recording import ReceivedMessage
+from grader.recording.recording import Endpoint, ReceivedMessage
 from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import field_of
 
@@ -58,7 +61,7 @@ def must_match_series(
         part = f"message {number} on {name}"
         if reference is None or message is None:
             text = f"expected {len(expected)} messages on {name}, got {len(got)}."
-            in_all = shifted or too_early or f"{_stops(expected, got)} {run.waits()}"
+            in_all = shifted or too_early or run.waits() or _stops(expected, got)
             run.wrong_at(None, text, "", f"{len(expected)} messages", len(got), in_all)
         if not shifted:
             run.compare_at(
@@ -85,6 +88,9 @@ def must_keep_rate(run: RecordedRun, hz: float, topic: str = "", tolerance: floa
         _never(run, name, f"{hz:g} messages per second") if not got else None
         text = f"only one message was published on {name}."
         run.wrong_at(got[0].at, text, "", f"{hz:g} Hz", "one message", run.waits())
+    if got[0].at == got[-1].at:
+        at_once = f"all {len(got)} messages on {name} were published at one moment, {hz:g} per second were expected."
+        run.wrong_at(got[0].at, at_once, "", f"{hz:g} Hz", f"{len(got)} at once", _at_one_moment(got[0].at))
     regular = got[1:] if _begins_with_the_clock(got) else got
     rate = (len(regular) - 1) * SECOND / max(regular[-1].at - regular[0].at, 1)
     if abs(rate / hz - 1) > tolerance:
@@ -111,9 +117,8 @@ def must_have_no_gap(
     for before, after in itertools.pairwise(moments):
         if after - before > longest + 1e-9:
             text = f"nothing was published on {name} for {after - before:.2f} s, from {before:.2f} s on."
-            text += " Does a callback wait or sleep meanwhile?"
             at = round(before * SECOND) + START
-            run.wrong_at(at, text, "", f"a gap of at most {longest:g} s", f"{after - before:.2f} s")
+            run.wrong_at(at, text, "", f"a gap of at most {longest:g} s", f"{after - before:.2f} s", _GAP)
     if not inside:
         _never(run, name, f"a message every {longest:g} s")
 
@@ -129,7 +134,7 @@ def must_stamp(run: RecordedRun, topic: str = "", field: str = "header.stamp", w
         if abs(stamp - message.at) > within * SECOND:
             expected, got = shown(_stamp(message.at)), shown(_stamp(stamp))
             text = f"expected {field} {expected}, the time when it was published, got {got}."
-            run.wrong_at(message.at, text, f"message {number} on {name}", expected, got, _of_stamps(stamps))
+            run.wrong_at(message.at, text, f"message {number} on {name}", expected, got, _of_stamps(stamps, messages))
 
     each(enumerate(zip(messages, stamps, strict=True), start=1), judge)
 
@@ -142,15 +147,27 @@ def _never(run: RecordedRun, topic: str, expected: str, subscriber: str = "") ->
     ends = [end for end in run.recording.end_points if end.kind == "publisher"]
     mine = [end for end in ends if end.topic == topic]
     if not mine:
-        names = ", ".join(sorted({end.topic for end in ends})) or "none"
+        names = ", ".join(sorted({end.topic for end in ends} - {"/rosout", "/parameter_events"})) or "none"
         text = f"your node does not publish on {topic}. It publishes on: {names}."
-    elif subscriber and run.messages_on(topic):
+        run.wrong_at(None, text, "", expected, "none", lacking("publisher"))
+    if subscriber and run.messages_on(topic):
         text = f"the subscriber “{subscriber}” got nothing on {topic}."
-        if any(end.durability == "volatile" for end in mine):
-            text += " Your publisher is volatile: a late subscriber gets nothing that was published before."
-    else:
-        text = f"your node has a publisher on {topic}, but never published anything."
-    run.wrong_at(None, text, "", expected, "none", run.waits() if mine else "")
+        run.wrong_at(None, text, "", expected, "none", _VOLATILE if any(map(_is_volatile, mine)) else UNKNOWN)
+    text = f"your node has a publisher on {topic}, but never published anything."
+    run.wrong_at(None, text, "", expected, "none", run.waits() or _NOT_CALLED)
+
+
+def _is_volatile(end: Endpoint) -> bool:
+    return end.durability == "volatile"
+
+
+_NOT_CALLED = Cause("", *hints("not_published"))
+
+_VOLATILE = Cause(
+    "Your publisher is volatile: a late subscriber gets nothing that was published before.", *hints("volatile")
+)
+
+_GAP = Cause("Does a callback wait or sleep meanwhile?", *hints("gap"))
 
 
 def _wrong_time(
@@ -204,28 +221,41 @@ def _begins_with_the_clock(series: Sequence[ReceivedMessage]) -> bool:
 
 
 #: A wrong rate alone does not show which of the two is the cause.
-_PERIOD_OR_CLOCK = (
+_PERIOD_OR_CLOCK = Cause(
     "Either its period is wrong, or your node waits by the computer's clock (time.sleep or a wall timer), which runs "
-    "at another speed here."
+    "at another speed here.",
+    *hints("period_or_clock"),
 )
 
 
-def _of_rate(ratio: float, hz: float, rate: float) -> str:
+def _of_rate(ratio: float, hz: float, rate: float) -> Cause:
     if abs(ratio * COMPUTER_CLOCK - 1) < 0.02:
         return _PERIOD_OR_CLOCK
     if abs(rate * hz - 1) < 0.02 * hz * rate and hz != 1:
-        return f"It publishes every {hz:g} s: a timer takes the period in seconds, not the rate."
-    return ""
+        text = f"It publishes every {hz:g} s: a timer takes the period in seconds, not the rate."
+        return Cause(text, *hints("rate_as_period"))
+    return UNKNOWN
 
 
-def _of_stamps(stamps: Sequence[int]) -> str:
+def _at_one_moment(at: int) -> Cause:
+    seen = _WITH_THE_CLOCK if at <= START else "No time passed between them."
+    return Cause(seen, *hints("at_one_moment"))
+
+
+def _of_stamps(stamps: Sequence[int], messages: Sequence[ReceivedMessage]) -> Cause:
     if not any(stamps):
-        return "Every stamp is 0: your node never fills it in."
+        if all(message.at <= START for message in messages):
+            return Cause("The node's clock had not started when it published them.", *_STAMP)
+        return Cause("Every stamp is 0: your node never fills it in.", *_STAMP)
     if all(stamp > COMPUTER_STAMP * SECOND for stamp in stamps):
-        return "Every stamp is the computer's time. Take the time from the node's clock: self.get_clock().now()."
+        text = "Every stamp is the computer's time. Take the time from the node's clock: self.get_clock().now()."
+        return Cause(text, *_STAMP)
     if len(stamps) > 2 and len(set(stamps)) == 1:
-        return "Every stamp is the same."
-    return ""
+        return Cause("Every stamp is the same.", *_STAMP)
+    return UNKNOWN
+
+
+_STAMP = hints("stamp")
 
 
 def _nanoseconds(stamp: dict[str, int]) -> int:

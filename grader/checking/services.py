@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, NoReturn
 
+from grader.checking.cause import UNKNOWN, Cause
 from grader.checking.comparator import TOLERANCE, shown
+from grader.checking.graph import lacking
+from grader.checking.hint_texts import hints
 from grader.checking.partial import each
 from grader.checking.recorded_run import RecordedRun
 from grader.recording.events import By, Call
 from grader.scenario.times import SECOND
+
+_NEVER_RESPONDS = Cause(
+    "Your node never responds. Does the callback return the response, without blocking?", *hints("never_responds")
+)
 
 
 def calls(run: RecordedRun, service: str = "", by: By = "grader") -> tuple[Call, ...]:
@@ -62,9 +70,9 @@ def must_call(run: RecordedRun, service: str = "", count: int | None = None) -> 
         return
     text = f"expected {expected} requests to {name}, got {len(got)}."
     clients = sorted({end.topic for end in run.recording.end_points if end.kind == "client"})
-    never = "" if got or name in clients else f"Your node has no client for {name}. Its clients are for: "
-    never += (", ".join(clients) or "none") + "." if never else ""
-    run.wrong_at(None, text, "", f"{expected} requests", len(got), never or run.waits())
+    never = f"Your node has no client for {name}. Its clients are for: {', '.join(clients) or 'none'}."
+    cause = run.waits() if got or name in clients else replace(lacking("client"), seen=never)
+    run.wrong_at(None, text, "", f"{expected} requests", len(got), cause)
 
 
 def must_match_requests(
@@ -100,8 +108,8 @@ def _no_response(run: RecordedRun, number: int, call: Call) -> NoReturn:
     if not call.served or call.service not in servers:
         names = ", ".join(servers) or "none"
         text = f"your node has no service {call.service}. Its services are: {names}."
-        run.wrong_at(call.at, text, "", call.service, names)
-    never = "" if same else "Your node never responds. Does the callback return the response, without blocking?"
+        run.wrong_at(call.at, text, "", call.service, names, lacking("server"))
+    never = UNKNOWN if same else _NEVER_RESPONDS
     text = "a response was expected, got none."
     run.wrong_at(call.at, text, _part(number, call), "a response", "none", never)
 

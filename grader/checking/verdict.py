@@ -13,6 +13,9 @@ class Finding:
 
     `at` is in seconds after the scenario's start, `message` is the number of the message sent, counted from 1.
     `shortened` limits the length of the texts, which may repeat what the student's program printed or published.
+
+    `cause` is what the recording shows to be behind it, which is also in `text`: all findings with one cause are one
+    mistake. `where` and `todo` are the hints that belong to the cause.
     """
 
     text: str
@@ -22,10 +25,14 @@ class Finding:
     part: str = ""
     expected: str = ""
     got: str = ""
+    cause: str = ""
+    where: str = ""
+    todo: str = ""
 
     def shortened(self) -> Finding:
         """Return the finding with at most `LONGEST_TEXT` characters in each of its texts."""
-        return replace(self, text=_shortened(self.text), expected=_shortened(self.expected), got=_shortened(self.got))
+        text, cause = _shortened(self.text), _shortened(self.cause)
+        return replace(self, text=text, cause=cause, expected=_shortened(self.expected), got=_shortened(self.got))
 
 
 #: In characters. The overview of a class compares all findings word by word, so long ones cost time.

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import os
-import re
 from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Literal
 
 from grader.checking.verdict import Verdict
-from grader.exercise.exercise import Exercise
-from grader.recording.recording import Ending, Recording
+from grader.recording.recording import Recording
 from grader.sandbox.program import Isolation, Limits
-from grader.submission.python_version import newer_name
 
 #: What happened. `host-error` is not the student's fault: there is no score, and the submission must be graded again.
 #: `missing`: the student handed in nothing. `undecided`: the instructor must say which submission counts.
@@ -79,53 +76,6 @@ class Options:
     parallel: int = field(default_factory=lambda: max(2, min(8, 2 * len(os.sched_getaffinity(0)))))
     limits: Limits = field(default_factory=Limits)
     core: int | None = None
-
-
-#: What the sandbox has besides Python itself, as a student would import it.
-AVAILABLE = "rclpy, the standard ROS 2 messages (std_msgs, geometry_msgs, sensor_msgs and so on) and numpy"
-
-MISSING = re.compile(r"ModuleNotFoundError: No module named '([^']+)'")
-NO_NAME = re.compile(r"ImportError: cannot import name '([^']+)' from '([^']+)'")
-
-ADVICE = (
-    (
-        re.compile(r"IndentationError|TabError"),
-        "Compare the indentation of this line with the lines around it.",
-    ),
-    (re.compile(r"SyntaxError: .*non-utf-8|SyntaxError: \(unicode", re.IGNORECASE), "Save the file as UTF-8."),
-    (re.compile(r"SyntaxError"), "Python can't read this line. Look at the end of the line before it, too."),
-    (
-        re.compile(r"Address family not supported"),
-        "A node has no network while it is graded and needs none: it communicates over ROS 2 only.",
-    ),
-    (re.compile(r"NameError"), "Is the name spelled as in its definition, and defined before this line?"),
-    (re.compile(r"ZeroDivisionError"), "When is the number that this line divides by zero?"),
-    (re.compile(r"KeyError|IndexError"), "When is this key or index missing?"),
-    (re.compile(r"AttributeError: 'NoneType'"), "What is its value before the first message has arrived?"),
-)
-
-
-def message_of(ending: Ending, exercise: Exercise) -> str:
-    """Return how a run ended, with advice if there is any; empty when all went well.
-
-    The exercise's own advice has priority over the advice that fits every program.
-    """
-    message = ending.message
-    for exception, advice in exercise.advice.items():
-        if re.search(rf"\b{re.escape(exception)}\b", message):
-            return f"{message} {advice}"
-    if newer := newer_name(message):
-        return f"{message} {newer}"
-    if missing := MISSING.search(message):
-        return (
-            f"{message} The module {missing[1]} is not available here. Available are Python's own modules, {AVAILABLE}."
-        )
-    if no_name := NO_NAME.search(message):
-        return f"{message} The module {no_name[2]} has no {no_name[1]}. Is the name spelled right?"
-    for pattern, advice in ADVICE:
-        if pattern.search(message):
-            return f"{message} {advice}"
-    return message
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
+from grader.checking.ending_message import message_of
 from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
-from grader.grading.grade import Grade, Options, Outcome, message_of
+from grader.grading.grade import Grade, Options, Outcome
 from grader.grading.public import PublicPart, public_part
 from grader.grading.reference import reference, solution_file, versions
 from grader.grading.scenario_runner import ScenarioRunner

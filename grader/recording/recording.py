@@ -78,6 +78,7 @@ class Ending:
 
     `interrupted` is whether the node was asked to end by Ctrl-C; then `ended_in_time` is whether it did so within
     2 s, and `traceback` whether it printed one. `line` is the line of the student's file that is to blame, if known.
+    `survived` says what went wrong inside a program that went on all the same, such as an exception in a thread.
     """
 
     outcome: RunOutcome
@@ -86,6 +87,7 @@ class Ending:
     interrupted: bool = False
     ended_in_time: bool = True
     traceback: str = ""
+    survived: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True)

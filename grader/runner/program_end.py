@@ -8,8 +8,10 @@ from collections.abc import Mapping
 
 from grader.recording.recording import Ending
 from grader.runner.budget import Allowance, Budget, ProgramExited
+from grader.runner.error_advice import advice_on, result_advice
+from grader.runner.node_attributes import silently_replaced
 from grader.runner.program import CannotContinue, ExitStatus, RunningProgram
-from grader.runner.tracebacks import LastError, error_on_interrupt, last_error
+from grader.runner.tracebacks import LastError, error_on_interrupt, first_error, last_error
 from grader.scenario.scenario import SECOND
 from rmw_lockstep.hub import TICK_S, Hub, Violation
 
@@ -26,35 +28,33 @@ LIMITS = {
 #: What ROS 2's C code prints before it aborts a program that gave it an object of another class (rosidl_generator_py).
 OTHER_CLASS = re.compile(r'__convert_from_py: Assertion .strncmp\("(?:\w+\.)+(?P<expected>\w+)"')
 
-_RESULT = "An action's execute callback has to return a Result, such as `return {action}.Result()`."
+#: What the same code prints before it aborts a program that gave it another type of value in a field.
+OTHER_VALUE = re.compile(r"__(?P<name>\w+?)__convert_from_py: Assertion .Py(?P<kind>Float|Long|Unicode|Bool)_Check")
 
-#: What to do about an error, by the beginning of its last line.
-_PARAMETERS = {
-    "rclpy.exceptions.ParameterNotDeclaredException": "Declare it first, in __init__: self.declare_parameter(…).",
-    "rclpy.exceptions.InvalidParameterTypeException": (
-        "A parameter has the type of its default: 1 declares an integer, 1.0 a double."
-    ),
+_VALUES = {
+    "Float": "a float field of it needs a float: 2.0 instead of 2, or float(value)",
+    "Long": "an integer field of it needs an int",
+    "Unicode": "a text field of it needs a str",
+    "Bool": "a bool field of it needs True or False",
 }
-
-
-def _advice(last: LastError) -> str:
-    """Return advice about an error that rclpy raises far from the student's line which caused it (rclpy 7.1)."""
-    error, block = last.error, last.traceback
-    if error.startswith("TypeError") and ", in send_response" in block:
-        return ". A service's callback has to return the response: end each way through it with `return response`."
-    if not last.raised_there and (", in _execute_goal" in block or ", in _send_result_response" in block):
-        return f". {_RESULT.format(action='Fibonacci')}"
-    if "await_or_execute(srv.callback" in block:
-        return ". An exception in a callback ends the whole node: say in the response what is wrong, and return it."
-    return next((f". {advice}" for name, advice in _PARAMETERS.items() if error.startswith(name)), "")
 
 
 def _of_signal(signal: int, log: str) -> str:
     if other := OTHER_CLASS.search(log):
         text = f"it gave ROS 2 an object of another class than {other['expected']}."
         action, _, kind = other["expected"].rpartition("_")
-        return f"{text} {_RESULT.format(action=action)}" if kind == "Result" else text
+        return f"{text} {result_advice(action)}" if kind == "Result" else text
+    if value := OTHER_VALUE.search(log):
+        what = value["name"].rpartition("action__")[2].replace("__", " ").replace("_", " ")
+        return f"it put a value of another type into a message ({what}): {_VALUES[value['kind']]}."
     return f"it was killed by signal {signal}."
+
+
+def described(last: LastError, sources: Mapping[str, str]) -> str:
+    """Return an error with its line, the line's source and advice, as far as they are known."""
+    place = f" in {last.place}" if last.place else ""
+    text = f": `{last.text}`" if last.text else ""
+    return " ".join(filter(None, (f"{last.error}{place}{text}".rstrip(".") + ".", advice_on(last, sources))))
 
 
 def of_exit(exit_: ExitStatus, log: str, sources: Mapping[str, str]) -> tuple[str, int | None]:
@@ -63,10 +63,7 @@ def of_exit(exit_: ExitStatus, log: str, sources: Mapping[str, str]) -> tuple[st
         return f"{LIMITS.get(exit_.limit, exit_.limit)}.", None
     last = last_error(log, sources)
     if last and last.error:
-        advice = _advice(last)
-        place = f" in {last.place}" if last.place else ""
-        text = f": {last.text}" if last.text else ""
-        return f"{last.error}{place}{text}{advice}", last.line
+        return described(last, sources), last.line
     if exit_.signal:
         return _of_signal(exit_.signal, log), None
     if exit_.code == 0:
@@ -90,6 +87,21 @@ def cut_short(student: RunningProgram, sources: Mapping[str, str], met: bool, wh
             why = "it came to its end and created no node that spins. Is main() called, and does it call rclpy.spin()?"
         return Ending("did-not-start", f"Your program did not start: {why}", line)
     return Ending("crashed", f"Your program ended {when}: {why}", line)
+
+
+#: rclpy's log line for an exception in an execute callback.
+_IN_EXECUTE = re.compile(r"Error raised in execute callback: (.*?)(?:, at \S+:\d+)?$", re.MULTILINE)
+
+
+def survived_by(log: str, sources: Mapping[str, str]) -> str:
+    """Return what went wrong in a program that still runs, for the student: the first exception in its log, or what it
+    replaced in its node; "" if nothing is known.
+    """
+    error = first_error(log, sources)
+    if error:
+        return f"Your program raised an exception: {described(error, sources)}"
+    match = _IN_EXECUTE.search(log)
+    return f"Your execute callback raised an exception: {match[1]}." if match else silently_replaced(sources)
 
 
 _ALLOWANCE = Allowance("", "", MAY_TAKE_S, MAY_TAKE_S)

@@ -20,7 +20,7 @@ from grader.runner.budget import Allowance, Budget, ProgramExited
 from grader.runner.grader_side import Clocks, GraderSide, clock_message, nanoseconds
 from grader.runner.graph import end_points, nodes
 from grader.runner.program import CannotContinue, RunningProgram, Task
-from grader.runner.program_end import cut_short, interrupted, message_of_violation
+from grader.runner.program_end import cut_short, interrupted, message_of_violation, survived_by
 from grader.runner.publishers import OFFER, ReferencePublishers
 from grader.runner.readiness import START as STARTING
 from grader.runner.readiness import Parameters, wait_until_up
@@ -168,9 +168,11 @@ class ScenarioRun:
             else:
                 self._lockstep()
             self._lockstep_seconds = time.monotonic() - began
+            survived = survived_by(self._student.output().text, sources)
+            ending = Ending("completed")
             if task.scenario.interrupt:
-                return interrupted(self._hub, self._budget, self._student, sources)
-            return Ending("completed")
+                ending = interrupted(self._hub, self._budget, self._student, sources)
+            return replace(ending, survived=survived)
         except CannotContinue as stopped:
             return Ending(stopped.outcome, stopped.message)
         except Violation as violation:

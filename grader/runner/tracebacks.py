@@ -66,6 +66,22 @@ def last_error(log: str, sources: Mapping[str, str]) -> LastError | None:
     return LastError(error, line, row, frames[-1:] == [(file, line)], block, file, _place(file, line, sources))
 
 
+#: What stands between the tracebacks of one error and of the error that led to it.
+_CHAINED = ("During handling of the above exception", "The above exception was the direct cause")
+
+
+def first_error(log: str, sources: Mapping[str, str]) -> LastError | None:
+    """Return the first error in `log` that a line of the student's raised or led to; None if there is none."""
+    parts = log.split(HEADER)
+    for number, part in enumerate(parts[1:], start=1):
+        if any(words in part for words in _CHAINED) and number < len(parts) - 1:
+            continue
+        error = last_error(HEADER + part, sources)
+        if error and error.error and error.line:
+            return error
+    return None
+
+
 def _own(path: str, sources: Mapping[str, str]) -> str:
     """Return which of the student's files a path means; "" if none."""
     parts = path.rsplit("/", _DEEPEST)

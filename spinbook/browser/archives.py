@@ -106,6 +106,7 @@ def check_archive(exercises: Mapping[str, bytes]) -> bytes:
     root = Path(spinbook.__file__).parent.parent / "grader"
     for part in _GRADER:
         files |= _part(root / part, f"grader/{part}")
+    files["grader/checking/hints.md"] = (root / "checking" / "hints.md").read_bytes()
     # A page has no sandbox: leave out reader.py, which needs one, and the imports of the package itself.
     del files["grader/submission/reader.py"]
     files["grader/submission/__init__.py"] = b""

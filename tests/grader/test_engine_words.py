@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
+from grader.checking.ending_message import message_of
 from grader.exercise import ExerciseError, load
 from grader.exercise.writing import to_toml
-from grader.grading.grade import message_of
 from grader.recording import Ending
 
 if sys.version_info >= (3, 11):

@@ -13,6 +13,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from grader.checking.ending_message import message_of
 from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load
@@ -43,7 +44,7 @@ def check(name: str, source: str) -> str:
     if exercise.programs or any(scenario.companions for scenario in scenarios):
         return json.dumps({"problem": _SEVERAL})
     recordings = record(exercise, scenarios, ProgramText(exercise.file_name, source))
-    return json.dumps(shown(verdicts(exercise, scenarios, recordings, references), recordings, hidden))
+    return json.dumps(shown(exercise, verdicts(exercise, scenarios, recordings, references), recordings, hidden))
 
 
 def read(name: str, file: str, content: memoryview) -> str:
@@ -131,16 +132,19 @@ def _forget_modules_of(folder: Path) -> None:
             del sys.modules[name]
 
 
-def shown(found: tuple[Verdict, ...], recordings: dict[str, Recording], hidden: dict[str, Any]) -> dict[str, Any]:
+def shown(
+    exercise: Exercise, found: tuple[Verdict, ...], recordings: dict[str, Recording], hidden: dict[str, Any]
+) -> dict[str, Any]:
     """Return the result in the page's form."""
     titles = {verdict.name: verdict.title for verdict in found}
     earned, points = sum(v.earned for v in found), sum(v.points for v in found)
     passed = sum(verdict.status == "passed" for verdict in found)
     broken = next((r for r in recordings.values() if r.ending.outcome != "completed"), None)
+    message = message_of(broken.ending, exercise) if broken else ""
     return {
         "total": f"{passed} of {len(found)} public checks, {earned:g} of {points:g} points",
         "full": passed == len(found),
-        "message": broken.ending.message if broken else "",
+        "message": message,
         "log": broken.log[-4000:] if broken else "",
         "hidden": hidden,
         "rows": [_row(verdict, titles) for verdict in found],

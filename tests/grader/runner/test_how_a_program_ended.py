@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from rclpy.node import Node
 
-from grader.runner.program_end import of_exit
+from grader.runner.node_attributes import PUBLIC
+from grader.runner.program_end import of_exit, survived_by
 from grader.sandbox.monitor import ProcessExit
 
 SOURCE = "import rclpy\nrclpy.spin(node)\n"
@@ -106,7 +108,7 @@ def test_the_advice_to_return_a_result_is_not_for_an_error_of_the_students_own()
     )
 
     assert "has to return a Result" in returned
-    assert raised == "RuntimeError: stuck in line 1: import rclpy"
+    assert raised == "RuntimeError: stuck in line 1: `import rclpy`."
 
 
 #: As rclpy 7.1.6 wrote them, shortened: while the program ends, rclpy's executor ends the goal that was under way.
@@ -164,3 +166,136 @@ def test_of_an_error_as_long_as_a_book_the_beginning_is_told() -> None:
     assert line == 3
     assert text.startswith("ValueError: 11111")
     assert len(text) < 1_000
+
+
+NODE = """\
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+class Turnstile(Node):
+    def __init__(self):
+        super().__init__('turnstile')
+        self.coins = 0
+        ActionServer(self, Push, '/push', self.execute)
+
+    def on_push(self, message):
+        self.coin += 1
+"""
+
+
+def raised(line: int, error: str, *frames: str) -> str:
+    """Return a traceback through this line of the node, and what it led to."""
+    row = NODE.splitlines()[line - 1].strip()
+    return (
+        f'Traceback (most recent call last):\n  File "turnstile.py", line {line}, in x\n    {row}\n'
+        + "".join(f"  {frame}\n" for frame in frames)
+        + f"{error}\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("log", "source", "advice"),
+    [
+        (
+            raised(7, "AttributeError: handle cannot be modified after node creation"),
+            NODE.replace("self.coins", "self.handle"),
+            "Every Node already has an attribute `handle`: the node's object in ROS's C library. Choose another name",
+        ),
+        (
+            raised(8, "AttributeError: property 'timers' of 'Turnstile' object has no setter"),
+            NODE.replace("self.coins", "self.timers"),
+            "Every Node already has an attribute `timers`: the list of its timers.",
+        ),
+        (
+            raised(
+                7,
+                "TypeError: 'method' object does not support the context manager protocol",
+                'File "rclpy/node.py", line 206, in __init__',
+                "  with self.handle:",
+            ),
+            NODE.replace("on_push", "handle"),
+            "Every Node already has an attribute `handle`",
+        ),
+        (
+            raised(8, "TypeError: 'NoneType' object does not support the context manager protocol").replace(
+                "self.coins = 0", "with rclpy.init():"
+            ),
+            NODE.replace("self.coins = 0", "with rclpy.init():"),
+            "This is ROS 2 Jazzy, in which rclpy.init() can't follow `with`, as in newer versions.",
+        ),
+        (
+            raised(12, "AttributeError: 'Turnstile' object has no attribute 'coin'"),
+            NODE,
+            "Your class has self.coins: is self.coin a misspelling?",
+        ),
+        (
+            raised(12, "AttributeError: 'Twist' object has no attribute 'speed'"),
+            NODE,
+            "The fields of a Twist are: linear, angular.",
+        ),
+        (
+            raised(
+                12, "TypeError", 'File "rclpy/action/server.py", line 133, in publish_feedback', "  raise TypeError()"
+            ),
+            NODE,
+            "publish_feedback() takes a whole message: Push.Feedback(…), with the value in its field.",
+        ),
+        (
+            raised(12, "AssertionError", 'File "rclpy/publisher.py", line 1, in f', "  assert isinstance(depth, int)"),
+            NODE,
+            "refused what it was given: `assert isinstance(depth, int)`.",
+        ),
+        (
+            raised(12, "AssertionError: The 'x' field must be of type 'float'"),
+            NODE,
+            "A float field needs a float: write 2.0 instead of 2, or float(value).",
+        ),
+        (
+            raised(12, "ImportError: Cannot load backend 'TkAgg', as 'headless' is currently running"),
+            NODE,
+            "A node that is graded has no screen.",
+        ),
+        (
+            raised(12, "TypeError: on_push() takes 1 positional argument but 2 were given"),
+            NODE,
+            "The arguments of a callback: self, and then the message for a subscription",
+        ),
+    ],
+)
+def test_advice_names_what_the_student_can_change(log: str, source: str, advice: str) -> None:
+    assert advice in of_exit(ProcessExit(1, None, None), log, {"turnstile.py": source})[0]
+
+
+def test_a_value_of_another_type_that_aborts_the_program_is_named() -> None:
+    log = "python: ./_push_s.c:153: a__action__push__result__convert_from_py: Assertion `PyFloat_Check(field)' failed."
+
+    text, _ = of_exit(ProcessExit(None, 6, None), log, {"turnstile.py": NODE})
+
+    assert text == (
+        "it put a value of another type into a message (push result): a float field of it needs a float: 2.0 instead "
+        "of 2, or float(value)."
+    )
+
+
+def test_the_first_exception_that_a_program_survives_is_said_with_its_type_line_and_source() -> None:
+    log = "[ERROR] [turnstile]: Error raised in execute callback: \n" + raised(
+        12, "ZeroDivisionError: division by zero"
+    )
+
+    assert survived_by(log + raised(8, "KeyError: 'x'"), {"turnstile.py": NODE}) == (
+        "Your program raised an exception: ZeroDivisionError: division by zero in line 12: `self.coin += 1`."
+    )
+
+
+def test_an_attribute_of_node_that_is_replaced_without_an_error_is_named() -> None:
+    assert survived_by("", {"turnstile.py": NODE}) == ""
+    assert survived_by("", {"turnstile.py": NODE.replace("self.coins", "self._timers")}).startswith(
+        "Your class sets self._timers, in which rclpy's Node keeps the list of its timers"
+    )
+
+
+def test_the_attributes_of_node_are_those_of_this_rclpy() -> None:
+    properties = {name for name in dir(Node) if isinstance(getattr(Node, name), property)}
+
+    assert set(PUBLIC) == properties

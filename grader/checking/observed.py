@@ -1,0 +1,130 @@
+"""What a whole run shows of the cause of a failure, whichever check notices the failure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from grader.checking.cause import UNKNOWN, Cause
+from grader.checking.hint_texts import hints
+from grader.exercise.exercise import Exercise, Topic
+from grader.recording.recording import Recording
+from ros_in_python.field_path import NoSuchField, field_of
+
+#: A float with this many units in its last place, at most, is what C finds if it takes a small Python int for a float:
+#: the int's size and sign (`lv_tag`, or `ob_size` before 3.12, in CPython's longintrepr.h).
+_TINY = 64 * 5e-324
+
+
+def observed(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    """Return the first cause that the run shows, in this order: an exception, messages that are never sent because a
+    lifecycle node is not active, ints in float fields, values without names, only zeros.
+    """
+    seers: tuple[Callable[[Exercise, Recording, Recording], Cause], ...] = (
+        _exception,
+        _lifecycle,
+        _int_as_float,
+        _without_names,
+        _only_zeros,
+    )
+    return next((cause for seer in seers if (cause := seer(exercise, recording, reference))), UNKNOWN)
+
+
+def _exception(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    ending = recording.ending
+    if ending.survived or ending.line:
+        return Cause(ending.survived, *hints("exception"))
+    return UNKNOWN if ending.outcome == "completed" else Cause("", *hints("ended"))
+
+
+def _lifecycle(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    ends = {end.topic for end in recording.end_points if end.kind == "publisher"}
+    node = next((node for node in recording.nodes if f"{node}/transition_event" in ends), "")
+    if not node or recording.received:
+        return UNKNOWN
+    return Cause(
+        f"{node} is a lifecycle node, and it was never configured and activated: until then, its publishers send "
+        "nothing.",
+        *hints("lifecycle"),
+    )
+
+
+def _int_as_float(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    for name, path, value in _numbers(recording):
+        if 0 < abs(value) <= _TINY:
+            field = path or "a field"
+            return Cause(
+                f"{field} on {name} is {value:.3g}, next to nothing: your node put an int into a float field.",
+                *hints("int_as_float", field=field),
+            )
+    return UNKNOWN
+
+
+def _numbers(recording: Recording) -> Iterator[tuple[str, str, float]]:
+    """Yield the topic, service or action, the field's path and the value of each float that the program sent."""
+    for message in recording.received:
+        yield from ((message.topic, *item) for item in _floats(message.fields))
+    for call in recording.calls:
+        fields = call.request if call.by == "node" else call.response
+        yield from ((call.service, *item) for item in _floats(fields))
+    for goal in recording.goals:
+        sent = [goal.goal] if goal.by == "node" else [goal.result, *(feedback.fields for feedback in goal.feedback)]
+        yield from ((goal.action, *item) for fields in sent for item in _floats(fields))
+
+
+def _floats(value: Any, path: str = "") -> Iterator[tuple[str, float]]:
+    if isinstance(value, float):
+        yield path, value
+    elif isinstance(value, Mapping):
+        for name, part in value.items():
+            yield from _floats(part, f"{path}.{name}" if path else str(name))
+    elif isinstance(value, (list, tuple)) and value and isinstance(value[0], Mapping):  # lists of numbers are converted
+        for part in value:
+            yield from _floats(part, path)
+
+
+def _without_names(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    for topic in exercise.outputs:
+        elements = topic.elements
+        if elements is None:
+            continue
+        for field in topic.units:
+            mine, its = (_lengths(run, topic, elements.named_by, field) for run in (recording, reference))
+            unnamed = any(values for _, values in mine) and not any(names for names, _ in mine)
+            if unnamed and any(names for names, _ in its):
+                return Cause(
+                    f"{elements.named_by} is empty in every message on {topic.name}: nobody can know which "
+                    f"{elements.called} each {field} belongs to.",
+                    *hints("without_names", names=elements.named_by, field=field, element=elements.called),
+                )
+    return UNKNOWN
+
+
+def _lengths(recording: Recording, topic: Topic, *fields: str) -> list[tuple[int, ...]]:
+    messages = [message.fields for message in recording.received if message.topic == topic.name]
+    try:
+        return [tuple(len(field_of(message, field)) for field in fields) for message in messages]
+    except (NoSuchField, TypeError):
+        return []
+
+
+def _only_zeros(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    for topic in exercise.outputs:
+        for field in topic.units:
+            mine, its = (_values(run, topic, field) for run in (recording, reference))
+            if len(mine) > 1 and not any(mine) and any(its):
+                seen = f"{field} is 0 in all {len(mine)} messages on {topic.name}."
+                return Cause(seen, *hints("only_zeros", field=field))
+    return UNKNOWN
+
+
+def _values(recording: Recording, topic: Topic, field: str) -> list[float]:
+    values: list[float] = []
+    for message in recording.received:
+        if message.topic == topic.name:
+            try:
+                value = field_of(message.fields, field)
+            except NoSuchField:
+                return []
+            values += value if isinstance(value, list) else [value]
+    return values

@@ -1,0 +1,160 @@
+"""Advice on an error that ended a program or a callback, if the error itself says little to a beginner.
+
+The texts of errors are those of rclpy 7.1 and of CPython 3.10 to 3.14.
+"""
+
+from __future__ import annotations
+
+import difflib
+import os
+import re
+from collections.abc import Callable, Mapping
+
+from grader.recording.types import message_class
+from grader.runner.node_attributes import advice_on_node_attribute
+from grader.runner.tracebacks import LastError
+
+_RESULT = "An action's execute callback has to return a Result, such as `return {action}.Result()`."
+
+_NO_SCREEN = (
+    "A node that is graded has no screen. Leave out windows and plots: %plot in a notebook draws what it sends."
+)
+
+#: Packages whose messages' fields are named. What a student's file imports is not imported otherwise.
+_PACKAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs", "turtlesim", "builtin_interfaces")
+
+#: What to do about an error, by a pattern of its last line.
+_BY_TEXT = (
+    (r"ParameterNotDeclaredException", "Declare it first, in __init__: self.declare_parameter(…)."),
+    (
+        r"InvalidParameterTypeException",
+        "A parameter has the type of its default: 1 declares an integer, 1.0 a double.",
+    ),
+    (
+        r"The '\w+' field must be of type 'float'",
+        "A float field needs a float: write 2.0 instead of 2, or float(value).",
+    ),
+    (r"The '(\w+)' field must be of type 'int'", "An integer field needs an integer: int(value) makes one."),
+    (
+        r"Expected <class '[\w.]*\.(\w+)'>, got <class '[\w.]+'>",
+        r"publish() takes a whole \1: create one, put the value into its field, and publish that.",
+    ),
+    (
+        r"with event CANCELED",
+        "canceled() is only for a goal with a request to cancel; call abort() to give up any other.",
+    ),
+    (r"no display|Cannot load backend|could not connect to display|No module named '_?tkinter'", _NO_SCREEN),
+    (
+        r"takes \d+ positional arguments? but \d+ (?:was|were) given|missing \d+ required positional argument",
+        "The arguments of a callback: self, and then the message for a subscription, nothing for a timer, the request "
+        "and the response for a service.",
+    ),
+    (
+        r"dictionary changed size during iteration|list modified during iteration",
+        "The line changes what the loop goes through: loop over list(…) of it.",
+    ),
+)
+
+
+def advice_on(last: LastError, sources: Mapping[str, str]) -> str:
+    """Return what to do about an error, in one to three sentences; "" if the error says enough."""
+    advisers: tuple[Callable[[LastError, Mapping[str, str]], str], ...] = (
+        _of_newer_ros,
+        advice_on_node_attribute,
+        _of_a_callback,
+        _of_an_attribute,
+        _by_text,
+        _without_text,
+    )
+    return next((advice for adviser in advisers if (advice := adviser(last, sources))), "")
+
+
+def result_advice(action: str) -> str:
+    """Return what an execute callback of this action has to return."""
+    return _RESULT.format(action=action)
+
+
+def _of_newer_ros(last: LastError, sources: Mapping[str, str]) -> str:
+    """Explain what newer distributions of ROS 2 have: `with rclpy.init()` and rclpy.experimental, since Kilted."""
+    here = f"This is ROS 2 {os.environ.get('ROS_DISTRO', 'jazzy').capitalize()}"
+    if "rclpy.init" in last.text and re.search(r"context manager protocol|__enter__", last.error):
+        return (
+            f"{here}, in which rclpy.init() can't follow `with`, as in newer versions. Write rclpy.init() on a line of "
+            "its own, and call rclpy.try_shutdown() at the end."
+        )
+    if "No module named 'rclpy.experimental" in last.error:
+        return f"{here}, which does not have it yet. Use an executor from rclpy.executors, or rclpy.spin(node)."
+    return ""
+
+
+def _of_a_callback(last: LastError, sources: Mapping[str, str]) -> str:
+    """Explain an error that rclpy raises far from the line which caused it."""
+    error, block = last.error, last.traceback
+    if error.startswith("TypeError") and ", in send_response" in block:
+        return "A service's callback has to return the response: end each way through it with `return response`."
+    if not last.raised_there and ", in publish_feedback" in block:
+        return f"publish_feedback() takes a whole message: {_action(sources)}.Feedback(…), with the value in its field."
+    if not last.raised_there and (", in _execute_goal" in block or ", in _send_result_response" in block):
+        return "" if ", in await_or_execute" in block else result_advice(_action(sources))
+    if "await_or_execute(srv.callback" in block:
+        return "An exception in a callback ends the whole node: say in the response what is wrong, and return it."
+    return ""
+
+
+def _action(sources: Mapping[str, str]) -> str:
+    """Return the name of the action's class in the student's files."""
+    match = re.search(r"ActionServer\(\s*self,\s*(\w+)", "\n".join(sources.values()))
+    return match[1] if match else "Fibonacci"
+
+
+def _of_an_attribute(last: LastError, sources: Mapping[str, str]) -> str:
+    """Explain a name that an object does not have, by the names that it has."""
+    match = re.search(r"AttributeError: '(\w+)' object has no attribute '(\w+)'", last.error)
+    if not match:
+        return ""
+    fields = _fields(match[1], sources)
+    if fields:
+        return f"The fields of a {match[1]} are: {', '.join(fields)}."
+    if not re.search(rf"^\s*class {match[1]}\b", sources.get(last.file, ""), re.MULTILINE):
+        return ""
+    assigned = sorted(set(re.findall(r"\bself\.(\w+)\s*(?::[^=\n]+)?=(?!=)", sources[last.file])))
+    if match[2] in assigned:
+        return f"self.{match[2]} is set only later: set it in __init__, before anything can use it."
+    close = difflib.get_close_matches(match[2], assigned, n=1, cutoff=0.7)
+    return (
+        f"Your class has self.{close[0]}: is self.{match[2]} a misspelling?"
+        if close
+        else (f"No line of your class sets self.{match[2]}.")
+    )
+
+
+def _fields(name: str, sources: Mapping[str, str]) -> list[str]:
+    """Return the fields of the message class that the student's files import by this name; empty if there is none."""
+    pattern = rf"^\s*from ({'|'.join(_PACKAGES)})\.msg import [^\n]*\b{name}\b"
+    imported = re.search(pattern, "\n".join(sources.values()), re.MULTILINE)
+    try:
+        return list(message_class(f"{imported[1]}/msg/{name}").get_fields_and_field_types()) if imported else []
+    except (ImportError, AttributeError):
+        return []
+
+
+def _by_text(last: LastError, sources: Mapping[str, str]) -> str:
+    for pattern, advice in _BY_TEXT:
+        if match := re.search(pattern, last.error):
+            return match.expand(advice) if match.groups() else advice
+    return ""
+
+
+def _without_text(last: LastError, sources: Mapping[str, str]) -> str:
+    """Say what a library expected whose error has a type and no text."""
+    row = last.traceback.splitlines()[-2].strip() if last.traceback.count("\n") > 1 else ""
+    if last.raised_there or not last.line or not re.fullmatch(r"[\w.]+:?", last.error):
+        return ""
+    return (
+        f"The library that this line calls refused what it was given: `{row}`."
+        if row.startswith("assert ")
+        else (
+            "The library that this line calls refused what it was given: compare the types of the arguments with the "
+            "chapter."
+        )
+    )

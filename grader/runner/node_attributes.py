@@ -1,0 +1,80 @@
+"""Recognizes a program that replaces an attribute of rclpy's Node by one of its own with the same name."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Mapping
+
+from grader.runner.tracebacks import LastError
+from grader.submission.python_code import tree_of
+
+#: The attributes of a Node that a program can't replace, and what each one is (rclpy 7.1, `rclpy.node.Node`).
+PUBLIC = {
+    "handle": "the node's object in ROS's C library",
+    "publishers": "the list of its publishers",
+    "subscriptions": "the list of its subscriptions",
+    "clients": "the list of its service clients",
+    "services": "the list of its services",
+    "timers": "the list of its timers",
+    "guards": "the list of its guard conditions",
+    "waitables": "the list of everything else that it waits for, such as action servers",
+    "executor": "the executor that runs its callbacks",
+    "context": "the context in which rclpy.init() was called",
+    "default_callback_group": "the callback group of its callbacks",
+}
+
+#: Attributes that it can replace, and then the node stops working without any error.
+PRIVATE = {
+    "_publishers": "the list of its publishers",
+    "_subscriptions": "the list of its subscriptions",
+    "_clients": "the list of its service clients",
+    "_services": "the list of its services",
+    "_timers": "the list of its timers",
+    "_parameters": "its parameters",
+    "_context": "its context",
+    "_clock": "its clock",
+    "_logger": "its logger",
+}
+
+_CHOOSE = "Choose another name, such as `my_{name}`."
+
+
+def advice_on_node_attribute(last: LastError, sources: Mapping[str, str]) -> str:
+    """Return which attribute of Node the program replaces, if that is the cause of its last error; "" otherwise."""
+    if not last.error.startswith(("AttributeError", "TypeError")):
+        return ""
+    told = f"{last.error}\n{last.text}\n" + "\n".join(last.traceback.splitlines()[-3:])
+    for name, what in {**PUBLIC, **PRIVATE}.items():
+        if re.search(rf"\b{name}\b", told) and _is_replaced(name, sources):
+            return f"Every Node already has an attribute `{name}`: {what}. {_CHOOSE.format(name=name.lstrip('_'))}"
+    return ""
+
+
+def silently_replaced(sources: Mapping[str, str]) -> str:
+    """Return which attribute of Node a program replaces without any error, in two sentences; "" if none."""
+    for name, what in PRIVATE.items():
+        if name not in ("_clock", "_logger") and _is_replaced(name, sources):
+            text = f"Your class sets self.{name}, in which rclpy's Node keeps {what}: the node loses them."
+            return f"{text} {_CHOOSE.format(name=name.lstrip('_'))}"
+    return ""
+
+
+def _is_replaced(name: str, sources: Mapping[str, str]) -> bool:
+    return any(name in _replaced(source) for source in sources.values())
+
+
+def _replaced(source: str) -> Iterator[str]:
+    """Yield the names that classes of a program define as methods or attributes, or set as `self.NAME`."""
+    tree = tree_of(source)
+    if tree is None:
+        return
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ClassDef):
+            yield from (item.name for item in node.body if isinstance(item, (ast.FunctionDef, ast.AsyncFunctionDef)))
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        for target in targets:
+            if isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name) and target.value.id == "self":
+                yield target.attr
+            elif isinstance(target, ast.Name):
+                yield target.id

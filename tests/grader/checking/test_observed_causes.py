@@ -1,0 +1,87 @@
+"""What a whole run shows of the cause of a failure: it comes first, whichever check notices the failure."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from made_up import EMPTY, ENDS, EXERCISE, FLOAT, finding, ns, published, run
+
+from grader.checking import observed
+from grader.checking.hint_texts import texts
+from grader.exercise.exercise import Elements, Topic
+from grader.recording import Ending, Endpoint, ReceivedMessage, Recording
+
+RIGHT = published((0.1, 0.2, 0.3), (1.0, 2.0, 3.0))
+
+
+def fails(recording: Recording) -> Any:
+    """Return the finding of a check of values."""
+    return finding(lambda: run(recording, RIGHT).must_match_series("data"))
+
+
+def test_an_exception_comes_before_what_follows_from_it() -> None:
+    raised = "Your program raised an exception: KeyError: 'x' in line 3."
+    mine = replace(published((), ()), ending=Ending("completed", survived=raised))
+
+    found = fails(mine)
+
+    assert found.text.endswith(f"never published anything. {raised}")
+    assert found.cause == raised
+    assert found.where.startswith("The message names the line of your file.")
+
+
+def test_an_int_in_a_float_field_is_recognized_by_the_number_that_arrives() -> None:
+    found = fails(published((0.1, 0.2, 0.3), (5e-324, 1e-323, 1.5e-323)))
+
+    assert "data on /out is 4.94e-324, next to nothing: your node put an int into a float field." in found.text
+    assert "Write 1.0 instead of 1" in found.todo
+    assert "int" not in fails(published((0.1, 0.2, 0.3), (1e-300, 2e-300, 3e-300))).text
+
+
+def test_a_lifecycle_node_that_nobody_configured_is_named() -> None:
+    events = Endpoint("/worker", "publisher", "/worker/transition_event", FLOAT, "reliable", "volatile")
+
+    found = fails(replace(EMPTY, end_points=(*ENDS, events)))
+
+    assert "/worker is a lifecycle node, and it was never configured and activated" in found.text
+
+
+def test_values_without_names_are_not_called_missing() -> None:
+    out = Topic("/out", FLOAT, "publish", units={"speed": "m/s"}, elements=Elements("wheel", "name"))
+    exercise = replace(EXERCISE, topics=(EXERCISE.topics[0], out))
+
+    def robot(names: list[str]) -> Recording:
+        fields = {"name": names, "speed": [1.0, 2.0]}
+        return replace(EMPTY, received=(ReceivedMessage(ns(0.1), 0, "/out", FLOAT, fields),))
+
+    found = finding(lambda: run(robot([]), robot(["left", "right"]), exercise).must_match_series("name"))
+
+    assert found.cause == ("name is empty in every message on /out: nobody can know which wheel each speed belongs to.")
+
+
+def test_numbers_that_are_all_zero_are_named() -> None:
+    assert fails(published((0.1, 0.2, 0.3), (0.0, 0.0, 0.0))).cause == "data is 0 in all 3 messages on /out."
+
+
+def test_messages_at_one_moment_have_no_rate() -> None:
+    mine = run(published((0.1, 0.1, 0.1), (1.0, 2.0, 3.0)), RIGHT)
+
+    found = finding(lambda: mine.must_keep_rate(10.0))
+
+    assert found.text == (
+        "At 0.10 s (as usual): all 3 messages on /out were published at one moment, 10 per second were expected. "
+        "No time passed between them."
+    )
+
+
+def test_every_hint_is_used_and_filled_in_and_not_longer_than_a_student_reads() -> None:
+    sources = "".join(file.read_text(encoding="utf-8") for file in Path(observed.__file__).parent.glob("*.py"))
+
+    assert set(re.findall(r'hints\(\s*"(\w+)"', sources)) == set(texts())
+    for name, (where, todo) in texts().items():
+        assert where.endswith(("?", ".")), name
+        assert todo.endswith(("?", ".")), name
+        assert 30 <= len(f"{where} {todo}".split()) <= 160, name
