@@ -16,7 +16,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # A sourced ROS 2 brings pytest plugins that do not load with a current pytest: only those named here are.
 PYTEST := PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BIN)/pytest -p pytest_timeout -p xdist.plugin -p _hypothesis_pytestplugin
 
-.PHONY: help setup course class test soak audit doctor rmw-wheel lock clean
+.PHONY: help setup course class test soak audit doctor wheel lock clean
 
 help:    ## List what can be made.
 	@sed -nE 's/^([a-z-]+):.*##/\1\t/p' Makefile | expand -t 10
@@ -57,8 +57,11 @@ audit: setup   ## Show what every exercise's checks are worth; the report is in 
 doctor: setup   ## Say what works on this machine, and how to fix what does not.
 	$(BIN)/spinbook doctor
 
-rmw-wheel: setup   ## Write a wheel of the compiled middleware into build/, for machines without a C++ compiler.
-	@$(BIN)/python -m rmw_lockstep.wheel build
+wheel: setup   ## Write wheels of Spinbook, its middleware and the interfaces into build/wheels: nothing to compile elsewhere.
+	@rm -rf build/wheels build/lib build/bdist.*
+	@$(BIN)/python -m pip --disable-pip-version-check wheel --quiet --no-deps --no-build-isolation --wheel-dir build/wheels .
+	@rm -rf build/lib build/bdist.*
+	@$(BIN)/python -m grader.wheels build/wheels
 
 lock:    ## Pin the newest versions of every dependency (needs uv).
 	sh lock.sh

@@ -17,10 +17,10 @@ import click
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import COURSE, NoExercise, find, load
 from grader.grading.reference import solution_file
+from grader.sandbox.middleware import MiddlewareUnavailable
 from grader.sandbox.program import Isolation
-from interface_compiler import activation
-from interface_compiler.prefix_builder import DEFINITIONS
-from interface_compiler.wheel import record, zipped
+from grader.wheels import compiled_wheels
+from interface_compiler.wheel_file import record, zipped
 
 #: The root of this software's source: the folder with pyproject.toml.
 SOURCE = Path(__file__).parents[2]
@@ -38,7 +38,7 @@ DATE = (1980, 1, 1, 0, 0, 0)
 
 
 class NoSource(Exception):
-    """Raised if neither a checkout nor an installed wheel says what the container must install."""
+    """Raised if there is neither a checkout nor a wheel of what the container must install."""
 
 
 def bundle(exercise: Exercise, isolation: Isolation | None = None) -> bytes:
@@ -61,7 +61,8 @@ def autograder_files(exercise: Exercise, isolation: Isolation | None = None) -> 
         name: (_script(script, exercise, isolation).encode(), 0o755)
         for name, script in (("setup.sh", "setup.sh"), ("run_autograder", "run_autograder.sh"))
     }
-    for name, content in (_source() if (SOURCE / "pyproject.toml").exists() else _installed()).items():
+    software = _source() if (SOURCE / "pyproject.toml").exists() else _installed()
+    for name, content in {**software, **_compiled()}.items():
         files[f"course/{name}"] = (content, 0o644)
     for name, file in _files(exercise):
         files[f"course/{name}"] = (file.read_bytes(), 0o644)
@@ -86,6 +87,14 @@ def _installed() -> dict[str, bytes]:
     return {name: content, "pins.txt": "".join(f"{pin}\n" for pin in pins()).encode()}
 
 
+def _compiled() -> dict[str, bytes]:
+    """Return the wheels of what is compiled: they fit every container that PyPI's ROS 2 fits."""
+    try:
+        return {f"wheels/{name}": content for name, content in compiled_wheels().items()}
+    except MiddlewareUnavailable as error:
+        raise NoSource(str(error)) from None
+
+
 def _script(file: str, exercise: Exercise, isolation: Isolation | None) -> str:
     text = Path(__file__).with_name(file).read_text(encoding="utf-8")
     level = shlex.quote(isolation.value) if isolation else ""
@@ -97,13 +106,9 @@ def _files(exercise: Exercise) -> Iterator[tuple[str, Path]]:
     for file in _within(exercise.folder):
         yield f"exercises/{exercise.name}/{file.relative_to(exercise.folder)}", file
     yield f"solutions/{exercise.name}/solution.py", solution_file(exercise)
-    # The course's own messages, which the container compiles for its own Python.
     course = exercise.folder.parent.parent / COURSE
     if course.is_file():
         yield course.name, course
-    for prefix in activation.active():
-        for file in _within(prefix / DEFINITIONS):
-            yield f"interfaces/{file.relative_to(prefix / DEFINITIONS)}", file
 
 
 def _within(folder: Path) -> list[Path]:

@@ -8,9 +8,6 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 missing=()
 python3 -c 'import ensurepip, venv' 2>/dev/null || missing+=(python3 python3-venv)
 command -v bwrap >/dev/null || missing+=(bubblewrap)
-command -v g++ >/dev/null || missing+=(g++)
-python3 -c 'import os, sys, sysconfig; sys.exit(not os.path.exists(sysconfig.get_path("include") + "/Python.h"))' ||
-    missing+=(python3-dev)
 if [ "${#missing[@]}" -gt 0 ]; then
     as_root=
     if [ "$(id -u)" != 0 ]; then as_root="sudo -n"; fi
@@ -19,7 +16,8 @@ if [ "${#missing[@]}" -gt 0 ]; then
 fi
 
 # Install a wheel with the versions that it ran with, or a checkout with the pinned ones. Hashes are left out, because
-# pip would then require one for everything, and a folder has none.
+# pip would then require one for everything, and a folder has none. The other wheels are what would have to be compiled:
+# the grader's middleware, the course's interfaces, and those that PyPI lacks.
 software=$(ls "$here"/course/spinbook-*.whl 2>/dev/null || echo "$here/course")
 if [ -f "$here/course/pins.txt" ]; then
     cp "$here/course/pins.txt" "$here/pins.txt"
@@ -28,14 +26,8 @@ else
         sed -n 's/^\([A-Za-z0-9].*[^ \\]\) *\\$/\1/p' >"$here/pins.txt"
 fi
 python3 -m venv "$here/venv"
-"$here/venv/bin/python" -m pip install --quiet --disable-pip-version-check -c "$here/pins.txt" "$software[ros]"
-
-# The grader's own middleware.
-"$here/venv/bin/python" -m rmw_lockstep.build
-# What PyPI lacks, example_interfaces and turtlesim, and the course's own messages.
-interface_compiler() { "$here/venv/bin/python" -m interface_compiler "$@"; }
-{ interface_compiler && interface_compiler compile "$here/course/interfaces" "$here/course/build/interfaces"; } ||
-    echo "Some messages could not be compiled." >&2
+"$here/venv/bin/python" -m pip install --quiet --disable-pip-version-check -c "$here/pins.txt" \
+    "$software[ros]" "$here"/course/wheels/*.whl
 
 # Test that grading works here, and store what the solution publishes. Problems are in the build's output.
 "$here/venv/bin/python" -m grader.gradescope.run prepare "$here/course/exercises/$EXERCISE" $ISOLATION

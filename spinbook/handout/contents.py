@@ -15,17 +15,18 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
+from grader.wheels import middleware_wheel
 from grader.workers.jobs import ListJob
 from grader.workers.pool import HostFault, WorkerPool
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem
-from interface_compiler.wheel import zipped
+from interface_compiler.wheel_file import zipped
 from spinbook import __version__
 from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course, find_course
 from spinbook.handout.leaks import Secret, authors_code, located, secrets_of_all
 from spinbook.handout.student_copy import exercise_files, for_students
-from spinbook.handout.wheels import interface_wheels, requirement, spinbook_wheel
+from spinbook.handout.wheels import interface_wheels, package_of, requirement, spinbook_wheel
 from spinbook.interfaces.definitions import compile_course
 from spinbook.problem import SpinbookError
 from spinbook.update.handout import base_files
@@ -60,9 +61,9 @@ def guide_files(
     wheel: str,
     notebooks: list[str],
     exercises: list[Listing],
-    interfaces: list[str],
+    compiled: list[str],
 ) -> dict[str, bytes]:
-    """Return README.md and the files that install, by name. `interfaces` are names of compiled interfaces' wheels."""
+    """Return README.md and the files that install, by name. `compiled` are names of wheels of compiled code."""
     # Plain text and JSON, not HTML.
     environment = Environment(
         loader=PackageLoader("spinbook.handout", "template"),
@@ -80,7 +81,8 @@ def guide_files(
         "notebooks": notebooks,
         "exercises": exercises,
         "pins": _pins(distro),
-        "interfaces": [requirement(file) for file in interfaces],
+        "compiled": [requirement(file) for file in compiled],
+        "interfaces": any(package_of(file) for file in compiled),
         "version": __version__,
     }
     return {name: environment.get_template(template).render(values).encode() for name, template in _TEMPLATES.items()}
@@ -130,7 +132,7 @@ def handout(course: Course) -> Handout:
     known, names = secrets_of_all(every, taught)
     _prove(files, known + names)
     name, content = spinbook_wheel()
-    compiled = interface_wheels(course, files.values())
+    compiled = dict([middleware_wheel(), *interface_wheels(course, files.values()).items()])
     files[f"wheels/{name}"] = content
     files |= {f"wheels/{file}": data for file, data in compiled.items()}
     slug = re.sub(r"[^a-z0-9]+", "-", course.title.lower()).strip("-") or "course"

@@ -1,9 +1,11 @@
-"""Wheels for students: Spinbook without the parts for authors, and compiled interfaces."""
+"""Wheels for students: Spinbook without the parts for authors, its middleware, and compiled interfaces."""
 
 from __future__ import annotations
 
 import contextlib
 import io
+import platform
+import re
 import shutil
 import subprocess
 import sys
@@ -18,14 +20,12 @@ from groundwork.files import cached, write_if_changed
 from groundwork.problem import Problem
 from interface_compiler import prefixes, shipped
 from interface_compiler.checks import dependencies
-from interface_compiler.wheel import record, wheel, wheel_platform, zipped
+from interface_compiler.wheel import wheel
+from interface_compiler.wheel_file import record, zipped
 from spinbook.build.digest import digest, files_digest
 from spinbook.course.course import Course
 from spinbook.interfaces.definitions import FOLDER, collect, compile_course
 from spinbook.problem import SpinbookError
-
-# A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Recording installed projects").
-
 
 #: The templates of `spinbook new` contain solutions and hidden checks; courses may still use them.
 FOR_AUTHORS = ("spinbook/new/template/", "spinbook/new/kinds/")
@@ -130,16 +130,17 @@ def interface_wheels(course: Course, texts: Iterable[bytes], environment: Path =
     Raises:
         SpinbookError: if the course's interfaces have faults or can't be compiled.
     """
-    own = wheel_platform()
-    others = (path for path in sorted((course.root / OTHERS).glob("*.whl")) if not path.stem.endswith(own))
+    own = platform.machine()
+    others = (path for path in sorted((course.root / OTHERS).glob("*.whl")) if not path.stem.endswith(f"_{own}"))
     found = {path.name: path.read_bytes() for path in others}
     found.update(wheel(package, prefix) for package, prefix in _packages(course, b"".join(texts), environment))
     return found
 
 
 def package_of(wheel: str) -> str:
-    """Return the ROS package in a wheel of interfaces, from the wheel's file name."""
-    return wheel.partition("-")[0].removeprefix("compiled_interfaces_")
+    """Return the ROS package in a wheel of interfaces, from the wheel's file name; empty for other wheels."""
+    prefix, _, package = wheel.partition("-")[0].partition("compiled_interfaces_")
+    return "" if prefix else package
 
 
 def _packages(course: Course, text: bytes, environment: Path) -> Iterator[tuple[str, Path]]:
@@ -155,10 +156,15 @@ def _packages(course: Course, text: bytes, environment: Path) -> Iterator[tuple[
         yield from ((package, compiled.prefix) for package in compiled.packages)
 
 
+#: The platform in a wheel's name: the system, its oldest version, and the machine, such as manylinux_2_28_x86_64.
+_PLATFORM = re.compile(r"[a-z]+(?:_\d+_\d+)?_(?P<machine>\w+)")
+
+
 def requirement(file: str) -> str:
     """Return the line of requirements.txt for a wheel, with the machine and the Pythons that it was compiled for."""
-    version, abi, platform = file.removesuffix(".whl").split("-")[2:5]
-    machine = f'platform_machine == "{platform.partition("_")[2]}"'
-    if abi == "abi3":
+    version, abi, named = file.removesuffix(".whl").split("-")[2:5]
+    read = _PLATFORM.fullmatch(named)
+    machine = f'platform_machine == "{read["machine"] if read else named}"'
+    if abi in ("abi3", "none"):
         return f"./wheels/{file} ; {machine}"
     return f'./wheels/{file} ; python_version == "3.{version.removeprefix("cp3")}" and {machine}'

@@ -43,6 +43,8 @@ _CONVERTER_FLAGS = ("-include", str(_LIMITED_API), "-Werror=implicit-function-de
 #: `tp_name` is not in the limited API: the test in the generated code, which `is_named` of limited_api.h replaces.
 _TYPE_NAME = re.compile(r'strcmp\(field->ob_type->tp_name, ("[\w.]+")\) == 0')
 _TYPE_IS_NAMED = "assert(field->ob_type->tp_name != NULL);"
+#: Makes the library's own copies of std::string's functions, some of which older C++ libraries lack.
+_OWN_STRINGS = "#include <cstddef>\n#undef _GLIBCXX_EXTERN_TEMPLATE\n#define _GLIBCXX_EXTERN_TEMPLATE 0\n"
 _SYMBOL = re.compile(r"STRINGIFY\(ROSIDL_TYPESUPPORT_INTERFACE__(MESSAGE|SERVICE)_SYMBOL_NAME\((\w+), ([^)]*)\)\)")
 
 
@@ -136,7 +138,8 @@ def _each(folders: Iterable[Path], pattern: str) -> list[Path]:
 def _joined(unit: Path, sources: Sequence[Path]) -> list[Path]:
     if not sources:
         return []
-    unit.write_text("".join(f'#include "{source}"\n' for source in sources), encoding="utf-8")
+    includes = "".join(f'#include "{source}"\n' for source in sources)
+    unit.write_text((_OWN_STRINGS if unit.suffix == ".cpp" else "") + includes, encoding="utf-8")
     return [unit]
 
 

@@ -108,7 +108,7 @@ def test_one_wheel_fits_every_python_from_3_10_on(robot_interfaces: CompiledPack
         (module,) = (file for file in archive.namelist() if file.endswith(".so"))
         code = archive.read(module)
 
-    assert "-cp310-abi3-linux_" in name
+    assert "-cp310-abi3-manylinux_2_28_" in name
     assert module.endswith("_s__rosidl_typesupport_c.abi3.so")
     # Only the limited API's: functions of later versions, and what looks into Python's objects, are not called.
     called = {symbol.decode() for symbol in re.findall(rb"\0(_?Py[A-Za-z]\w+)(?=\0)", code)}

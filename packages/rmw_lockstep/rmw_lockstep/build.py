@@ -10,7 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -28,13 +28,18 @@ from rmw_lockstep.library import (
 )
 from rmw_lockstep.ros import Ros, installed_ros
 
-_COMPILE = ("-std=c++17", "-O2", "-fPIC", "-fvisibility=hidden", "-pthread", "-Wall", "-Wextra", "-c")
-_LINK = ("-shared", "-s", "-pthread", "-Wl,-z,defs")
+_COMPILE = (
+    *("-std=c++17", "-O2", "-fPIC", "-fvisibility=hidden", "-pthread", "-Wall", "-Wextra", "-c"),
+    *("-ffunction-sections", "-fdata-sections", "-include", str(SOURCES / "lockstep/older_libraries.hpp")),
+)
+_LINK = ("-shared", "-s", "-pthread", "-Wl,-z,defs", "-Wl,--gc-sections")
 
 #: liblockstep is loaded into every program. It includes its own C++ library, and exports only what the map lists.
+#: libpthread and libdl have the functions in `older_libraries.hpp` before glibc 2.34, and are empty afterwards.
 _ALONE = (
-    *("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL", "-ldl"),
+    *("-static-libstdc++", "-Wl,--exclude-libs,ALL"),
     f"-Wl,--version-script={SOURCES / 'lockstep/exports.map'}",
+    *("-Wl,--push-state,--no-as-needed", "-l:libpthread.so.0", "-l:libdl.so.2", "-Wl,--pop-state"),
 )
 
 _STUB = "libnothing.so"
@@ -45,15 +50,26 @@ _AT_ONCE = 2
 #: How many earlier sets of libraries to keep for programs that still use them.
 _KEPT_SETS = 3
 
-_NO_COMPILER = UnavailableLibrary("g++ is not installed", "Install it: sudo apt-get install g++")
+_NO_COMPILER = UnavailableLibrary(
+    "neither its wheel is installed, nor g++ to compile it",
+    "Install one of them: the wheel rmw_lockstep_prebuilt, or sudo apt-get install g++",
+)
 
 
 class BuildError(Exception):
     """Raised when the compiler or the linker fails; the text has its output."""
 
+    @property
+    def first(self) -> str:
+        """The first line that reports an error."""
+        lines = [line.strip() for line in str(self).splitlines()]
+        return next((line for line in lines if "error" in line.lower()), lines[0])
 
-def build() -> Library | UnavailableLibrary:
-    """Return the compiled middleware; compile it now if there is none yet (seconds, and about 300 MB of memory).
+
+def build(announce: Callable[[], None] = lambda: None) -> Library | UnavailableLibrary:
+    """Return the compiled middleware; compile it now if there is none yet (about 20 s, and 300 MB of memory).
+
+    Of several processes one compiles, and the others wait for it. `announce` is called before that.
 
     Raises:
         BuildError: if the compiler or the linker fails.
@@ -67,6 +83,7 @@ def build() -> Library | UnavailableLibrary:
     root = next((root for root in library_folders() if _writable(root)), None)
     if root is None:
         return UnavailableLibrary("no folder for it is writable", "Set HOME to a folder of your own.")
+    announce()
     with _build_lock(root):
         found = library()  # another process may have compiled it meanwhile
         return found if isinstance(found, Library) else Library(_compiled(ros, root), ros.prefix)

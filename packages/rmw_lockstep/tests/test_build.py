@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import platform
 import re
 import shutil
 import subprocess
 import sys
-import zipfile
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -17,7 +18,7 @@ import pytest
 import rmw_lockstep
 from rmw_lockstep import library as finding
 from rmw_lockstep.build import build
-from rmw_lockstep.library import PREBUILT, Library, UnavailableLibrary, library
+from rmw_lockstep.library import DESCRIPTION, PREBUILT, Library, UnavailableLibrary, library
 from rmw_lockstep.ros import installed_ros
 
 PACKAGE = Path(rmw_lockstep.__file__).parent
@@ -43,6 +44,7 @@ class Copy:
         (self.package / "src").mkdir()
         for file in PACKAGE.glob("*.*"):
             shutil.copy(file, self.package)
+        shutil.copy(PACKAGE / "lockstep" / "older_libraries.hpp", self.package / "lockstep")
         (self.package / "lockstep" / "a.cpp").write_text(LOCKSTEP)
         (self.package / "lockstep" / "exports.map").write_text("{ global: lockstep_*; local: *; };\n")
         (self.package / "src" / "b.cpp").write_text(RMW)
@@ -93,6 +95,21 @@ def test_compiles_once_and_again_when_a_source_has_changed(copy: Copy) -> None:
 
 
 @needs_compiler
+def test_of_two_at_once_one_compiles_and_the_other_waits(copy: Copy, tmp_path: Path) -> None:
+    log = tmp_path / "links"
+    compiler = tmp_path / "compiler"
+    compiler.write_text(f'#!/bin/sh\ncase "$*" in *soname,liblockstep*) echo >>{log};; esac\nexec g++ "$@"\n')
+    compiler.chmod(0o755)
+
+    with ThreadPoolExecutor() as pool:
+        results = list(pool.map(lambda _: copy.run("rmw_lockstep.build", CXX=str(compiler)), range(2)))
+
+    assert [result.returncode for result in results] == [0, 0]
+    assert results[0].stdout == results[1].stdout
+    assert log.read_text() == "\n", "it was linked once"
+
+
+@needs_compiler
 def test_the_library_for_the_wheels_has_the_name_that_they_are_linked_to(copy: Copy) -> None:
     copy.run("rmw_lockstep.build")
     (folder,) = copy.built()
@@ -104,6 +121,20 @@ def test_the_library_for_the_wheels_has_the_name_that_they_are_linked_to(copy: C
     assert "[librmw_fastrtps_cpp.so]" in names["wheels/librmw_fastrtps_cpp.so"]
     assert all("[liblockstep.so]" in dependencies for dependencies in names.values())
     assert "libstdc++" not in _dynamic(folder / "liblockstep.so")
+
+
+@needs_compiler
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="PyPI's ROS 2 is for x86_64")
+def test_the_libraries_run_wherever_the_ros_2_of_pypi_does() -> None:
+    found = build()
+    assert isinstance(found, Library)
+
+    for name in ("liblockstep.so", "librmw_lockstep_cpp.so", "wheels/librmw_fastrtps_cpp.so"):
+        called = subprocess.run(
+            ["readelf", "-V", found.folder / name], capture_output=True, text=True, check=True
+        ).stdout
+        assert max(int(minor) for minor in re.findall(r"\bGLIBC_2\.(\d+)", called)) <= 28, name
+        assert max([0, *map(int, re.findall(r"\bGLIBCXX_3\.4\.(\d+)", called))]) <= 24, name
 
 
 def _dynamic(file: Path) -> str:
@@ -127,7 +158,8 @@ def test_without_a_compiler_it_says_what_to_install(copy: Copy) -> None:
     said = copy.run("rmw_lockstep.build", CXX="no-such-compiler")
 
     assert said.returncode == 1
-    assert "g++ is not installed. Install it: sudo apt-get install g++" in said.stderr
+    assert "There is no middleware rmw_lockstep: neither its wheel is installed, nor g++ to compile it." in said.stderr
+    assert "Install one of them: the wheel rmw_lockstep_prebuilt, or sudo apt-get install g++" in said.stderr
 
 
 @needs_compiler
@@ -138,23 +170,20 @@ def test_what_was_compiled_is_found_without_the_compiler_too(copy: Copy) -> None
 
 
 @needs_compiler
-def test_the_wheel_is_found_where_it_is_installed_if_it_fits(copy: Copy, tmp_path: Path) -> None:
-    made = copy.run("rmw_lockstep.wheel", str(tmp_path / "dist"))
-    assert made.returncode == 0, made.stderr
-    wheel = Path(made.stdout.strip())
-    assert wheel.name.startswith("rmw_lockstep_prebuilt-")
-    assert "-py3-none-linux_" in wheel.name
-    with zipfile.ZipFile(wheel) as archive:
-        assert SOURCED or any("/wheels/libfastrtps.so." in name for name in archive.namelist())
-        archive.extractall(tmp_path)
+def test_a_prebuilt_package_is_used_where_it_is_installed_if_it_fits(copy: Copy, tmp_path: Path) -> None:
+    copy.run("rmw_lockstep.build")
+    (folder,) = copy.built()
+    prebuilt = tmp_path / PREBUILT
+    folder.rename(prebuilt)
+    (prebuilt / "__init__.py").touch()
 
-    assert copy.run("rmw_lockstep.build", CXX="no-such-compiler").stdout.strip() == str(tmp_path / PREBUILT)
+    assert copy.run("rmw_lockstep.build").stdout.strip() == str(prebuilt), "although there is a compiler"
+    assert copy.run("rmw_lockstep.build", CXX="no-such-compiler").stdout.strip() == str(prebuilt)
 
-    built = tmp_path / PREBUILT / "built.json"
-    described = json.loads(built.read_text())
+    described = json.loads((prebuilt / DESCRIPTION).read_text())
     described["ros"]["rmw"] = "6.1.0"
-    built.write_text(json.dumps(described))
-    assert "g++ is not installed" in copy.run("rmw_lockstep.build", CXX="no-such-compiler").stderr
+    (prebuilt / DESCRIPTION).write_text(json.dumps(described))
+    assert "neither its wheel is installed" in copy.run("rmw_lockstep.build", CXX="no-such-compiler").stderr
 
 
 @pytest.fixture

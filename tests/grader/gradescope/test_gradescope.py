@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import platform
 import shutil
 import stat
 import subprocess
@@ -24,7 +25,7 @@ from grader.exercise import load
 from grader.gradescope.command import bundle
 from grader.grading.grade import Adjustment
 from grader.report.as_json import gradescope_results as results
-from interface_compiler import activation
+from interface_compiler import activation, prefixes
 
 
 def test_public_checks_are_seen_at_once_and_hidden_ones_when_grades_are_published() -> None:
@@ -96,18 +97,31 @@ def test_the_zip_holds_the_two_scripts_and_of_the_solutions_only_one(autograder:
     assert solutions == ["solution.py"]
 
 
-def test_the_zip_holds_what_compiles_messages_and_the_courses_own_definitions(
+def test_the_zip_holds_wheels_of_all_that_would_have_to_be_compiled(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    definition = tmp_path / "prefix" / "definitions" / "arm_msgs" / "msg" / "Joint.msg"
-    definition.parent.mkdir(parents=True)
-    definition.write_text("string name\n")
-    monkeypatch.setenv(activation.VARIABLE, str(tmp_path / "prefix"))
+    compiled_package("arm_msgs", tmp_path)
+    monkeypatch.setenv(activation.VARIABLE, str(tmp_path))
     with zipfile.ZipFile(BytesIO(bundle(load(TEMPLATE / "exercises" / EXERCISE)))) as archive:
         names = archive.namelist()
-    assert "course/interfaces/arm_msgs/msg/Joint.msg" in names
-    assert "course/packages/interface_compiler/interface_compiler/definitions/standard/turtlesim.txt" in names
+    wheels = {name.partition("-")[0]: name for name in names if name.startswith("course/wheels/")}
+    interfaces = {
+        f"course/wheels/compiled_interfaces_{name}" for name in ("arm_msgs", "example_interfaces", "turtlesim")
+    }
+    assert {"course/wheels/rmw_lockstep_prebuilt", *interfaces} <= set(wheels)
+    assert all(name.endswith(f"-manylinux_2_28_{platform.machine()}.whl") for name in wheels.values())
     assert "course/course.toml" in names
+
+
+def compiled_package(name: str, prefix: Path) -> None:
+    """Write what tells a compiled package from others, and its Python package."""
+    for file in (
+        f"share/{name}/{prefixes.KEY}",
+        f"{prefixes.RESOURCES}/packages/{name}",
+        f"{prefixes.PYTHON}/{name}/x.py",
+    ):
+        (prefix / file).parent.mkdir(parents=True, exist_ok=True)
+        (prefix / file).write_text("1\n")
 
 
 def test_the_same_content_makes_the_same_zip() -> None:
@@ -171,8 +185,7 @@ def test_an_installed_wheel_makes_the_autograder_with_itself_and_its_versions_in
     assert done.returncode == 0, done.stderr
     with zipfile.ZipFile(tmp_path / "a.zip") as archive:
         names = archive.namelist()
-        [wheel] = [name for name in names if name.endswith(".whl")]
-        assert wheel == "course/spinbook-0.1.0-py3-none-any.whl"
+        wheel = "course/spinbook-0.1.0-py3-none-any.whl"
         with zipfile.ZipFile(BytesIO(archive.read(wheel))) as inner:
             packed = set(inner.namelist())
             assert inner.testzip() is None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import io
 import json
+import platform
 import re
 import shutil
 import sys
@@ -21,7 +22,7 @@ import spinbook
 from grader.exercise import load
 from grader.exercise.mistakes import Mistake, mistake_of, mistakes_of
 from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
-from interface_compiler.wheel import zipped
+from interface_compiler.wheel_file import zipped
 from spinbook.handout.leaks import Secret, hidden_names, leaks, secrets
 from spinbook.handout.student_copy import for_students
 from spinbook.handout.wheels import spinbook_wheel
@@ -140,8 +141,10 @@ def test_the_means_to_install_are_there_and_can_be_read(real: HandedOut) -> None
         "## Step 3: do the exercises, check, hand in",
     ]
     wheel = next((real.folder / "wheels").glob("spinbook-*.whl"))
-    turtlesim = next((real.folder / "wheels").glob("compiled_interfaces_turtlesim-*.whl"))
-    assert f"./wheels/{turtlesim.name} ; platform_machine" in (real.folder / "requirements.txt").read_text()
+    for compiled in ("compiled_interfaces_turtlesim", "rmw_lockstep_prebuilt"):
+        [file] = (real.folder / "wheels").glob(f"{compiled}-*.whl")
+        line = f'./wheels/{file.name} ; platform_machine == "{platform.machine()}"'
+        assert line in (real.folder / "requirements.txt").read_text().splitlines()
     assert f"./wheels/{wheel.name}[ros,colcon,lab]" in (real.folder / "requirements.txt").read_text().splitlines()
     conda = yaml.safe_load((real.folder / "environment.yml").read_text())
     assert conda["channels"] == ["robostack-jazzy", "conda-forge"]
