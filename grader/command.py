@@ -10,7 +10,6 @@ import click
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
-from grader.sandbox.middleware import to_be_compiled
 from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.submission.file_kinds import kind_of
 from grader.submission.reader import NoSubmission, Submission, is_one, of_source, read
@@ -149,8 +148,6 @@ def grade(
         "pace": 1.0 if real_time else None,
     }
     try:
-        if to_be_compiled():
-            click.echo("Compiling the grader's middleware, once ...", err=True)
         loaded = load(_folder(exercise))
         if out and not mistake:
             _refuse_a_single_program(submission)

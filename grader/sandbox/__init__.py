@@ -8,7 +8,7 @@ with server.start(ProgramSpec("node.py", {"node.py": source}, hub=socket), isola
 
 from grader.sandbox.fork_server import ForkServer, SandboxedProgram
 from grader.sandbox.isolation import available, choose
-from grader.sandbox.middleware import MiddlewareUnavailable, require_middleware, to_be_compiled
+from grader.sandbox.middleware import MiddlewareUnavailable, require_middleware
 from grader.sandbox.monitor import ProcessExit, ProgramOutput
 from grader.sandbox.program import Isolation, Limits, ProgramSpec, SandboxError, SandboxUnavailable
 
@@ -26,5 +26,4 @@ __all__ = [
     "available",
     "choose",
     "require_middleware",
-    "to_be_compiled",
 ]

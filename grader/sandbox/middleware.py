@@ -7,12 +7,12 @@ import ctypes
 import importlib
 import inspect
 import os
-from collections.abc import Mapping
-from functools import cache
+import sys
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from grader.sandbox.program import SandboxUnavailable
-from rmw_lockstep.library import Library, UnavailableLibrary, compiler, library
+from rmw_lockstep.library import Library, UnavailableLibrary, library
 from rmw_lockstep.ros import installed_ros
 
 
@@ -20,9 +20,12 @@ class MiddlewareUnavailable(SandboxUnavailable):
     """Raised if the grader's middleware is not available on this machine."""
 
 
-@cache
-def require_middleware() -> None:
-    """Make sure that the grader's middleware is available. The first call compiles it if necessary.
+def _on_stderr(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def require_middleware(announce: Callable[[str], None] = _on_stderr) -> None:
+    """Make sure that the grader's middleware is available. Compile it if this machine has none, and `announce` that.
 
     Raises:
         MiddlewareUnavailable: if it is neither installed nor can be compiled here.
@@ -30,16 +33,14 @@ def require_middleware() -> None:
     from rmw_lockstep.build import BuildError, build  # the processes that become students must not compile
 
     try:
-        built = build()
+        built = build(lambda: announce("Compiling the grader's middleware, once: about 20 s ..."))
     except BuildError as error:
-        raise MiddlewareUnavailable(f"The grader's middleware could not be compiled. {error}") from None
+        raise MiddlewareUnavailable(
+            f"The grader's middleware could not be compiled: {error.first}. For the compiler's full output, run "
+            f"{sys.executable} -m rmw_lockstep.build"
+        ) from None
     if isinstance(built, UnavailableLibrary):
         raise MiddlewareUnavailable(f"The grader's middleware is missing: {built.reason}. {built.remedy}")
-
-
-def to_be_compiled() -> bool:
-    """Return whether `require_middleware` will compile it, which takes seconds."""
-    return isinstance(library(), UnavailableLibrary) and installed_ros() is not None and compiler() is not None
 
 
 def variables(of: Mapping[str, str]) -> dict[str, str]:

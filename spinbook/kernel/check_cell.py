@@ -16,6 +16,7 @@ from IPython.display import display
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
+from grader.sandbox.middleware import MiddlewareUnavailable, require_middleware
 from grader.submission.code import Code, as_text, code_of_notebook
 from grader.submission.notebook import RECORD, Notebook, NotebookCell, read_notebook
 from grader.submission.problems import AmbiguousProgram, Unreadable
@@ -189,9 +190,20 @@ def check_cell(session: Session, shell: Any, name: str, course: str, seconds: fl
     exercise = exercise_of(name, course, notebook)
     result = code_of(exercise, session, shell, notebook)
     print(result.note("Checked", f"%check {exercise.name}"))
+    _prepare()
     # Saved with the notebook: the record says which of several cells counts.
     record = {RECORD: {"exercise": exercise.name, "code": digest_of(result.code.source)}}
     display(checked(exercise.folder, result.code, seconds), metadata=record, raw=True)
+
+
+def _prepare() -> None:
+    """Compile the grader's middleware if this machine has none: not while the check's time runs. Raises CellFailed."""
+    try:
+        require_middleware(print)
+    except MiddlewareUnavailable as error:
+        raise CellFailed(f"This computer can't check programs, which is not your fault. {error}") from None
+    except KeyboardInterrupt:
+        raise CellFailed("The check was interrupted, so there is no result.") from None
 
 
 def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
@@ -219,6 +231,8 @@ def submit_cell(session: Session, shell: Any, name: str, course: str, student: s
     exercise = exercise_of(name, course, notebook)
     result = code_of(exercise, session, shell, notebook)
     print(result.note("Handed in", f"%submit {exercise.name}"))
+    with contextlib.suppress(MiddlewareUnavailable):  # the upload is then written without a self-check
+        require_middleware(print)
     with tempfile.TemporaryDirectory() as folder:
         for inside, content in result.code.files.items():
             file = Path(folder, exercise.name, inside)

@@ -18,6 +18,7 @@ from grader.exercise.starter import starter
 from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
 from grader.grading.reference import versions
+from grader.sandbox.program import SandboxUnavailable
 from grader.submission.file_kinds import can_be_read, kind_of
 from grader.submission.reader import NoSubmission, Submission, read
 from grader.submission.upload import pack
@@ -119,6 +120,8 @@ def self_check(exercise: Exercise, submission: Submission) -> SelfCheck:
         return SelfCheck(None, "It was interrupted.")
     except ExerciseError as error:
         return SelfCheck(None, f"The checks can't run here: {error.problem.problem} ({error.problem.file.name}).")
+    except SandboxUnavailable as error:
+        return SelfCheck(None, str(error))
     except Exception as error:
         return SelfCheck(None, f"{type(error).__name__}: {error}")
     if not grade.has_score:

@@ -14,6 +14,7 @@ from grader.exercise.exercise import ExerciseError
 from grader.exercise.loading import load
 from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
+from grader.sandbox.program import SandboxUnavailable
 from grader.submission.code import from_text
 from grader.submission.reader import of_code
 from grader.workers.pool import HostFault
@@ -34,7 +35,7 @@ def _checked(folder: Path, code: str) -> dict[str, str]:
         grade: Grade = grade_submission(exercise, of_code("your cell", from_text(code), exercise))
     except ExerciseError as error:
         return {"problem": f"The exercise is at fault, not your code.\n{error}"}
-    except HostFault as error:
+    except (HostFault, SandboxUnavailable) as error:
         return {"problem": f"The machine or the grader is at fault, not your code: {error}"}
     from spinbook.submit.self_check_view import as_html, as_text
 

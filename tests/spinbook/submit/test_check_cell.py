@@ -115,6 +115,56 @@ def checks_of(kernel: Kernel) -> list[psutil.Process]:
     ]
 
 
+#: In the kernel alone, no middleware is there, and what compiles it is this.
+NO_MIDDLEWARE = """
+from pathlib import Path
+from rmw_lockstep import build, library
+there, roots, compiling = library.library(), build.library_folders, build.compile_into
+library.library_folders = build.library_folders = lambda: iter([Path({folder!r})])
+
+def compile_into(folder, ros):
+    import shutil, time
+    {compiling}
+    shutil.copytree(there.folder, folder, symlinks=True, dirs_exist_ok=True)
+
+build.compile_into = compile_into
+"""
+AS_BEFORE = "library.library_folders = build.library_folders = roots; build.compile_into = compiling"
+
+
+def test_a_missing_middleware_is_compiled_before_the_checks_time_begins(kernel: Kernel, tmp_path: Path) -> None:
+    begun, go_on = tmp_path / "begun", tmp_path / "go-on"
+    waits = f"Path({str(begun)!r}).touch()\n    while not Path({str(go_on)!r}).exists(): time.sleep(0.05)"
+    kernel.run(NO_MIDDLEWARE.format(folder=str(tmp_path / "empty"), compiling=waits))
+    shown: list[Shown] = []
+    check = threading.Thread(target=lambda: shown.append(shown_of(kernel, solution())))
+    check.start()
+    wait_until(begun.exists)
+
+    assert checks_of(kernel) == []
+
+    go_on.touch()
+    check.join()
+    kernel.run(AS_BEFORE)
+    assert "Compiling the grader's middleware, once: about 20 s ...\n" in shown[0].text
+    assert f"{PUBLIC} of {PUBLIC} public checks" in texts(shown[0])[0]
+
+
+def test_a_middleware_that_can_not_be_compiled_is_one_sentence_and_no_verdict(kernel: Kernel, tmp_path: Path) -> None:
+    fails = 'raise build.BuildError("g++ ended with 1:\\nIn file a.cpp:\\na.cpp:7: error: no such thing\\nand so on")'
+    kernel.run(NO_MIDDLEWARE.format(folder=str(tmp_path / "empty"), compiling=fails))
+
+    shown = shown_of(kernel, solution())
+
+    kernel.run(AS_BEFORE)
+    assert shown.error.startswith(
+        "This computer can't check programs, which is not your fault. The grader's middleware could not be compiled: "
+        "a.cpp:7: error: no such thing. For the compiler's full output, run "
+    )
+    assert "\n" not in shown.error
+    assert shown.pictures == []
+
+
 def test_a_check_ends_with_its_bound_and_leaves_nothing_behind(kernel: Kernel) -> None:
     shown = shown_of(kernel, solution(), "%check joint_velocity --seconds 0.05")
 
