@@ -188,10 +188,10 @@ need_compiler() {
     install_system g++ || true
 }
 
-# The interfaces that PyPI lacks: example_interfaces and turtlesim. Without a compiler, all else works.
+# The interfaces that PyPI lacks: example_interfaces, tf2_msgs and turtlesim. Without a compiler, all else works.
 compile_interfaces() {
     if [ "$ros" != wheels ]; then return; fi
-    say "Compiling example_interfaces and turtlesim: about 20 seconds ..."
+    say "Compiling example_interfaces, tf2_msgs and turtlesim: about 20 seconds ..."
     code=0
     "$VENV/bin/python" -m interface_compiler >"$VENV/interfaces.txt" 2>&1 || code=$?
     if [ "$code" = 3 ]; then
@@ -203,7 +203,7 @@ compile_interfaces() {
     fi
     if [ "$code" = 0 ]; then return; fi
     interfaces=missing
-    say "$(cat "$VENV/interfaces.txt")" "Until then turtlesim and example_interfaces can't be used. All else works."
+    say "$(cat "$VENV/interfaces.txt")" "Until then example_interfaces, tf2_msgs and turtlesim can't be used. All else works."
 }
 
 mark() { printf '%s\npins %s\ninterfaces %s\n' "$wanted" "$pins" "$1"; }
@@ -237,6 +237,7 @@ else
     fi
     install_pins
     try_ros
+    "$VENV/bin/python" -m ros_in_python.path_file >>"$LOG" 2>&1 || give_up "tf2 and its kin could not be installed."
 fi
 compile_middleware anew
 compile_interfaces

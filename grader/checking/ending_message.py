@@ -10,7 +10,7 @@ from grader.recording.recording import Ending
 from grader.submission.python_version import newer_name
 
 #: What the sandbox has besides Python itself, as a student would import it.
-AVAILABLE = "rclpy, the standard ROS 2 messages (std_msgs, geometry_msgs, sensor_msgs and so on) and numpy"
+AVAILABLE = "rclpy, tf2, the standard ROS 2 messages (std_msgs, geometry_msgs, sensor_msgs and so on) and numpy"
 
 MISSING = re.compile(r"ModuleNotFoundError: No module named '([^']+)'")
 NO_NAME = re.compile(r"ImportError: cannot import name '([^']+)' from '([^']+)'")

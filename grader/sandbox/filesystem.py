@@ -13,6 +13,7 @@ from typing import Literal
 
 import groundwork
 import rmw_lockstep
+import ros_in_python
 from grader.sandbox.middleware import library_folder
 from grader.sandbox.program import HUB, SUBMISSION
 from interface_compiler import activation
@@ -174,7 +175,11 @@ def interpreter() -> tuple[Path, ...]:
     prefixes[Path(sys.executable).resolve().parents[1]] = None
     found = [prefix / part for prefix in prefixes for part in _PARTS if prefix != Path("/usr")]
     library = filter(None, (library_folder(),))
-    return tuple(path for path in (*found, *ros_prefixes(), *library, *activation.active()) if path.exists())
+    # tf2 and its kin: in a checkout, they are not among the environment's libraries.
+    importable = Path(ros_in_python.__file__).with_name("importable")
+    return tuple(
+        path for path in (*found, *ros_prefixes(), *library, importable, *activation.active()) if path.exists()
+    )
 
 
 def own_packages() -> tuple[Path, ...]:

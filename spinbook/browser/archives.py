@@ -55,7 +55,8 @@ def ros_archive() -> bytes:
     # The original module also imports code that looks for compiled libraries, which a page does not have.
     files["rosidl_generator_py/__init__.py"] = b"from .import_type_support_impl import import_type_support\n"
     files |= dict(_python_files(Path(rcl_python.__file__).parent, "rcl_python"))
-    files |= dict(_python_files(Path(ros_in_python.__file__).parent, "ros_in_python"))
+    for name, data in _python_files(Path(ros_in_python.__file__).parent, "ros_in_python"):
+        files[name.removeprefix("ros_in_python/importable/")] = data  # tf2 and its kin by their own names
     files |= dict(_python_files(Path(interface_compiler.__file__).parent, "interface_compiler"))  # `ros2` reads with it
     files["rmw_lockstep/type_hashes.json"] = json.dumps(_type_hashes(), sort_keys=True).encode()
     middleware = Path(rmw_lockstep.__file__).parent

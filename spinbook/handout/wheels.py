@@ -106,7 +106,8 @@ def _build(source: Path) -> bytes:
 def _installed() -> dict[str, bytes]:
     """Return the files of the installed Spinbook: for a package of pure Python, what was in its wheel."""
     distribution = metadata.distribution("spinbook")
-    kept = (*(f"{package}/" for package in _PACKAGES), f"spinbook-{spinbook.__version__}.dist-info/")
+    dist_info = f"spinbook-{spinbook.__version__}.dist-info/"
+    kept = (*(f"{package}/" for package in _PACKAGES), "ros_in_python.pth", dist_info)
     files = {}
     for file in distribution.files or ():
         name = file.as_posix()

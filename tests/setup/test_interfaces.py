@@ -1,4 +1,4 @@
-"""Set-up compiles what PyPI lacks, example_interfaces and turtlesim; without a compiler it continues without them."""
+"""Set-up compiles what PyPI lacks, such as turtlesim; without a compiler it continues without."""
 
 from __future__ import annotations
 

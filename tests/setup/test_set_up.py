@@ -38,7 +38,7 @@ def test_says_little_where_all_is_well(checkout: Checkout) -> None:
     _, said = checkout.set_up()
     first, second = said.splitlines()
     assert "about a minute" in first
-    assert "Compiling example_interfaces and turtlesim" in second
+    assert "Compiling example_interfaces, tf2_msgs and turtlesim" in second
 
 
 def test_a_second_run_does_nothing_and_says_nothing(checkout: Checkout) -> None:

@@ -1,6 +1,6 @@
 """`python -m interface_compiler`: called by the scripts that set up an environment.
 
-python -m interface_compiler                        install example_interfaces and turtlesim into this environment
+python -m interface_compiler                        install the packages that PyPI lacks, such as turtlesim
 python -m interface_compiler compile FOLDER STORE   compile FOLDER/PACKAGE/{msg,srv,action}/, print the prefix
 python -m interface_compiler add PACKAGE            install another package whose definitions come with this one
 python -m interface_compiler needs                  print the packages of Debian and Ubuntu that are missing for that

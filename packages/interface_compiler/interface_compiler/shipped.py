@@ -1,4 +1,4 @@
-"""The definitions that come with this package: example_interfaces and turtlesim, and optional ones.
+"""The definitions that come with this package: example_interfaces, tf2_msgs and turtlesim, and optional ones.
 
 A package is one file. Its definitions follow one another as in the schemas of an MCAP bag: a line of 80 equals signs, a
 line `MSG: package/msg/Name` (or SRV, ACTION), and the text (https://mcap.dev/spec/registry#ros2msg).

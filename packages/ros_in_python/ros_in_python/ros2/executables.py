@@ -139,6 +139,12 @@ _DEMOS = ("add_two_ints_client", "add_two_ints_server", "listener", "talker")
 BUILT_IN = {
     "demo_nodes_cpp": {name: f"ros_in_python.demo_nodes cpp {name}" for name in _DEMOS},
     "demo_nodes_py": {name: f"ros_in_python.demo_nodes py {name}" for name in _DEMOS},
+    "joint_state_publisher": {"joint_state_publisher": "ros_in_python.robot.joint_state_publisher"},
+    "robot_state_publisher": {"robot_state_publisher": "ros_in_python.robot.state_publisher"},
+    "tf2_ros": {
+        name: f"ros_in_python.tf2_tools.{name}" for name in ("static_transform_publisher", "tf2_echo", "tf2_monitor")
+    },
+    "tf2_tools": {"view_frames": "ros_in_python.tf2_tools.view_frames"},
     "turtlesim": {
         "draw_square": "ros_in_python.turtlesim.draw_square",
         "mimic": "ros_in_python.turtlesim.mimic",
@@ -148,11 +154,17 @@ BUILT_IN = {
 }
 
 
+#: The interfaces that our executables of a package need.
+_INTERFACES = {
+    **dict.fromkeys(("robot_state_publisher", "tf2_ros", "tf2_tools"), "tf2_msgs"),
+    "turtlesim": "turtlesim",
+}
+
+
 def interfaces_used(package: str, executable: str) -> str:
     """Return the package of interfaces that an executable of ours needs; "" if it needs none."""
-    if package not in BUILT_IN:
-        return ""
-    return "turtlesim" if package == "turtlesim" else "example_interfaces" if "two_ints" in executable else ""
+    needs_example = package.startswith("demo_nodes") and "two_ints" in executable
+    return "example_interfaces" if needs_example else _INTERFACES.get(package, "")
 
 
 @dataclass(frozen=True)

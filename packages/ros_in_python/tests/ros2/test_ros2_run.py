@@ -141,7 +141,7 @@ def test_an_unknown_package_or_executable_is_refused_with_what_there_is(tmp_path
     install(tmp_path, "isolated")
     package = terminal.ros2("run", "helo_pkg", "hello", cwd=tmp_path)
     assert (package.code, package.err.splitlines()[0]) == (1, "Package 'helo_pkg' not found")
-    assert "hello_pkg, turtlesim" in package.err
+    assert "hello_pkg, joint_state_publisher" in package.err
     executable = terminal.ros2("run", "hello_pkg", "helo", cwd=tmp_path)
     assert (executable.code, executable.err.splitlines()[0]) == (1, "No executable found")
     assert "Executables of hello_pkg: hello." in executable.err
