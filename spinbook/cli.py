@@ -19,12 +19,13 @@ from spinbook.problem import SpinbookError
 @dataclass(frozen=True)
 class Verb:
     """A verb: its click command as `module:name`, and one line for `spinbook --help`. Without the module `needs`, the
-    verb can only show its help.
+    verb can only show its help. If it `runs` exercises, the course's interfaces that they use are compiled first.
     """
 
     command: str
     summary: str
     needs: str = ""
+    runs: bool = False
 
 
 AUTHORS = {
@@ -46,27 +47,36 @@ AUTHORS = {
     ),
 }
 INSTRUCTORS = {
-    "grade": Verb("grader.command:grade", "Grade one submission, or a whole class.", needs="rclpy"),
+    "grade": Verb("grader.command:grade", "Grade one submission, or a whole class.", needs="rclpy", runs=True),
     "audit": Verb(
-        "grader.audit.command:audit", "Show whether an exercise's checks catch what is wrong.", needs="rclpy"
+        "grader.audit.command:audit", "Show whether an exercise's checks catch what is wrong.", needs="rclpy", runs=True
     ),
     "replay": Verb(
-        "grader.classroom.replay:replay", "Show what a student's program did, as plots and bags.", needs="rclpy"
+        "grader.classroom.replay:replay",
+        "Show what a student's program did, as plots and bags.",
+        needs="rclpy",
+        runs=True,
     ),
     "gradebook": Verb("spinbook.gradebook:gradebook", "Write one page and one table for all exercises."),
     "gradescope": Verb(
-        "grader.gradescope.command:gradescope", "Write an autograder to upload to Gradescope.", needs="rclpy"
+        "grader.gradescope.command:gradescope", "Write an autograder to upload to Gradescope.", needs="rclpy", runs=True
     ),
     "classroom50": Verb(
         "grader.classroom50.command:classroom50",
         "Write an autograder for Classroom 50 and GitHub Actions.",
         needs="rclpy",
+        runs=True,
     ),
 }
 STUDENTS = {
-    "check": Verb("spinbook.submit.command:check", "Say what the public checks say of your node.", needs="rclpy"),
+    "check": Verb(
+        "spinbook.submit.command:check", "Say what the public checks say of your node.", needs="rclpy", runs=True
+    ),
     "submit": Verb(
-        "spinbook.submit.command:submit", "Run the public checks, and write one file to upload.", needs="rclpy"
+        "spinbook.submit.command:submit",
+        "Run the public checks, and write one file to upload.",
+        needs="rclpy",
+        runs=True,
     ),
     "update": Verb("spinbook.update.command:update", "Update your folder to a newer handout; your work stays."),
 }
@@ -105,6 +115,8 @@ class Verbs(click.Group):
         needed = VERBS[name].needs if name in VERBS else ""
         if name and needed and not set(rest) & {"-h", "--help"} and importlib.util.find_spec(needed) is None:
             raise _missing(name, needed)
+        if name in VERBS and VERBS[name].runs and not set(rest) & {"-h", "--help"}:
+            _compile_interfaces(rest)
         return name, command, rest
 
     def invoke(self, ctx: click.Context) -> Any:
@@ -122,6 +134,20 @@ class Verbs(click.Group):
         for section, verbs in SECTIONS.items():
             with formatter.section(section):
                 formatter.write_dl([(name, verb.summary) for name, verb in verbs.items()])
+
+
+#: The exit code for a fault of the exercise or of this machine, of every verb that runs exercises.
+_OUR_FAULT = 3
+
+
+def _compile_interfaces(words: list[str]) -> None:
+    from spinbook.interfaces.for_exercises import compile_for
+
+    try:
+        compile_for(words)
+    except SpinbookError as error:
+        click.echo(str(error), err=True)
+        sys.exit(_OUR_FAULT)
 
 
 def _load(name: str, verb: Verb) -> click.Command:

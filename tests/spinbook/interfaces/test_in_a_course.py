@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from course_folder import CourseFolder
+from no_compiler import without_compilers
 
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.loading import load
@@ -313,6 +314,34 @@ def test_an_exercise_on_a_message_that_was_not_compiled_says_what_to_do(tmp_path
 
     assert "the package robot_interfaces is not installed here" in said.stderr
     assert "spinbook build" in said.stderr
+
+
+def test_grading_compiles_what_the_exercise_uses_in_a_course_that_was_never_built(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SPINBOOK_CACHE", str(tmp_path / "cache"))
+    folder = tmp_path / "course"
+    definition = '# One\n\n```text title="msg/Limits.msg"\nstring name\nfloat64 lower\n```\n'
+    course = CourseFolder(folder).write(one=definition)
+    for name, text in EXERCISE.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    words = ("grade", "width", "solutions/width/solution.py")
+    announced = "Compiling the course's interfaces, once (robot_interfaces) ..."
+
+    with monkeypatch.context() as without:
+        without.setenv("PATH", without_compilers(tmp_path / "programs"))
+        impossible = course.spinbook(*words)
+    first, second = course.spinbook(*words), course.spinbook(*words)
+
+    assert impossible.returncode == 3
+    assert "course.toml: error: the course's interfaces (robot_interfaces) can't be compiled." in impossible.stderr
+    assert "Interfaces are compiled with gcc and g++, not found here: sudo apt-get install g++" in impossible.stderr
+    assert "Traceback" not in impossible.stderr
+    assert "10 of 10 points" in first.stdout, first.stderr
+    assert announced in first.stderr
+    assert "10 of 10 points" in second.stdout
+    assert announced not in second.stderr
 
 
 def test_lint_compiles_what_an_exercise_needs_to_be_read(tmp_path: Path) -> None:
