@@ -97,12 +97,12 @@ def _failure(chapter: Path, cell: dict[str, Any], error: dict[str, Any]) -> Cell
     printed = _printed(cell)
     line = _line(cell)
     node = cell["metadata"].get("spinbook", {}).get("node")
+    above = cell["metadata"].get("spinbook", {}).get("above", 0)
     if node:
         inside = re.findall(_IN_MODULE.format(module=re.escape(node)), printed)
-        above = cell["metadata"]["spinbook"].get("above", 0)
         line += max(int(inside[-1]) - above, 1) - 1 if inside else 0
     elif inside := _IN_CELL.findall(traceback):
-        line += next(int(number) for number in inside[0] if number) - 1
+        line += max(next(int(number) for number in inside[0] if number) - above, 1) - 1
     is_ours = error["ename"] == "CellFailed"
     what = error["evalue"] if is_ours else f"{error['ename']}: {error['evalue']}"
     return CellFailure(chapter, line, what, in_short(printed, *_LOG_LINES) if printed else "")

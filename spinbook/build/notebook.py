@@ -227,10 +227,8 @@ def _runnable(cell: ChapterCell) -> dict[str, Any]:
     if cell.kind is CellKind.NODE:
         metadata["node"] = cell.name
         source = f"%%node {cell.name}{_bounds(cell)}{_how(cell)}\n{cell.source}"
-        if cell.before:
-            metadata["above"] = cell.before.count("\n")
     elif cell.kind is CellKind.PART:
-        source = f"%%part {cell.name}{'' if cell.runs_in_kernel else ' --keep'}\n{cell.source}"
+        source = f"%%part {cell.name}{'' if cell.runs_in_kernel else ' --keep'}\n{cell.shown}"
     elif cell.kind is CellKind.INTERFACE:
         metadata["interface"] = cell.name
         source = f"%%interface {cell.name}\n{cell.source}"
@@ -240,7 +238,9 @@ def _runnable(cell: ChapterCell) -> dict[str, Any]:
     elif cell.kind is CellKind.SHELL:
         source = "\n".join(_shell_line(command, cell) for command in cell.commands)
     else:
-        source = cell.source
+        source = cell.shown
+    if cell.before:
+        metadata["above"] = cell.before.count("\n")
     tags = dict.fromkeys([*cell.tags, *(["raises-exception"] if cell.raises else [])])
     return _code(cell.id, source, metadata, list(tags))
 
@@ -267,6 +267,8 @@ def _shell_line(command: Command, cell: ChapterCell) -> str:
         return command.text
     text = _in_one_line(command)
     program, _, rest = text.partition(" ")
+    if command.kind is CommandKind.GRAPH:
+        return "%graph"
     if command.kind is CommandKind.PLOT:
         return f"%plot {rest}" + (f" --seconds {cell.seconds:g}" if cell.seconds else "")
     return f"%{program}{_bounds(cell)} {rest}"

@@ -53,8 +53,14 @@ class ChapterCell:
 
     @property
     def whole(self) -> str:
-        """A node's program as it runs."""
+        """A node's program as it runs, or a snippet with the usual imports that it lacks."""
         return self.before + self.source
+
+    @property
+    def shown(self) -> str:
+        """The code as a cell shows it: a node's is completed when it runs, a snippet's in the cell."""
+        completed = self.runs_in_kernel and self.kind in {CellKind.SNIPPET, CellKind.PART}
+        return self.whole if completed else self.source
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 
@@ -14,7 +14,15 @@ from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_of, interface_ti
 from spinbook.chapter.launch_files import is_package_file, unsupported_in_launch_file
 from spinbook.chapter.own_packages import is_setup_excerpt
 from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect, programs_in_magics
-from spinbook.chapter.terminal import Command, CommandKind, UnsupportedCommand, looks_like_shell, read_commands
+from spinbook.chapter.terminal import (
+    SHOWN_PROMPT,
+    Command,
+    CommandKind,
+    UnsupportedCommand,
+    looks_like_shell,
+    read_commands,
+)
+from spinbook.chapter.transcripts import split_transcript, without_gaps
 
 #: Programs that a chapter never runs here, wherever they are named, because they change the machine or download
 #: something.
@@ -103,6 +111,8 @@ class ClassifiedFence:
     after: tuple[str, ...] = ()
     runs_in_kernel: bool = True
     executables: tuple[tuple[str, str], ...] = ()
+    output: str = ""
+    """What the author's terminal printed, if the fence is a transcript."""
     named: bool = True
     """Whether the author named its file."""
 
@@ -189,7 +199,7 @@ def with_language(fence: Fence) -> Fence:
     """Return the fence; one without a language gets the one that its content clearly is."""
     if fence.language not in {"", "text", "plaintext"} or fence.attributes:
         return fence
-    if looks_like_shell(fence.code):
+    if looks_like_shell(split_transcript(fence.code)[0] if SHOWN_PROMPT.match(fence.code.lstrip()) else fence.code):
         return Fence("bash", fence.code, fence.line, fence.attributes, fence.skipped)
     if not fence.language and re.search(
         r"^(import|from) (rclpy|\w+(_msgs|_srvs|_interfaces))\b", fence.code, re.MULTILINE
@@ -217,12 +227,14 @@ def _absent(fence: Fence, name: str, file: Path) -> tuple[ClassifiedFence, list[
 
 
 def _shell(fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
-    read = read_commands(fence.code)
+    code, output = split_transcript(fence.code)
+    read = read_commands(code)
     refused = [command for command in read if isinstance(command, UnsupportedCommand)]
     commands = tuple(command for command in read if isinstance(command, Command))
     runnable = [command for command in commands if command.kind is not CommandKind.NOTE]
     if runnable and not refused:
-        return ClassifiedFence(fence, CellKind.SHELL, commands=commands), []
+        fence = replace(fence, code=without_gaps(code, output)) if output else fence
+        return ClassifiedFence(fence, CellKind.SHELL, commands=commands, output=output), []
     ros = next((command for command in refused if command.is_ros), None)
     if runnable or ros:
         shown = ros or refused[0]

@@ -21,26 +21,36 @@ _USUAL = {
     "rclpy.qos": [
         *("QoSProfile", "QoSReliabilityPolicy", "QoSDurabilityPolicy", "QoSHistoryPolicy", "ReliabilityPolicy"),
         *("DurabilityPolicy", "HistoryPolicy", "LivelinessPolicy"),
-        *("qos_profile_sensor_data", "qos_profile_system_default"),
+        *("qos_profile_sensor_data", "qos_profile_system_default", "QoSPresetProfiles"),
     ],
-    "rclpy.executors": ("MultiThreadedExecutor", "SingleThreadedExecutor", "ExternalShutdownException"),
+    "rclpy.executors": ("MultiThreadedExecutor", "SingleThreadedExecutor", "Executor", "ExternalShutdownException"),
     "rclpy.callback_groups": ("ReentrantCallbackGroup", "MutuallyExclusiveCallbackGroup"),
     "rclpy.action": ("ActionServer", "ActionClient", "GoalResponse", "CancelResponse"),
+    "rclpy.action.server": ("ServerGoalHandle",),
+    "rclpy.action.client": ("ClientGoalHandle",),
+    "rclpy.clock": ("Clock", "ClockType", "ROSClock"),
     "rclpy.parameter": ("Parameter",),
+    "rclpy.task": ("Future",),
     "rclpy.duration": ("Duration",),
     "rclpy.lifecycle": ("LifecycleNode", "TransitionCallbackReturn", "State"),
-    "rcl_interfaces.msg": ("ParameterDescriptor", "SetParametersResult", "FloatingPointRange", "IntegerRange"),
-    "typing": ("List", "Dict", "Optional", "Any", "Tuple", "Callable", "Union"),
-    "dataclasses": ("dataclass",),
-    "enum": ("Enum",),
-    "threading": ("Thread", "Lock"),
-    "datetime": ("datetime",),
+    "action_msgs.msg": ("GoalStatus",),
+    "rcl_interfaces.msg": [
+        *("ParameterDescriptor", "ParameterType", "ParameterValue", "ParameterEvent", "SetParametersResult"),
+        *("FloatingPointRange", "IntegerRange"),
+    ],
+    "abc": ("ABC", "abstractmethod"),
+    "typing": ("List", "Dict", "Optional", "Any", "Tuple", "Callable", "Union", "Set", "Type"),
+    "dataclasses": ("dataclass", "field"),
+    "enum": ("Enum", "IntEnum", "auto"),
+    "functools": ("partial",),
+    "threading": ("Thread", "Lock", "Event"),
+    "datetime": ("datetime", "timedelta"),
     "collections": ("deque", "defaultdict"),
     "pathlib": ("Path",),
 }
 _MODULES = frozenset(
     {"rclpy", "math", "time", "sys", "os", "random", "json", "threading", "re", "queue", "asyncio", "subprocess"}
-    | {"logging", "numpy"}
+    | {"logging", "numpy", "inspect", "copy", "functools", "itertools", "traceback", "struct", "uuid", "csv"}
 )
 _ALIASES = {"np": "numpy", "plt": "matplotlib.pyplot"}
 #: If several packages have a message of the same name, the first of these is meant.

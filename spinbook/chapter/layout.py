@@ -31,10 +31,13 @@ class Piece:
 
 @dataclass(frozen=True)
 class ChapterLayout:
-    """How blocks are laid out. `runs` says which fences become cells, `sign` gives the note below one that does not."""
+    """How blocks are laid out. `runs` says which fences become cells, `sign` gives the note below one that does not,
+    `output` what the author's terminal printed, below one that does.
+    """
 
     runs: Callable[[Block], bool]
     sign: Callable[[Block], str]
+    output: Callable[[Block], str]
 
     def pieces(self, blocks: Sequence[Block]) -> list[Piece]:
         """Return the chapter's pieces, in order."""
@@ -65,7 +68,7 @@ class ChapterLayout:
 
     def _block(self, block: Block, depth: int) -> list[Piece]:
         if self._becomes_cell(block):
-            return [Piece(block=block)]
+            return [Piece(block=block), *_printed(self.output(block), block)]
         if not self._is_changed(block) and not self._holds_cell(block):
             return _lines(block.lines)
         shown = {
@@ -170,6 +173,15 @@ def _item(pieces: list[Piece], marker: str, item: Block) -> list[Piece]:
         elif not in_item:
             out.append(piece)
     return out if out else [Piece(SourceLine(marker.rstrip(), item.line))]
+
+
+def _printed(output: str, block: Block) -> list[Piece]:
+    """Return what the author's terminal printed, as text below the cell that runs the commands."""
+    if not output:
+        return []
+    number = block.lines[-1].number
+    texts = ["", "In the author's terminal:", "", "````text", *output.split("\n"), "````", ""]
+    return _lines(SourceLine(text, number) for text in texts)
 
 
 def _bold(block: Block) -> list[Piece]:

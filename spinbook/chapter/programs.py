@@ -9,7 +9,7 @@ from pathlib import Path
 
 from groundwork.problem import Problem, Severity
 from spinbook.chapter.classify import CellKind, ClassifiedFence, node_name
-from spinbook.chapter.complete_program import CompleteProgram, join
+from spinbook.chapter.complete_program import CompleteProgram, join, usual_import
 from spinbook.chapter.imports import MissingPackage, missing_imports
 from spinbook.chapter.node_classes import needs_arguments
 from spinbook.chapter.python_code import PythonCode, inspect
@@ -89,6 +89,9 @@ class Programs:
         missing = [name for name in code.needs if name not in self._defined]
         if item.fence.has("raises"):
             return item
+        if missing and all(map(usual_import, missing)):
+            before = "".join(f"{line}\n" for line in dict.fromkeys(map(usual_import, missing)))
+            item, code, missing = replace(item, before=f"{before}\n"), inspect(f"{before}\n{item.fence.code}"), []
         if missing:
             names = ", ".join(f"`{name}`" for name in missing)
             return _static(
@@ -99,7 +102,7 @@ class Programs:
         if code.leaves or (code.wants_ros and not code.initializes):
             return _static(item, code.leaves or "nothing calls `rclpy.init` before it")
         if absent := missing_imports(code, self.own, self.interfaces):
-            return self._missing(item, absent, CompleteProgram(item.fence.code))
+            return self._missing(item, absent, CompleteProgram(item.fence.code, item.before))
         self._defined |= code.defines
         return item
 

@@ -253,7 +253,10 @@ def _layout(by_line: Mapping[int, ClassifiedFence], surroundings: Surroundings) 
         item = by_line[block.fence.line] if block.fence is not None else None
         return f"<small>Not run here: {item.sign}</small>" if item and item.sign else ""
 
-    return ChapterLayout(runs, sign)
+    def output(block: Block) -> str:
+        return by_line[block.fence.line].output if block.fence is not None else ""
+
+    return ChapterLayout(runs, sign, output)
 
 
 def _bad_seconds(item: ClassifiedFence, file: Path) -> list[Problem]:

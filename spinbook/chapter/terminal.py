@@ -1,7 +1,7 @@
 """A shell fence: the commands in it, and whether a notebook can run them.
 
-A notebook runs `ros2 …`, `colcon …` and `rqt_plot …`. A terminal also needs `cd`, `source` and `export`; a notebook
-does not, so they become comments. Anything else is shown but not run.
+A notebook runs `ros2 …`, `colcon …`, `rqt_plot …` and `rqt_graph`. A terminal also needs `cd`, `source` and `export`; a
+notebook does not, so they become comments. Anything else is shown but not run.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ ROS2 = {
     "run": set(),
     "launch": set(),
 }
-_MOVING_ABOUT = frozenset({"cd", "source", ".", "export", "unset", "clear"})
+MOVING_ABOUT = frozenset({"cd", "source", ".", "export", "unset", "clear"})
 #: Commands that show or make files: a notebook can skip them if the fence has a command that runs.
 _BESIDE = frozenset(
     [
@@ -49,10 +49,17 @@ _BESIDE = frozenset(
 _SHELL_SYNTAX = re.compile(r"[|;<>`]|&&|\$\(|(?<!\S)&(?!\S)|&$")
 #: Characters with a special meaning to a shell.
 _QUOTING = re.compile(r"[\"'\\]")
-_PROMPT = re.compile(r"^\s*(?:[\w.-]+@[\w.-]+:\S*)?[$#>]\s+(?=\S)")
+_WHO = r"(?:\([\w.-]+\)\s*)?(?:\[?[\w.-]+@[\w.-]+[:\s]?[^\s$#%]*\]?\s?[$#%]|[\w.~/-]*\$)"
+#: A prompt that is certainly one: `$`, `~/ros2_ws$`, `user@host:~$`, `[user@host ws]$`, `(venv) $`.
+SHOWN_PROMPT = re.compile(rf"^\s*{_WHO}\s+(?=\S)")
+_PROMPT = re.compile(rf"^\s*(?:{_WHO}|[#>])\s+(?=\S)")
 #: What a reader replaces: `{topic_name}`, `[options]`, `<name>`.
 _PLACEHOLDER = re.compile(r"\{[A-Za-z][\w -]*\}|\[[A-Za-z][\w .|=-]*\]|<[A-Za-z][^<>]*>")
-PROGRAMS = frozenset({"ros2", "colcon", "rqt_plot"})
+PROGRAMS = frozenset({"ros2", "colcon", "rqt_plot", "rqt_graph"})
+#: Windows that a notebook draws in a cell; their packages have the same names.
+_WINDOWS = ("rqt_plot", "rqt_graph")
+#: What goes on while other commands run: the `&` after it changes nothing here.
+_IN_BACKGROUND = re.compile(r"^(?P<command>(?:ros2 (?:run|launch)|rqt_plot|rqt_graph)\b[^&]*?)\s*&$")
 
 
 class CommandKind(Enum):
@@ -61,6 +68,7 @@ class CommandKind(Enum):
     ROS2 = "ros2"
     COLCON = "colcon"
     PLOT = "rqt_plot"
+    GRAPH = "rqt_graph"
     NOTE = "note"
 
 
@@ -105,9 +113,10 @@ def read_commands(code: str) -> list[Command | UnsupportedCommand]:
 def looks_like_shell(code: str) -> bool:
     """Return whether each line of a text begins like a terminal command, and at least one like a ROS command."""
     texts = [text for text, _ in _logical_lines(code) if not text.startswith("#")]
-    known = PROGRAMS | _MOVING_ABOUT | {"mkdir"}
+    known = PROGRAMS | MOVING_ABOUT | {"mkdir"}
     firsts = [text.split()[0] for text in texts]
-    return bool(firsts) and set(firsts) <= known and bool(set(firsts) & PROGRAMS) and len(texts[0].split()) > 1
+    says_what = len(texts[0].split()) > 1 or texts[0] == "rqt_graph" if texts else False
+    return bool(firsts) and set(firsts) <= known and bool(set(firsts) & PROGRAMS) and says_what
 
 
 def programs_of(code: str) -> list[tuple[str, ...]]:
@@ -157,17 +166,17 @@ def _logical_lines(code: str) -> Iterator[tuple[str, int]]:
             # `# text` is a comment; `root@machine:~# text` is a prompt.
             joined = raw[prompt.end() :].strip() if prompt and prompt[0].strip() not in {"#", ">"} else raw.strip()
         else:
-            joined += "\n" + raw if _inside_quotes(joined) else " " + raw.strip()
+            joined += "\n" + raw if inside_quotes(joined) else " " + raw.strip()
         if joined.endswith("\\"):
             joined = joined[:-1].rstrip()
-        elif joined and not (_inside_quotes(joined) and not joined.startswith("#")):
+        elif joined and not (inside_quotes(joined) and not joined.startswith("#")):
             yield joined, start
             joined = ""
     if joined:
         yield joined, start
 
 
-def _inside_quotes(text: str) -> bool:
+def inside_quotes(text: str) -> bool:
     if not _QUOTING.search(text):
         return False
     try:
@@ -180,6 +189,8 @@ def _inside_quotes(text: str) -> bool:
 def _read(text: str, line: int) -> Command | UnsupportedCommand:
     if text.startswith("#"):
         return Command(CommandKind.NOTE, text, (), line)
+    background = _IN_BACKGROUND.match(text)
+    text = background["command"] if background else text
     try:
         words = tuple(shlex.split(text, comments=True) if _QUOTING.search(text) or "#" in text else text.split())
     except ValueError:
@@ -189,10 +200,10 @@ def _read(text: str, line: int) -> Command | UnsupportedCommand:
     text = _without_comment(text)
     outside_quotes = re.sub(r"\"[^\"]*\"|'[^']*'", "", text)
     program = words[0]
-    if program in _MOVING_ABOUT:
+    if program in MOVING_ABOUT:
         return Command(CommandKind.NOTE, f"# {text}", (), line)
     if program not in PROGRAMS:
-        return UnsupportedCommand(text, line, f"`{program}` is not ros2, colcon or rqt_plot")
+        return UnsupportedCommand(text, line, f"`{program}` is not ros2, colcon, rqt_plot or rqt_graph")
     if any(_PLACEHOLDER.fullmatch(word) for word in words[1:]):
         return UnsupportedCommand(text, line, "it holds placeholders for what a reader fills in")
     if _SHELL_SYNTAX.search(outside_quotes):
@@ -201,8 +212,18 @@ def _read(text: str, line: int) -> Command | UnsupportedCommand:
         return UnsupportedCommand(text, line, "it is an alias for other commands")
     if program == "ros2":
         return _ros2(text, words, line)
-    kind = CommandKind.COLCON if program == "colcon" else CommandKind.PLOT
-    return Command(kind, text, words, line)
+    if program == "colcon":
+        return Command(CommandKind.COLCON, text, words, line)
+    return _window(text, words, line)
+
+
+def _window(text: str, words: tuple[str, ...], line: int) -> Command | UnsupportedCommand:
+    """Return the command that draws what `rqt_plot` or `rqt_graph` shows."""
+    if words[0] == "rqt_graph":
+        return Command(CommandKind.GRAPH, text, words, line)
+    if len(words) == 1:
+        return UnsupportedCommand(text, line, "rqt_plot needs a topic here, such as rqt_plot /turtle1/pose/x")
+    return Command(CommandKind.PLOT, text, words, line)
 
 
 def _without_comment(text: str) -> str:
@@ -222,6 +243,8 @@ def _ros2(text: str, words: tuple[str, ...], line: int) -> Command | Unsupported
     noun = words[1] if len(words) > 1 else ""
     if noun not in ROS2:
         return UnsupportedCommand(text, line, f"there is no `ros2 {noun}` here; there are: {', '.join(ROS2)}")
+    if noun == "run" and words[2:3] == words[3:4] and words[2:3] and words[2] in _WINDOWS:
+        return _window(text.partition(words[2])[2].strip(), words[3:], line)
     verb = words[2] if len(words) > 2 else ""
     if ROS2[noun] and verb not in ROS2[noun] and not verb.startswith("-"):
         return UnsupportedCommand(

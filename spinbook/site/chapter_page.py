@@ -113,7 +113,7 @@ def _code(cell: ChapterCell, ran: ExecutedNotebook, source_link: str, download: 
         "cell_type": "code",
         "id": cell.id,
         "metadata": {"spinbook": about, "tags": list(cell.tags)},
-        "source": cell.source.rstrip("\n"),
+        "source": cell.shown.rstrip("\n"),
         "outputs": outputs,
         "execution_count": None,
     }
@@ -129,7 +129,8 @@ def _run(cell: ChapterCell) -> dict[str, Any]:
     """Return what a page needs to run a cell: code that completes it, names for `ros2 run`, how long to show output."""
     how = ["--main"] if cell.runs_main else ["--class", *cell.spin_classes] if cell.spin_classes else []
     names = [f"{package}/{executable}" for package, executable in cell.executables]
-    about: dict[str, Any] = {"before": cell.before, "start": how, "executables": names}
+    before = cell.before if cell.kind is CellKind.NODE else ""
+    about: dict[str, Any] = {"before": before, "start": how, "executables": names}
     about |= {"seconds": cell.seconds, "until": cell.until, "raises": cell.raises}
     return {key: value for key, value in about.items() if value}
 

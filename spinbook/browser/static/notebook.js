@@ -140,6 +140,7 @@ async function runCommand(cell, process, command) {
   if (why) cell.print(`${text}\n    does not run in a page: ${why}.`, "stderr");
   else if (exported) setVariable(cell, [exported[1]]);
   else if (kind === "rqt_plot") await drawPlot(cell, process, words.slice(1));
+  else if (kind === "rqt_graph") await drawGraph(cell, process, []);
   else if (kind === "colcon") cell.print("colcon is not needed in a page: `ros2 run` finds the page's nodes without it.");
   else if (kind === "ros2" && words[1] === "run") await runExecutable(cell, words);
   else if (kind === "ros2" && words[1] === "launch" && !SHOWS_ONLY.test(text)) await launch(cell, process, text);
