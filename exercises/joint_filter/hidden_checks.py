@@ -2,17 +2,100 @@
 
 from __future__ import annotations
 
-from grader.checking import Run, check, fail
+import itertools
 
-NAMED = "test_node_is_called_joint_filter"
-FILTERS, GAIN = ["test_filters_with_the_default"], ["test_gain_of_the_start", NAMED]
+from grader.checking import Exchange, Run, check, each, fail
+
+FILTERS = ["test_filters"]
+
+#: By how much a position may differ (rad).
+TOLERANCE = 1e-6
+
+
+def positions(exchange: Exchange) -> dict[str, float]:
+    """Return the answer's positions by name; if it has no names, by those that arrived."""
+    answer = exchange.answers[0]
+    return dict(zip(answer.name or exchange.sent.name, answer.position, strict=False))
+
+
+def own_gain(run: Run) -> tuple[int, float]:
+    """Return the first of two messages in a row that the node answers, and its gain there, whatever that is.
+
+    So another gain than the default fails the check of the default, and no check of anything else.
+    """
+    for before, now in itertools.pairwise(run):
+        if before.answers and now.answers:
+            first, got = positions(before), positions(now)
+            arrived = now.sent.by("name", "position")
+            moves = {name: arrived[name] - first[name] for name in first if name in got and name in arrived}
+            farthest = max(moves, key=lambda name: abs(moves[name]), default="")
+            if farthest and abs(moves[farthest]) > TOLERANCE:
+                return before.number, (got[farthest] - first[farthest]) / moves[farthest]
+    fail("Your node never answers two messages in a row.", expected="one answer for each", got="fewer")
+
+
+def must_filter_by_its_own_gain(run: Run) -> None:
+    """Fail unless each joint is filtered by its name, with the gain of the first two answers."""
+    first, gain = own_gain(run)
+    smooth: dict[str, float] = {}
+
+    def judge(exchange: Exchange) -> None:
+        for name, position in exchange.sent.by("name", "position").items():
+            smooth[name] = smooth.get(name, position) + gain * (position - smooth.get(name, position))
+        if exchange.answers:
+            got = positions(exchange)
+            if exchange.number == first:
+                smooth.update(got)
+            for name in exchange.sent.name:
+                if name not in got or abs(got[name] - smooth[name]) > TOLERANCE * max(1.0, abs(smooth[name])):
+                    text = f"expected position {smooth[name]:.6g} rad, got "
+                    text += f"{got[name]:.6g} rad." if name in got else "none."
+                    run.wrong(exchange, text, name, f"{smooth[name]:.6g} rad", f"{got.get(name, 'none')}")
+
+    each(itertools.islice(run, first - 1, None), judge)
 
 
 @check(
     points=4,
+    hint="Publish in the callback of the subscription, once, and nowhere else.",
+    depends=FILTERS,
+    rule="answer",
+)
+def test_answers_whatever_happens(changed: Run, empty: Run, new_joint: Run) -> None:
+    """It publishes one message for each, also for one without joints, and none when the gain changes."""
+    for run in (changed, empty, new_joint):
+        run.must_answer()
+
+
+@check(
+    points=3,
+    hint="Publish in the callback, not from a timer or from a thread that sleeps.",
+    depends=FILTERS,
+    misconception="answers late",
+    rule="at_once",
+)
+def test_answers_at_once(default: Run) -> None:
+    """Each answer goes out within 10 ms, and before the next message."""
+    default.must_answer_at_once()
+
+
+@check(
+    points=3,
+    hint="Copy the header as a whole. The node's clock says when the message arrived, not when it was true.",
+    depends=["test_header"],
+    misconception="time of arrival for the stamp",
+    rule="copy",
+)
+def test_header_of_late_messages(delayed: Run) -> None:
+    """The header is that of the message that arrived, even if it arrived late, or its frame changes."""
+    delayed.must_match("header", missing_ok=True)
+
+
+@check(
+    points=3,
     hint="A gain of 1.0 is allowed.",
-    depends=GAIN,
-    rule="Refused: a gain of 0.0 or less, above 1.0, not a number, or of another type",
+    depends=FILTERS,
+    rule=("parameter", "changed", "node"),
 )
 def test_gain_of_one(after_refusal: Run) -> None:
     """A gain of exactly 1.0 is accepted."""
@@ -22,8 +105,8 @@ def test_gain_of_one(after_refusal: Run) -> None:
 @check(
     points=3,
     hint="Pass the default to declare_parameter().",
-    depends=[NAMED],
-    rule="Declared, as a double, with its default 0.5.",
+    depends=FILTERS,
+    rule=("declared", "parameter", "node"),
 )
 def test_gain_can_be_read(default: Run) -> None:
     """The parameter gain can be read, and is 0.5."""
@@ -31,11 +114,11 @@ def test_gain_can_be_read(default: Run) -> None:
 
 
 @check(
-    points=10,
+    points=6,
     hint="Use a range in the descriptor, and an on-set callback that refuses 0.0.",
-    depends=GAIN,
+    depends=FILTERS,
     misconception="takes every gain",
-    rule="Refused: a gain of 0.0 or less, above 1.0, not a number, or of another type",
+    rule=("refused", "node"),
 )
 def test_refuses_what_is_not_allowed(refused: Run) -> None:
     """It refuses a gain of 0.0 or less, above 1.0, or not a number."""
@@ -43,22 +126,26 @@ def test_refuses_what_is_not_allowed(refused: Run) -> None:
 
 
 @check(
-    points=5,
+    points=4,
     hint="Refuse before anything changes.",
     depends=["test_refuses_what_is_not_allowed"],
-    rule="The gain stays as it was.",
+    rule="unchanged",
 )
 def test_goes_on_after_a_refusal(refused: Run) -> None:
     """After a refusal, the gain is unchanged."""
-    refused.must_have_parameter("gain")
-    refused.must_match("position", per="name")
+    values = [reading.value for reading in refused.recording.readings]
+    for reading in refused.recording.readings:
+        if reading.value != values[0]:
+            text = f"expected {values[0]}, as before the refusal, got {reading.value}."
+            refused.wrong_at(reading.at, text, "parameter gain", values[0], reading.value)
+    must_filter_by_its_own_gain(refused)
 
 
 @check(
-    points=5,
+    points=4,
     hint="A parameter keeps the type of its default, unless the descriptor says otherwise.",
-    depends=GAIN,
-    rule="Refused: a gain of 0.0 or less, above 1.0, not a number, or of another type (the integer 1).",
+    depends=FILTERS,
+    rule=("refused", "node"),
 )
 def test_refuses_other_types(other_types: Run) -> None:
     """It refuses an integer, a string and a bool."""
@@ -68,8 +155,8 @@ def test_refuses_other_types(other_types: Run) -> None:
 @check(
     points=3,
     hint="SetParametersResult has a field for the reason.",
-    depends=["test_refuses_what_is_not_allowed"],
-    rule="A refusal has a reason.",
+    depends=FILTERS,
+    rule="reason",
 )
 def test_refuses_with_a_reason(refused: Run) -> None:
     """Each refusal has a reason."""
@@ -79,48 +166,48 @@ def test_refuses_with_a_reason(refused: Run) -> None:
 
 
 @check(
-    points=6,
+    points=5,
     hint="Remember positions by name, not by index in the list.",
     depends=FILTERS,
     misconception="joints by index",
-    rule="Go by name, never by index: the order of the joints may change.",
+    rule=("by_name", "formula"),
 )
 def test_joints_in_another_order(reordered: Run) -> None:
     """It filters each joint by its name, in whatever order they arrive."""
-    reordered.must_match("position", per="name")
+    must_filter_by_its_own_gain(reordered)
 
 
 @check(
-    points=5,
+    points=4,
     hint="Keep the smooth position of each joint, even when it is missing.",
     depends=FILTERS,
-    rule="A joint that was missing from some messages continues from its last smooth position.",
+    rule=("missing_joint", "formula"),
 )
 def test_missing_joint(missing_joint: Run) -> None:
     """A joint that was missing continues from its last smooth position."""
-    missing_joint.must_match("position", per="name")
+    must_filter_by_its_own_gain(missing_joint)
 
 
 @check(
-    points=5,
+    points=4,
     hint="A joint that you don't know yet starts at its position.",
     depends=FILTERS,
-    rule="A joint that is new starts at its position: smooth is what arrived.",
+    rule=("new_joint", "formula"),
 )
 def test_new_joint(new_joint: Run) -> None:
     """A joint that appears later starts at its position."""
-    new_joint.must_match("position", per="name")
+    must_filter_by_its_own_gain(new_joint)
 
 
 @check(
     points=2,
     hint="Create each end once, in __init__, with a plain 10.",
-    depends=["test_answers_each_message"],
-    rule="Use a queue depth of 10 for both.",
+    depends=FILTERS,
+    rule="queue",
 )
 def test_quality_of_service(default: Run) -> None:
-    """All ends are reliable and volatile, and there is one publisher on each topic."""
-    default.must_have_qos()
+    """All ends are reliable and volatile with a depth of 10, and there is one publisher on each topic."""
+    default.must_have_qos(depth=True)
     for topic in default.exercise.outputs:
         count = len(default.end_points("publisher", topic.name))
         if count != 1:

@@ -6,10 +6,11 @@ import math
 import random
 
 from grader.scenario import Scenario, at
-from grader.scenario.joint_states import arm_swing, published, shuffled, without
+from grader.scenario.joint_states import arm_swing, emptied, framed, late, published, shuffled, without
 from grader.scenario.scenario import Content
 
-ELBOW, GAIN = "left_elbow", "gain"
+#: The last joint of each message, and the parameter.
+ELBOW, GAIN = "right_elbow", "gain"
 
 
 def gain(value: object, *seconds: float) -> tuple[Content, ...]:
@@ -45,6 +46,12 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         ),
         "reordered": ("the joints in another order in each message", (published(shuffled(swing, seed)),), {}),
         "missing_joint": ("a joint that goes away and comes back", (published(without(swing, ELBOW, 7, 11)),), {}),
+        "empty": ("a message without joints", (published(emptied(swing, 9)),), {}),
+        "delayed": (
+            "messages later than their stamps say; the frame changes",
+            (published(late(framed(swing, 10, "torso"), 0.3, seed)),),
+            {},
+        ),
         "new_joint": ("a joint that appears later", (published(without(swing, ELBOW, 0, 8)),), {}),
     }
     return tuple(

@@ -8,11 +8,54 @@ from __future__ import annotations
 from grader.checking import Run, check, fail
 
 
-@check(points=8, hint="Create the publisher in __init__, and publish what the parameter says.")
-def test_publishes_the_description(late: Run) -> None:
-    """It publishes the description on /robot_description at the start."""
-    late.must_have_interface()
-    late.must_publish()
+def squeezed(text: str) -> str:
+    """Return a text without spaces and line breaks: whether these are right is judged by a check of its own."""
+    return "".join(text.split())
+
+
+def published(run: Run) -> list[str]:
+    """Return the texts that the node published, without spaces."""
+    return [squeezed(message.fields["data"]) for message in run.messages_on()]
+
+
+def must_start_with(run: Run) -> None:
+    """Fail unless the node's first message is the solution's first, within 0.1 s after the start."""
+    run.must_publish()
+    first, expected = run.messages_on()[0], run.messages_on(reference=True)[0]
+    got, right = first.fields["data"], expected.fields["data"]
+    if squeezed(got) != squeezed(right):
+        run.wrong_at(first.at, "another text was published first.", "", right, got)
+    if first.at - expected.at > 110_000_000:
+        late = (first.at - expected.at) / 1_000_000_000
+        run.wrong_at(first.at, f"it was expected at the start, got it {late:.2f} s later.", "", "at the start", "later")
+
+
+@check(
+    points=5,
+    hint="Create the publisher in __init__, and publish what the parameter says.",
+    rule=("topic", "parameter"),
+)
+def test_publishes_the_description(started: Run, changed: Run) -> None:
+    """It publishes what its parameter says on /robot_description: at the start, or when the parameter changes."""
+    started.must_have_interface()
+    new = {squeezed(change.value) for change in changed.recording.parameters}
+    of_start = squeezed(started.messages_on(reference=True)[0].fields["data"])
+    if of_start not in published(started) and not new & set(published(changed)):
+        started.must_publish()
+        got = started.messages_on()[0].fields["data"]
+        text = "the text is not the one that the parameter holds, neither at the start nor after a change."
+        started.wrong_at(None, text, "", "the parameter's text", got)
+
+
+@check(
+    points=5,
+    hint="Publish once in __init__, after you have declared the parameter.",
+    depends=[test_publishes_the_description],
+    rule="start",
+)
+def test_publishes_at_the_start(late: Run) -> None:
+    """At the start it publishes the description."""
+    must_start_with(late)
 
 
 @check(
@@ -20,21 +63,26 @@ def test_publishes_the_description(late: Run) -> None:
     hint="QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)",
     depends=[test_publishes_the_description],
     misconception="volatile",
+    rule=("late", "qos"),
 )
-def test_late_subscriber(late: Run) -> None:
-    """Late subscribers get the description, too."""
-    late.must_match_series(subscriber="late at 1 s")
-    late.must_match_series(subscriber="late at 2 s")
+def test_late_subscriber(late: Run, changed: Run) -> None:
+    """Late subscribers get what was published before, too."""
+    for run, name, seconds in ((late, "late at 1 s", 1.0), (late, "late at 2 s", 2.0), (changed, "late at 1.6 s", 1.6)):
+        before = [message for message in run.messages_on() if message.at < (100 + seconds) * 1_000_000_000]
+        if before and not run.messages_on(subscriber=name):
+            text = f"the subscriber “{name}” got nothing. A volatile publisher keeps nothing for it."
+            run.wrong_at(None, text, "", "the newest description", "nothing")
 
 
 @check(
-    points=4,
-    hint="Reliable is the default. Transient local is not.",
+    points=3,
+    hint="Reliable is the default. Transient local is not. The depth is the number of messages that are kept.",
     depends=[test_publishes_the_description],
+    rule="qos",
 )
 def test_quality_of_service(late: Run) -> None:
-    """The publisher is reliable and transient local."""
-    late.must_have_qos()
+    """The publisher is reliable and transient local, with a depth of 1."""
+    late.must_have_qos(depth=True)
 
 
 @check(
@@ -42,23 +90,31 @@ def test_quality_of_service(late: Run) -> None:
     hint="A latched topic needs no timer.",
     depends=[test_publishes_the_description],
     misconception="again and again",
+    rule="nothing_else",
 )
 def test_publishes_once(late: Run) -> None:
-    """It publishes the description once."""
-    late.must_publish(count=1)
+    """It does not publish the description again and again."""
+    if (count := len(late.messages_on())) > 1:
+        late.wrong_at(None, f"expected one message, got {count}.", "", "1 message", count)
 
 
 @check(
-    points=6,
+    points=5,
     hint="declare_parameter() returns the parameter with the value that the node was started with.",
     depends=[test_publishes_the_description],
+    rule=("start_text", "start"),
 )
 def test_description_of_the_start(started: Run) -> None:
     """The node can be started with another description."""
-    started.must_match_series()
+    must_start_with(started)
 
 
-@check(points=2, hint="super().__init__('robot_description')", depends=[test_publishes_the_description])
+@check(
+    points=2,
+    hint="super().__init__('robot_description')",
+    depends=[test_publishes_the_description],
+    rule=("node", "other_topics"),
+)
 def test_node_is_called_robot_description(late: Run) -> None:
     """There is one node, it is called robot_description, and it publishes on no other topics."""
     late.must_have_nodes()
@@ -71,6 +127,7 @@ def test_node_is_called_robot_description(late: Run) -> None:
     points=2,
     hint="Catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, then call rclpy.try_shutdown().",
     depends=[test_publishes_the_description],
+    rule="ctrl_c",
 )
 def test_ends_on_ctrl_c(late: Run) -> None:
     """On Ctrl-C it ends within 2 s, with no traceback."""

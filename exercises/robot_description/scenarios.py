@@ -8,11 +8,12 @@ from grader.scenario.scenario import Content
 TOPIC = NAME = "/robot_description"
 PARAMETER = "robot_description"
 
-#: A text with line breaks, spaces, quotes and letters that are not English.
+#: A text with line breaks, an empty line, spaces, quotes and letters that are not English.
 ARM = """<?xml version="1.0"?>
 <robot name="right-arm">
   <link name="upper_arm"/>
   <!-- Länge: 0.3 m -->
+
   <link name="forearm"/>
   <joint name='elbow' type="revolute">
     <parent link="upper_arm"/>
@@ -21,7 +22,7 @@ ARM = """<?xml version="1.0"?>
 </robot>
 """
 LEG = '<robot name="leg"><link name="shin"/></robot>'
-BAD = ("", "robot", "<robot", '<robot name="leg">', "<robots/>", "<model><robot/></model>")
+BAD = ("", "robot", "<robot", '<robot name="leg">', "<robots/>", "<ROBOT/>", "<model><robot/></model>")
 
 
 def late(*seconds: float) -> tuple[Content, ...]:
@@ -43,7 +44,11 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     scripts = {
         "late": ("somebody subscribes late", (late(1.0, 2.0),), {}),
         "started": ("started with another description", (late(1.0), read), {PARAMETER: ARM}),
-        "changed": ("the description changes twice", (written(ARM, 0.5), written(LEG, 1.0), late(0.8, 1.6), read), {}),
+        "changed": (
+            "the description changes twice",
+            (written(ARM, 0.55), written(LEG, 1.25), late(0.8, 1.6), read),
+            {},
+        ),
         "same": ("the description is set to what it is", (written(LEG, 0.5, 1.0, 1.5), late(2.0)), {}),
         "refused": ("texts that describe no robot", (refused, late(2.0), read), {}),
         "after_refusal": (

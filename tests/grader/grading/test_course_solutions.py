@@ -45,8 +45,8 @@ def test_the_solution_gets_full_marks_and_the_starter_nothing(graded: Grading) -
 @pytest.mark.parametrize("graded", ["heartbeat"], indirect=True)
 def test_for_the_overview_only_mistakes_are_graded_that_may_explain_a_failure(graded: Grading) -> None:
     assert signatures(graded, []) == ()
-    found = signatures(graded, [{"test_ends_on_ctrl_c", "test_does_not_drift"}])
-    assert [one.names for one in found] == [("goes_on_after_ctrl_c",), ("slows_down",), ("traceback_on_ctrl_c",)]
+    found = signatures(graded, [{"test_ends_on_ctrl_c"}])
+    assert [one.names for one in found] == [("goes_on_after_ctrl_c",), ("traceback_on_ctrl_c",)]
 
 
 @pytest.mark.parametrize("name", [*NAMES, "joint_velocity"])
