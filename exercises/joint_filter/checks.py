@@ -16,7 +16,7 @@ TOLERANCE = 1e-6
 
 
 def named(run: Run) -> Run:
-    """Return the run with the names that arrived in answers that have none: names are judged by a check of their own."""
+    """Return the run with the names that arrived in answers without names, which are judged by a check of their own."""
 
     def with_names(answer: ReceivedMessage) -> ReceivedMessage:
         if answer.fields.get("name") != [] or not answer.after:
@@ -38,10 +38,9 @@ def must_be_between(run: Run) -> None:
             for name, got in zip(exchange.sent.name, answer.position, strict=False):
                 lowest, highest = min(arrived[name]), max(arrived[name])
                 if not lowest - TOLERANCE <= got <= highest + TOLERANCE:
-                    text = f"a smooth position is between those that arrived, {lowest:.3f} to {highest:.3f} rad; "
-                    run.wrong(
-                        exchange, f"{text}got {got:.3f} rad.", name, f"{lowest:.3f} to {highest:.3f}", f"{got:.3f}"
-                    )
+                    between = f"{lowest:.3f} to {highest:.3f} rad"
+                    text = f"a smooth position is between those that arrived, {between}; got {got:.3f} rad."
+                    run.wrong(exchange, text, name, between, f"{got:.3f} rad")
 
     each(run, judge)
 

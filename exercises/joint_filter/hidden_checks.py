@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 
-from grader.checking import Exchange, Run, check, each, fail
+from grader.checking import Exchange, Run, Wrong, check, each, fail
+from grader.checking.verdict import Finding
 
 FILTERS = ["test_filters"]
 
@@ -31,7 +32,7 @@ def own_gain(run: Run) -> tuple[int, float]:
             farthest = max(moves, key=lambda name: abs(moves[name]), default="")
             if farthest and abs(moves[farthest]) > TOLERANCE:
                 return before.number, (got[farthest] - first[farthest]) / moves[farthest]
-    fail("Your node never answers two messages in a row.", expected="one answer for each", got="fewer")
+    raise Wrong(Finding("Your node never answers two messages in a row. Expected one answer for each."))
 
 
 def must_filter_by_its_own_gain(run: Run) -> None:
