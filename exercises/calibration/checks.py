@@ -5,12 +5,42 @@ Each fixture is a scenario of scenarios.py; hidden_checks.py goes through the ha
 
 from __future__ import annotations
 
-from grader.checking import Run, check, fail
+from grader.checking import Run, check, each, fail
+from grader.recording.recording import ReceivedMessage
 
 OFFSETS, PENDING = "/joint_offsets", "/calibrations_pending"
 
+#: In ns: how long a request may go unanswered, and by how much times may differ.
+GIVE_UP, TOLERANCE = 5_000_000_000, 150_000_001
 
-@check(points=8, hint="Call call_async() in the callback of /calibrate, with the joint's name in the request.")
+
+def must_count(run: Run) -> None:
+    """Fail unless each number on /calibrations_pending is right for the node's own requests, within 0.15 s.
+
+    A joint waits from its message until its request was answered, or for 5 s after it.
+    """
+    begins = [message.at_ns for message in run.sent]
+    ends = [min(call.answered or call.at + GIVE_UP, call.at + GIVE_UP) for call in run.calls(by="node")]
+
+    def waiting(at: int) -> int:
+        return sum(begin <= at for begin in begins) - sum(end <= at for end in ends)
+
+    def judge(message: ReceivedMessage) -> None:
+        first, last = message.at - TOLERANCE, message.at + TOLERANCE
+        right = {waiting(at) for at in (first, last, *(at for at in begins + ends if first <= at <= last))}
+        if message.fields["data"] not in right:
+            got, words = message.fields["data"], " or ".join(map(str, sorted(right)))
+            run.wrong_at(message.at, f"expected {words} on {PENDING}, got {got}.", "", words, got)
+
+    run.must_publish(PENDING)
+    each(run.messages_on(PENDING), judge)
+
+
+@check(
+    points=8,
+    hint="Call call_async() in the callback of /calibrate, with the joint's name in the request.",
+    rule=("input", "service", "offsets", "count_topic"),
+)
 def test_asks(one: Run) -> None:
     """It calls /calibrate_joint with the name of the joint that it received on /calibrate."""
     one.must_have_interface()
@@ -21,13 +51,24 @@ def test_asks(one: Run) -> None:
     points=10,
     hint="Use future.add_done_callback(…), and publish the offset in that callback.",
     depends=[test_asks],
+    rule=("success", "never_wait"),
 )
 def test_publishes_the_offset(one: Run) -> None:
     """When the answer comes, it publishes the offset on /joint_offsets."""
-    one.must_match_series("position", OFFSETS, time=0.15)
+    one.must_match_series("position", OFFSETS)
+    for call, message in zip(one.calls(by="node"), one.messages_on(OFFSETS), strict=False):
+        late = (message.at - (call.answered or message.at)) / 1_000_000_000
+        if abs(late) > 0.15:
+            text = f"it was expected when the answer came, got it {late:.2f} s later."
+            one.wrong_at(message.at, text, "", "with the answer", f"{late:.2f} s later")
 
 
-@check(points=5, hint="name and position are lists, with one element each.", depends=[test_publishes_the_offset])
+@check(
+    points=5,
+    hint="name and position are lists, with one element each.",
+    depends=[test_publishes_the_offset],
+    rule="success",
+)
 def test_publishes_the_name(one: Run) -> None:
     """The message on /joint_offsets has the joint's name."""
     one.must_match_series("name", OFFSETS)
@@ -38,6 +79,7 @@ def test_publishes_the_name(one: Run) -> None:
     hint="Use a timer. It works as long as no callback waits.",
     depends=[test_asks],
     misconception="waits for the answer",
+    rule=("pending", "never_wait", "never_stop"),
 )
 def test_ten_times_a_second(one: Run) -> None:
     """It publishes on /calibrations_pending ten times per second, even while it waits for an answer."""
@@ -45,13 +87,25 @@ def test_ten_times_a_second(one: Run) -> None:
     one.must_have_no_gap(0.15, PENDING)
 
 
-@check(points=8, hint="Count up for each request, and down for each answer.", depends=[test_ten_times_a_second])
+@check(
+    points=8,
+    hint="Count up for each request, and down for each answer.",
+    depends=[test_asks],
+    rule=("pending", "not_waiting", "never_wait"),
+)
 def test_number_of_pending(one: Run) -> None:
     """/calibrations_pending says how many joints wait: 1 until the answer arrives, then 0."""
-    one.must_match_series("data", PENDING)
+    must_count(one)
+    if not any(message.fields["data"] for message in one.messages_on(PENDING)):
+        one.wrong_at(None, "expected 1 while a joint waits, got 0 throughout.", "", "1", "0")
 
 
-@check(points=3, hint="super().__init__('calibration')", depends=[test_asks])
+@check(
+    points=3,
+    hint="super().__init__('calibration')",
+    depends=[test_asks],
+    rule=("node", "other_topics"),
+)
 def test_node_is_called_calibration(one: Run) -> None:
     """There is one node, it is called calibration, and it publishes on no other topics."""
     one.must_have_nodes()
@@ -64,6 +118,7 @@ def test_node_is_called_calibration(one: Run) -> None:
     points=3,
     hint="Catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, then call rclpy.try_shutdown().",
     depends=[test_asks],
+    rule="ctrl_c",
 )
 def test_ends_on_ctrl_c(one: Run) -> None:
     """On Ctrl-C it ends within 2 s, with no traceback."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from grader.checking import Run, check, fail
+from grader.checking import Run, check, each, fail
+from grader.recording.recording import ReceivedMessage
 
 OFFSETS, PENDING = "/joint_offsets", "/calibrations_pending"
-OFFSET, COUNT, RATE = ["test_publishes_the_offset"], ["test_number_of_pending"], ["test_ten_times_a_second"]
+
+#: In ns: how long a request may go unanswered, and by how much times may differ.
+GIVE_UP, TOLERANCE = 5_000_000_000, 150_000_001
+ASKS, OFFSET, COUNT = ["test_asks"], ["test_publishes_the_offset"], ["test_number_of_pending"]
 
 
 def must_ask_in_time(run: Run, within: float, seconds: dict[str, float]) -> None:
@@ -19,25 +23,48 @@ def must_ask_in_time(run: Run, within: float, seconds: dict[str, float]) -> None
             run.wrong_at(call.at, text, "", f"within {within:g} s", f"after {late:.2f} s")
 
 
+def must_count(run: Run) -> None:
+    """Fail unless each number on /calibrations_pending is right for the node's own requests, within 0.15 s.
+
+    A joint waits from its message until its request was answered, or for 5 s after it.
+    """
+    begins = [message.at_ns for message in run.sent]
+    ends = [min(call.answered or call.at + GIVE_UP, call.at + GIVE_UP) for call in run.calls(by="node")]
+
+    def waiting(at: int) -> int:
+        return sum(begin <= at for begin in begins) - sum(end <= at for end in ends)
+
+    def judge(message: ReceivedMessage) -> None:
+        first, last = message.at - TOLERANCE, message.at + TOLERANCE
+        right = {waiting(at) for at in (first, last, *(at for at in begins + ends if first <= at <= last))}
+        if message.fields["data"] not in right:
+            got, words = message.fields["data"], " or ".join(map(str, sorted(right)))
+            run.wrong_at(message.at, f"expected {words} on {PENDING}, got {got}.", "", words, got)
+
+    run.must_publish(PENDING)
+    each(run.messages_on(PENDING), judge)
+
+
 @check(
-    points=8,
+    points=5,
     hint="Never wait in a callback, neither for the service nor for its answer.",
-    depends=RATE,
+    depends=ASKS,
     misconception="waits for the service",
-    rule="Never stop, whatever the service does.",
+    rule=("never_stop", "never_wait"),
 )
 def test_never_silent(absent: Run, never: Run) -> None:
     """/calibrations_pending continues when the service is not there, and when it never answers."""
     for run in (absent, never):
-        run.must_have_no_gap(0.15, PENDING)
+        run.must_publish(PENDING)
+        run.must_have_no_gap(0.6, PENDING)
 
 
 @check(
-    points=6,
+    points=5,
     hint="Each call_async() has a future of its own. Do not wait for one before the next.",
-    depends=["test_asks"],
+    depends=ASKS,
     misconception="one after another",
-    rule="Do not wait for one answer before the next request.",
+    rule=("parallel", "ask", "never_wait"),
 )
 def test_asks_at_once(several: Run) -> None:
     """It asks for each joint at once, even while others are being calibrated."""
@@ -46,58 +73,89 @@ def test_asks_at_once(several: Run) -> None:
 
 
 @check(
-    points=7,
-    hint="The done-callback has to know to which joint its future belongs.",
-    depends=["test_asks_at_once", "test_publishes_the_name"],
-    misconception="mixes joints up",
-    rule="Answers may come in a different order.",
+    points=3,
+    hint="Each message on /calibrate is a request, whatever joint it names.",
+    depends=ASKS,
+    rule=("ask", "pending"),
 )
-def test_answers_in_another_order(several: Run) -> None:
-    """Each offset is published with the name of its own joint, whatever the order of the answers."""
-    several.must_match_series("name", OFFSETS)
-    several.must_match_series("position", OFFSETS)
+def test_same_joint_again(again: Run) -> None:
+    """It asks for a joint a second time when it is named a second time, and counts it twice meanwhile."""
+    again.must_match_requests("joint")
+    must_count(again)
+
+
+@check(
+    points=2,
+    hint="0.0 is an offset like any other. Look at success.",
+    depends=OFFSET,
+    rule="success",
+)
+def test_offset_of_zero(again: Run) -> None:
+    """An offset of 0.0 is published, too."""
+    if [0.0] not in [message.fields["position"][-1:] for message in again.messages_on(OFFSETS)]:
+        calls = again.calls(by="node")
+        if len(calls) > 1:
+            again.wrong_at(calls[1].answered, "expected an offset of 0.0, got nothing.", "", "0.0", "nothing")
 
 
 @check(
     points=5,
-    hint="Look at success before you publish.",
+    hint="The done-callback has to know to which joint its future belongs.",
     depends=["test_publishes_the_name"],
+    misconception="mixes joints up",
+    rule=("order", "success"),
+)
+def test_answers_in_another_order(several: Run) -> None:
+    """Each offset is published with the name of its own joint, whatever the order of the answers."""
+    several.must_publish(OFFSETS, count=3)
+    offsets = {call.request["joint"]: call.response["offset"] for call in several.calls(by="node") if call.response}
+    for message in several.messages_on(OFFSETS):
+        got = dict(zip(message.fields["name"], message.fields["position"], strict=False))
+        if len(got) != 1 or not got.items() <= offsets.items():
+            text = f"expected the offset of one joint, one of {offsets}, got {got}."
+            several.wrong_at(message.at, text, "", f"one of {offsets}", got)
+
+
+@check(
+    points=4,
+    hint="Look at success before you publish.",
+    depends=OFFSET,
     misconception="ignores success",
-    rule="publish nothing on /joint_offsets.",
+    rule="failure",
 )
 def test_failed_calibration(failing: Run) -> None:
     """When a calibration has failed, it publishes no offset."""
-    failing.must_match_series("name", OFFSETS)
+    failing.must_publish(OFFSETS, count=2)
 
 
 @check(
-    points=4,
+    points=3,
     hint="A response with success false is an answer, too.",
     depends=COUNT,
-    rule="A joint that failed or timed out is no longer waiting.",
+    rule=("not_waiting", "parallel"),
 )
 def test_failed_is_not_pending(failing: Run) -> None:
     """A joint whose calibration failed is no longer pending."""
-    failing.must_match_series("data", PENDING)
+    must_count(failing)
 
 
 @check(
-    points=4,
+    points=3,
     hint="Use math.isfinite(offset).",
-    depends=["test_publishes_the_name"],
-    rule="An offset that is not a number or infinite counts as no success.",
+    depends=OFFSET,
+    rule="finite",
 )
 def test_offset_that_is_no_number(not_finite: Run) -> None:
     """An offset that is not a number or infinite is not published."""
-    not_finite.must_match_series("name", OFFSETS)
+    not_finite.must_publish(OFFSETS, count=1)
 
 
 @check(
     points=5,
     hint="service_is_ready() says whether the service is there. Ask again in the timer.",
-    depends=["test_asks"],
+    depends=ASKS,
     misconception="asks without a service",
-    rule="Keep the joints, and ask for them in their order within 0.2 s after it appears.",
+    rule=("keep", "parallel", "never_wait"),
 )
 def test_service_appears_late(appears: Run) -> None:
     """When the service appears late, it asks for all joints that were waiting."""
@@ -105,48 +163,83 @@ def test_service_appears_late(appears: Run) -> None:
 
 
 @check(
-    points=3,
-    hint="Joints that you could not ask for yet are pending, too.",
-    depends=COUNT,
-    rule="those that you could not ask for yet, and those that have no answer yet.",
+    points=2,
+    hint="A joint for which you could not ask yet waits without a limit.",
+    depends=ASKS,
+    rule="keep",
 )
-def test_pending_without_a_service(absent: Run) -> None:
-    """Joints that wait for the service are pending."""
-    absent.must_match_series("data", PENDING)
-
-
-@check(
-    points=5,
-    hint="Remember when each request went out, and check the time in the timer.",
-    depends=COUNT,
-    misconception="waits forever",
-    rule="No answer 5 s after the request: give up.",
-)
-def test_gives_up(never: Run) -> None:
-    """After 5 s without an answer it gives up: the joint is no longer pending."""
-    never.must_match_series("data", PENDING)
-
-
-@check(
-    points=4,
-    hint="Forget the future when you give up.",
-    depends=["test_publishes_the_name", "test_gives_up"],
-    rule="An answer that arrives later is ignored.",
-)
-def test_answer_that_is_too_late(too_late: Run) -> None:
-    """An answer that arrives after it gave up is ignored."""
-    too_late.must_match_series("name", OFFSETS)
+def test_service_appears_very_late(appears_very_late: Run) -> None:
+    """It keeps a joint until the service appears, however long that takes."""
+    must_ask_in_time(appears_very_late, 0.2, {"left_elbow": 6.02})
 
 
 @check(
     points=2,
+    hint="The 5 s begin with the request, not with the message on /calibrate.",
+    depends=["test_publishes_the_offset", "test_service_appears_very_late"],
+    rule="give_up",
+)
+def test_five_seconds_from_the_request(appears_very_late: Run) -> None:
+    """It waits for the answer for 5 s after the request, even if the joint had to wait before that."""
+    appears_very_late.must_publish(OFFSETS, count=1)
+
+
+@check(
+    points=3,
+    hint="Joints that you could not ask for yet are pending, too.",
+    depends=COUNT,
+    rule=("pending", "keep"),
+)
+def test_pending_without_a_service(absent: Run) -> None:
+    """Joints that wait for the service are pending."""
+    must_count(absent)
+
+
+@check(
+    points=4,
+    hint="Remember when each request went out, and check the time in the timer.",
+    depends=COUNT,
+    misconception="waits forever",
+    rule=("give_up", "not_waiting", "clock", "parallel"),
+)
+def test_gives_up(never: Run) -> None:
+    """After 5 s without an answer it gives up: the joint is no longer pending."""
+    must_count(never)
+
+
+@check(
+    points=3,
+    hint="The 5 s go by the node's clock.",
+    depends=OFFSET,
+    misconception="gives up too early",
+    rule=("give_up", "clock"),
+)
+def test_slow_answer(slow: Run) -> None:
+    """An answer after 4.5 s still counts."""
+    slow.must_match_series("position", OFFSETS)
+
+
+@check(
+    points=3,
+    hint="Forget the future when you give up.",
+    depends=[*OFFSET, "test_gives_up"],
+    rule="late",
+)
+def test_answer_that_is_too_late(too_late: Run) -> None:
+    """An answer that arrives after it gave up is ignored."""
+    too_late.must_publish(OFFSETS, count=2)
+    must_count(too_late)
+
+
+@check(
+    points=1,
     hint="Create each end once, in __init__, with a plain 10.",
-    depends=["test_asks"],
-    rule="Use a queue depth of 10 for all topics.",
+    depends=ASKS,
+    rule="queue",
 )
 def test_quality_of_service(one: Run) -> None:
-    """All ends are reliable and volatile, and there is one publisher on each topic."""
-    one.must_have_qos()
+    """All ends are reliable and volatile with a depth of 10, and there is one publisher on each topic."""
+    one.must_have_qos(depth=True)
     for topic in one.exercise.outputs:
         count = len(one.end_points("publisher", topic.name))
         if count != 1:
