@@ -15,6 +15,7 @@ from grader.runner.cdr import deserialized
 from grader.runner.grader_side import GraderSide, Schedule, nanoseconds
 from grader.runner.message import filled, message_class, to_fields
 from grader.runner.message_order import requests_in_order
+from grader.runner.program import CannotContinue
 from grader.scenario.scenario import SECOND
 from grader.scenario.servers import ActionServer as Declared
 from grader.scenario.servers import GoalScript
@@ -23,6 +24,9 @@ from rmw_lockstep.qos import TRANSIENT_LOCAL
 
 #: What rcl gives the status topic (rcl_action_qos_profile_status_default).
 STATUS_QOS = QosPolicies(depth=1, durability=TRANSIENT_LOCAL)
+
+#: No exercise needs more goals, or more requests to cancel them, from a node in one scenario.
+MOST_GOALS = 300
 
 #: The bytes before a request's own fields: the CDR header and the goal's id, which the client chooses at random.
 _HEADER_AND_ID = 4 + 16
@@ -68,6 +72,7 @@ class ScriptedActionServer:
         self._goals: list[RunningGoal] = []
         self._servers: tuple[HubServer, HubServer, HubServer] | None = None
         self._publishers: tuple[HubPublisher, HubPublisher] | None = None
+        self._cancels = 0
 
     def open(self) -> None:
         """Start the server."""
@@ -100,9 +105,15 @@ class ScriptedActionServer:
                 found = True
         return found
 
+    def _limit(self, what: str, number: int) -> None:
+        """Raise `CannotContinue` if there are too many: each goal is in every later status, and in each cancel."""
+        if number >= MOST_GOALS:
+            raise CannotContinue("over-limit", f"Your node sent more than {MOST_GOALS} {what} to {self.name}.")
+
     # --- requests
 
     def _goal(self, asked: PendingRequest, now: int) -> None:
+        self._limit("goals", len(self._goals))
         request = deserialized(asked.cdr, self._kind.Impl.SendGoalService.Request)
         number = len(self._goals) + 1
         script = self._declared.scripts[min(number, len(self._declared.scripts)) - 1]
@@ -128,6 +139,8 @@ class ScriptedActionServer:
             self._plan(goal, now + nanoseconds(goal.script.after), lambda moment: self._end(goal, end, moment))
 
     def _cancel(self, asked: PendingRequest, now: int) -> None:
+        self._limit("requests to cancel", self._cancels)
+        self._cancels += 1
         request = deserialized(asked.cdr, CancelService.Request)
         goal_id = bytes(request.goal_info.goal_id.uuid)
         at = self._ends.at(asked.moment)

@@ -151,8 +151,15 @@ _MESSAGES = {
     "nodes": "Your program created more than {limit:,} nodes.",
     "endpoints": "Your program created more than {limit:,} publishers, subscriptions, clients and services.",
     "connections": "Your program started more than {limit:,} processes.",
-    "unread": "Your program does not take the messages that are sent to it: {found:,} bytes are waiting for it.",
+    "unread": (
+        "Your program does not take what is sent to it, by the grader or by its own processes: more than {limit:,} bytes "
+        "are waiting."
+    ),
     "wake-ups": "Your program woke up more than {limit:,} times in one scenario. Does a loop wait for no time at all?",
+    "cpu": (
+        "Your program kept the grader busy: what it sent took more than {limit:,} s of computing time to read. "
+        "Does a loop send, or create and remove, something without waiting?"
+    ),
     "frames": "Your program changed the ROS graph, or fell asleep, more than {limit:,} times in one scenario.",
     "protocol": "Your program disturbed the connection between ROS 2 and the grader: {text}.",
 }

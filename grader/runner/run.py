@@ -270,7 +270,7 @@ class ScenarioRun:
         found = end_points(self._hub.graph, self._is_ours)
         if not self._team:
             return found
-        gone = tuple(one for one in self._end_points if one not in found)
+        gone = {*self._end_points}.difference(found)
         return tuple(sorted((*found, *gone), key=lambda one: (one.topic, one.kind, one.node)))
 
     def _do(self, one: Content, script: Script) -> None:

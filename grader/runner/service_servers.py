@@ -11,11 +11,16 @@ from grader.runner.cdr import deserialized, fields_of, serialized
 from grader.runner.grader_side import GraderSide, Schedule, nanoseconds
 from grader.runner.message import message_class, to_fields
 from grader.runner.message_order import requests_in_order
+from grader.runner.program import CannotContinue
 from grader.scenario.code import AuthorCode
 from grader.scenario.servers import Reply
 from grader.scenario.servers import Server as Declared
 from grader.scenario.values import InvalidValue, check_fields
 from rmw_lockstep.hub import HubServer, PendingRequest
+
+
+#: No exercise needs more calls of one service from a node in one scenario, and no more bytes in the answers.
+MOST_CALLS, MOST_BYTES = 5_000, 8_000_000
 
 
 class AuthorFault(Exception):
@@ -43,6 +48,7 @@ class ServiceServer:
         self._answer = declared.replies.load() if isinstance(declared.replies, AuthorCode) else None
         self._server: HubServer | None = None
         self._exchanges: list[ServiceExchange] = []
+        self._bytes = 0
 
     def open(self) -> None:
         """Start the server."""
@@ -64,6 +70,8 @@ class ServiceServer:
         return bool(requests)
 
     def _take(self, asked: PendingRequest, now: int) -> None:
+        if len(self._exchanges) >= MOST_CALLS:
+            raise CannotContinue("over-limit", f"Your node called {self.name} more than {MOST_CALLS:,} times.")
         request = deserialized(asked.cdr, self._kind.Request)
         at = self._ends.at(asked.moment)
         exchange = ServiceExchange(asked, at, to_fields(request))
@@ -79,6 +87,10 @@ class ServiceServer:
             return
         fields = reply.fields or {}
         message = serialized(self._kind.Response, fields)
+        self._bytes += len(message)
+        if self._bytes > MOST_BYTES:
+            text = f"Your node called {self.name} so often that the answers take more than {MOST_BYTES:,} bytes."
+            raise CannotContinue("over-limit", text)
         server.respond(exchange.asked, message)
         exchange.answered, exchange.response = now, fields_of(message, self._kind.Response)
 

@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, NoReturn
 
 from grader.workers.answers import Answer, answer_of
-from grader.workers.fork import fork
+from grader.workers.fork import fork, limit_memory
 from grader.workers.shared import what_to_collect
 
 if TYPE_CHECKING:
@@ -116,6 +116,7 @@ class _Judging:
             if not message:
                 os._exit(0)
             if fork() == 0:
+                limit_memory()
                 break
             os.close(descriptors[0])
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, NoReturn
 from grader.sandbox import filesystem, middleware
 from grader.sandbox.fork_server import ForkServer
 from grader.workers.answers import answer_of
-from grader.workers.fork import fork
+from grader.workers.fork import fork, limit_memory
 from grader.workers.judges import Judges
 from grader.workers.pool import JUDGE, PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE
 from grader.workers.shared import receive
@@ -122,6 +122,7 @@ def _reap(working: set[int]) -> None:
 
 def _work(descriptor: int, fork_server: ForkServer) -> NoReturn:
     """Do one job after another, until one fails or the client closes the connection."""
+    limit_memory()
     connection = multiprocessing.connection.Connection(descriptor)
     jobs: queue.SimpleQueue[Job] = queue.SimpleQueue()
     # If the client no longer needs the result, it closes the other end, and the job ends at once.

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from stand_in import Process, Raw, Waits, busy, data, endpoint, frame, hello, idle, node, response, violation, welcomed
 
-from rmw_lockstep.hub import BEGIN, PUBLISHER, SUBSCRIPTION, Hub, HubLimits, QosPolicies
+from rmw_lockstep.hub import BEGIN, PUBLISHER, SUBSCRIPTION, Hub, HubLimits, QosPolicies, Violation
 
 NODE, PUB, SUB = 1 << 32 | 1, 1 << 32 | 2, 1 << 32 | 3
 STRING = "std_msgs/msg/String"
@@ -149,9 +149,71 @@ def test_for_a_process_that_never_reads_not_everything_is_kept(folder: Path) -> 
         raw = Raw(hub.path)
         welcomed(raw, hub).send(frame(b"J"), node(NODE), endpoint(SUB, SUBSCRIPTION, NODE))
         hub.pause()
+        with pytest.raises(Violation) as caught:
+            for _ in range(40):
+                topic.publish(b"x" * 50_000)
+                hub.pause()
+        assert caught.value.reason == "unread"
+        raw.close()
+
+
+def joined(hub: Hub, count: int) -> list[Raw]:
+    """Return connections of processes that have joined; none of them is idle."""
+    raws = [Raw(hub.path) for _ in range(count)]
+    for number, raw in enumerate(raws):
+        raw.send(hello(number + 1))
+    while len(hub.links) < count or not all(link.began for link in hub.links):
+        hub.pause()
+    for raw in raws:
+        assert raw.read()[0] == b"W"
+        raw.send(frame(b"J"))
+    return raws
+
+
+def test_frames_that_wait_for_processes_that_are_never_idle_count_as_unread(folder: Path) -> None:
+    with Hub(folder, HubLimits(unread_bytes=1_000_000), Waits()) as hub:
+        raws = joined(hub, 8)
+        flood = [node(NODE)]
+        for number in range(1_000):
+            flood += [endpoint(PUB + number, PUBLISHER, NODE), frame(b"e", struct.pack("<Q", PUB + number))]
+        raws[0].send(*flood)
+        assert reason(hub)[0] == "unread"
+        for raw in raws:
+            raw.close()
+
+
+def test_what_was_read_no_longer_counts_as_unread(folder: Path) -> None:
+    with Hub(folder, HubLimits(unread_bytes=100_000, data_bytes=50_000_000), Waits()) as hub:
+        topic = hub.node("runner").publisher("/topic", STRING, QosPolicies())
+        one = Process(hub.path)
+        one.on[b"W"] = lambda process, _: process.make("node", (SUBSCRIPTION, "/topic", {}))
+        one.start()
+        hub.wait_until_idle()
         for _ in range(40):
             topic.publish(b"x" * 50_000)
-        assert reason(hub)[0] == "unread"
+            hub.wait_until_idle()
+        one.end()
+
+
+def test_messages_that_stay_inside_count_although_none_is_reported(hub: Hub, raw: Raw) -> None:
+    begin(raw, hub)
+    busy(hub)
+    raw.send(*[frame(b"K", struct.pack("<QIQqI", PUB, 0, 1, 0, 1))] * 2_000)
+    assert reason(hub)[0] == "own messages"
+
+
+def test_thousands_of_children_are_not_kept(hub: Hub, raw: Raw) -> None:
+    begin(raw, hub)
+    busy(hub)
+    raw.send(idle(1, BEGIN, children=tuple(range(2_000))))
+    assert reason(hub)[0] == "protocol"
+
+
+def test_what_reading_costs_the_hub_is_counted(folder: Path) -> None:
+    with Hub(folder, HubLimits(cpu_s=0), Waits()) as hub:
+        raw = Raw(hub.path)
+        raw.send(hello())
+        assert reason(hub)[0] == "cpu"
         raw.close()
 
 

@@ -21,6 +21,9 @@ PUBLISHER, SUBSCRIPTION, SERVER, CLIENT = range(4)
 #: No name in ROS 2 may be longer than this (rmw_validate_full_topic_name, rmw_validate_node_name).
 LONGEST_NAME = 255
 
+#: A process reports at most this many children.
+MOST_CHILDREN = 1_000
+
 HEADER = struct.Struct("<IB")
 _HELLO = struct.Struct("<IIIB")
 _WELCOME = struct.Struct("<IIqq")
@@ -208,7 +211,7 @@ def kept(payload: bytes) -> KeptFrame:
 def idle(payload: bytes) -> IdleFrame:
     """Decode an IDLE."""
     handled, now, next_, in_ros, in_time, others, flags, runs, count = _first(_IDLE, payload)
-    if len(payload) != _IDLE.size + 4 * count:
+    if count > MOST_CHILDREN or len(payload) != _IDLE.size + 4 * count:
         raise Violation("protocol", "an IDLE frame has the wrong length")
     children = struct.unpack_from(f"<{count}I", payload, _IDLE.size) if count else ()
     return IdleFrame(handled, now, next_, in_ros, in_time, others, flags, runs, children)

@@ -20,6 +20,7 @@ Reason = Literal[
     "connections",
     "unread",
     "wake-ups",
+    "cpu",
 ]
 
 
@@ -49,9 +50,13 @@ class HubLimits:
     all_connections: int = 5_000
     """Processes in total."""
     unread_bytes: int = 16_000_000
-    """What is kept for a process that does not read."""
+    """What is kept for all processes: for those that do not read, and until all are idle."""
+    unanswered: int = 10_000
+    """Requests of other processes that it leaves unanswered."""
     wake_ups: int = 1_000_000
     """How often several processes may be granted time. A single process gets it in one piece."""
+    cpu_s: int = 5
+    """CPU seconds that taking what they send may cost the hub. 10,000 messages cost it about 0.3 s."""
 
 
 class Violation(Exception):
@@ -73,8 +78,10 @@ class HubUsage:
         self.frames = 0
         self.messages = 0
         self.data_bytes = 0
+        self.unread_bytes = 0
         self.connections = 0
         self.wake_ups = 0
+        self.cpu_s = 0.0
 
     def frame(self) -> None:
         """Count a frame."""
@@ -108,6 +115,12 @@ class HubUsage:
         if self.wake_ups > self.limits.wake_ups:
             raise _exceeded("wake-ups", "wake-ups", self.wake_ups, self.limits.wake_ups)
 
+    def cpu(self, seconds: float) -> None:
+        """Count CPU time of the hub."""
+        self.cpu_s += seconds
+        if self.cpu_s > self.limits.cpu_s:
+            raise _exceeded("cpu", "CPU seconds of the hub", int(self.cpu_s) + 1, self.limits.cpu_s)
+
     def nodes(self, count: int) -> None:
         """Check that there may be `count` nodes."""
         if count > self.limits.nodes:
@@ -119,9 +132,15 @@ class HubUsage:
             raise _exceeded("endpoints", "publishers, subscriptions, clients and servers", count, self.limits.endpoints)
 
     def unread(self, size: int) -> None:
-        """Check that `size` bytes may be kept for a process that does not read."""
-        if size > self.limits.unread_bytes:
-            raise _exceeded("unread", "unread bytes", size, self.limits.unread_bytes)
+        """Count `size` more bytes that are kept for a process until it reads them; fewer if `size` is negative."""
+        self.unread_bytes += size
+        if self.unread_bytes > self.limits.unread_bytes:
+            raise _exceeded("unread", "unread bytes", self.unread_bytes, self.limits.unread_bytes)
+
+    def unanswered(self, count: int) -> None:
+        """Check that `count` requests may be left unanswered."""
+        if count > self.limits.unanswered:
+            raise _exceeded("messages", "unanswered requests", count, self.limits.unanswered)
 
 
 def _exceeded(reason: Reason, what: str, found: int, limit: int) -> Violation:

@@ -17,6 +17,9 @@ PIECE = 65_536
 #: A frame contains more than the message in it.
 _FRAME_BESIDE_MESSAGE = 1_024
 
+#: What Python itself needs to keep a frame: an object, and its place in a list (bytes).
+FRAME_OVERHEAD = 100
+
 _CREDENTIALS = struct.Struct("iII")
 _WAIT = struct.Struct("ll")
 
@@ -42,7 +45,8 @@ class ProcessLink:
         self.requests: set[tuple[int, int]] = set()
         self._use = use
         self._queued: list[bytes] = []
-        self._unsent = b""
+        self._unsent = bytearray()
+        self._queued_bytes = self._counted = 0
         self._rest = b""
         self._marks_at: list[int] = []
         self._marks: list[int] = []
@@ -82,10 +86,18 @@ class ProcessLink:
     # --- out
 
     def queue(self, frame: bytes) -> None:
-        """Send a frame with the next `flush`."""
+        """Send a frame with the next `flush`. Raises `Violation` if too much is kept for the program."""
         self._queued.append(frame)
         self.sent += 1
         self.idle = None
+        self._queued_bytes += len(frame) + FRAME_OVERHEAD
+        self._count()
+
+    def _count(self) -> None:
+        """Count how much more, or less, is kept of this connection than before."""
+        kept = self._queued_bytes + len(self._unsent) + len(self._rest)
+        more, self._counted = kept - self._counted, kept
+        self._use.unread(more)
 
     @property
     def unsent(self) -> int:
@@ -93,16 +105,17 @@ class ProcessLink:
         return len(self._unsent)
 
     def flush(self) -> None:
-        """Send what is queued, as far as possible without waiting. Raises `Violation` if too much is left."""
+        """Send what is queued, as far as possible without waiting."""
         if self._queued:
             self._unsent += b"".join(self._queued)
             self._queued.clear()
+            self._queued_bytes = 0
         if not self._unsent:
             return
         with contextlib.suppress(BlockingIOError, BrokenPipeError, ConnectionResetError):  # `read` notices its end
             done = self.socket.send(self._unsent, socket.MSG_DONTWAIT | socket.MSG_NOSIGNAL)
-            self._unsent = self._unsent[done:]
-        self._use.unread(len(self._unsent))
+            del self._unsent[:done]
+        self._count()
 
     def mark(self, ordinal: int) -> None:
         """Note that publication number `ordinal` of the hub is handled as soon as the current queue is."""
@@ -145,6 +158,7 @@ class ProcessLink:
             handle(self, data[at + 4], data[at + 5 : after])
             at = after
         self._rest = data[at:]
+        self._count()
 
     def _bad_length(self, length: int, kind: bytes) -> Violation:
         limit = self._use.limits.message_bytes
@@ -178,4 +192,6 @@ class ProcessLink:
 
     def close(self) -> None:
         """Close the connection."""
+        self._queued_bytes, self._unsent, self._rest = 0, bytearray(), b""
+        self._count()
         self.socket.close()

@@ -30,9 +30,14 @@ class MomentCounter:
         """Count from 0 again: the hub has published something, which the program may answer."""
         self._total = 0
         self._sent.clear()
+        self._senders.clear()
 
     def count(self, sender: EndpointFrame, now: int, number: int = 1) -> None:
-        """Count what was sent at the time `now` (ns). Raises `Violation` if it is too much."""
+        """Count what was sent at the time `now` (ns). Raises `Violation` if it is too much.
+
+        A report of nothing counts as one message: it, too, takes memory.
+        """
+        number = max(1, number)
         if now != self._now:
             self._now = now
             self.begin()

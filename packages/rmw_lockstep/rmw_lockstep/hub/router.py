@@ -20,14 +20,10 @@ from rmw_lockstep.hub.endpoints import (
 from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndpointFrame, NodeFrame
 from rmw_lockstep.hub.graph import HUB, HubGraph
 from rmw_lockstep.hub.limits import HubUsage, Violation
-from rmw_lockstep.hub.link import ProcessLink
+from rmw_lockstep.hub.link import FRAME_OVERHEAD, ProcessLink
 from rmw_lockstep.hub.moment_counter import MomentCounter
 from rmw_lockstep.qos import TRANSIENT_LOCAL, QosPolicies
 from rmw_lockstep.type_hash import type_hash
-
-#: Requests of other processes that one process may leave unanswered.
-MOST_REQUESTS = 10_000
-
 
 @dataclass(frozen=True)
 class Route:
@@ -57,7 +53,7 @@ class Router:
         self._numbers = count(1)
         self._ends: dict[int, HubEndpoint] = {}
         self._routes: dict[int, Route] = {}
-        self._held: list[tuple[tuple[int, int], ProcessLink, bytes]] = []
+        self._held: list[tuple[ProcessLink, ProcessLink, bytes]] = []
         self._asked: list[tuple[tuple[int, int], HubServer, PendingRequest]] = []
         self.unserved: list[PendingRequest] = []
         self._handlers: dict[int, Callable[[ProcessLink, bytes], None]] = {
@@ -186,15 +182,17 @@ class Router:
         if origin is None:
             to.queue(frame)
         else:
-            self._held.append((origin.order, to, frame))
+            self._use.unread(len(frame) + FRAME_OVERHEAD)
+            self._held.append((origin, to, frame))
 
     def deliver(self) -> bool:
         """Forward what processes sent to one another, in the order of the senders. Return whether there was anything.
 
         Processes run in parallel; otherwise it would be random whose message arrives first.
         """
-        held, self._held = sorted(self._held, key=lambda one: one[0]), []
+        held, self._held = sorted(self._held, key=lambda one: one[0].order), []
         for _, to, frame in held:
+            self._use.unread(-len(frame) - FRAME_OVERHEAD)
             if to in self.links:
                 to.queue(frame)
         asked, self._asked = sorted(self._asked, key=lambda one: one[0]), []
@@ -226,8 +224,10 @@ class Router:
             if data.only in (0, subscription.endpoint.id):
                 stage = self._stage(link, handled)
                 subscription.take(DeliveredMessage(publisher, route.node, now, stage, handled, ordered, data.cdr))
-        for other in route.links:
-            self._pass_on(link, other, frames.to_data(publisher.id, data.only, data.source_time, data.cdr))
+        if route.links:
+            frame = frames.to_data(publisher.id, data.only, data.source_time, data.cdr)
+            for other in route.links:
+                self._pass_on(link, other, frame)
 
     def _kept(self, link: ProcessLink, payload: bytes) -> None:
         """Count messages that stayed inside a process."""
@@ -290,8 +290,7 @@ class Router:
         link = self._link(server.process)
         if link is None:
             return
-        if len(link.requests) >= MOST_REQUESTS:
-            raise Violation("messages", "unanswered requests", found=len(link.requests) + 1, limit=MOST_REQUESTS)
+        self._use.unanswered(1 + sum(len(other.requests) for other in self.links))
         link.requests.add((client, number))
         self._pass_on(origin, link, frames.to_request(server.id, client, number, source_time, cdr))
 
