@@ -116,6 +116,10 @@ class WorkStealing:
 #: Python objects, in the grader's memory, it takes about ten times as much.
 MOST_BYTES, LEAST_BYTES = 24_000_000, 1_000_000
 
+#: What reading all that a submission sends may cost the grader, in all scenarios together; the least that each scenario
+#: gets of it; and more for each message of the scenario (CPU seconds). The course's solutions need 0.1 s a scenario.
+HUB_CPU_S, LEAST_HUB_CPU_S, HUB_CPU_S_PER_MESSAGE = 10.0, 1.0, 0.002
+
 
 @dataclass(frozen=True)
 class ScenarioRunner:
@@ -195,6 +199,7 @@ class ScenarioRunner:
             core=cores[number % len(cores)] if self.options.core is None else self.options.core,
             pace=self.options.pace,
             data_bytes=max(LEAST_BYTES, MOST_BYTES // len(self.scenarios)),
+            hub_cpu_s=max(LEAST_HUB_CPU_S, HUB_CPU_S / len(self.scenarios)) + HUB_CPU_S_PER_MESSAGE * scenario.size,
             programs=programs,
             companions=tuple(_companion(companion) for companion in scenario.companions),
         )

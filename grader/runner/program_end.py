@@ -155,9 +155,10 @@ _MESSAGES = {
         "Your program does not take what is sent to it, by the grader or by its own processes: more than {limit:,} bytes "
         "are waiting."
     ),
+    "unanswered": "More than {limit:,} requests between your program's processes wait for an answer.",
     "wake-ups": "Your program woke up more than {limit:,} times in one scenario. Does a loop wait for no time at all?",
     "cpu": (
-        "Your program kept the grader busy: what it sent took more than {limit:,} s of computing time to read. "
+        "Your program kept the grader busy: what it sent took more than {limit:.1f} s of computing time to read. "
         "Does a loop send, or create and remove, something without waiting?"
     ),
     "frames": "Your program changed the ROS graph, or fell asleep, more than {limit:,} times in one scenario.",

@@ -23,11 +23,6 @@ if TYPE_CHECKING:
     )
 
 
-#: What reading a program's messages may cost the grader in one scenario, and more for each message of the scenario
-#: (CPU seconds). The course's solutions cost 0.1 s at most.
-HUB_CPU_S, HUB_CPU_S_PER_MESSAGE = 5, 0.002
-
-
 class Job(Protocol):
     """A job for a process of the worker pool. It calls `ready` as soon as other threads may start."""
 
@@ -50,6 +45,8 @@ class RunJob:
     pace: float | None = None
     data_bytes: int = 8_000_000
     """What the program may publish in all messages together."""
+    hub_cpu_s: float = 5.0
+    """What reading all that it sends may cost the grader."""
     programs: tuple[ProgramSpec, ...] = ()
     """The programs of a submission with several, instead of `program`."""
     companions: tuple[ProgramSpec, ...] = ()
@@ -73,7 +70,7 @@ class RunJob:
         return run(
             self._task,
             partial(start, self.program),
-            HubLimits(data_bytes=self.data_bytes, cpu_s=HUB_CPU_S + round(HUB_CPU_S_PER_MESSAGE * self.scenario.size)),
+            HubLimits(data_bytes=self.data_bytes, cpu_s=self.hub_cpu_s),
             {program.main: partial(start, program) for program in self.programs},
             [partial(start, program) for program in self.companions],
         )

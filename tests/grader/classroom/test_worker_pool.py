@@ -76,6 +76,13 @@ def test_a_worker_does_its_jobs_in_one_process_and_in_another_once_that_died() -
         wait_until(lambda: not runs(second))
 
 
+def test_a_process_of_the_pool_that_takes_too_much_memory_gets_an_error_and_spares_the_machine() -> None:
+    code = "from grader.workers.fork import limit_memory\nlimit_memory()\nlen(bytes(500 << 20))\nbytes(2 << 30)"
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert ended.stderr.strip().endswith("MemoryError")
+    assert "line 4" in ended.stderr
+
+
 def test_a_pool_that_was_closed_does_no_more_jobs() -> None:
     with WorkerPool() as workers:
         pass

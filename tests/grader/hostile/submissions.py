@@ -1,4 +1,4 @@
-"""Reads submissions.md: hostile and broken programs, each with the grade that it must get."""
+"""Reads hostile and broken programs, each with the grade that it must get: submissions.md and on_the_grader.md."""
 
 from __future__ import annotations
 
@@ -18,6 +18,9 @@ FILE = Path(__file__).with_suffix(".md")
 #: What most of them change: a right solution with nothing to hide.
 HONEST = Path(__file__).parent / "honest.py"
 
+#: What is above each attack on the grader's own processes.
+RAW_CONNECTIONS = HONEST.with_name("raw_connections.py").read_text()
+
 
 @dataclass(frozen=True)
 class HostileProgram:
@@ -32,11 +35,12 @@ class HostileProgram:
     never: tuple[str, ...] = ()
 
 
-def _program(edit: Edit) -> HostileProgram:
+def _program(edit: Edit, above: str = "") -> HostileProgram:
     tries, _, grade = (" ".join(part.split()) for part in edit.text.partition("Expected:"))
     expected = tomllib.loads(f"grade = {grade}")["grade"]
     lists = {key: tuple(expected.pop(key)) for key in ("outcome", "words", "never") if key in expected}
-    return HostileProgram(edit.name, tries, edit.applied_to(HONEST), **expected, **lists)
+    return HostileProgram(edit.name, tries, above + edit.applied_to(HONEST), **expected, **lists)
 
 
 SUBMISSIONS = {edit.name: _program(edit) for edit in read_edits(FILE)}
+ON_THE_GRADER = {edit.name: _program(edit, RAW_CONNECTIONS) for edit in read_edits(FILE.with_name("on_the_grader.md"))}

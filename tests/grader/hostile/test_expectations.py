@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from submissions import SUBMISSIONS
+from submissions import ON_THE_GRADER, SUBMISSIONS
 
 OUTCOMES = {"graded", "did-not-start", "crashed", "timed-out", "over-limit"}
 
@@ -12,9 +12,9 @@ def test_there_are_enough_of_them() -> None:
     assert len(SUBMISSIONS) >= 80
 
 
-@pytest.mark.parametrize("name", SUBMISSIONS)
+@pytest.mark.parametrize("name", [*SUBMISSIONS, *ON_THE_GRADER])
 def test_each_says_what_it_tries_and_which_grade_it_must_get(name: str) -> None:
-    program = SUBMISSIONS[name]
+    program = {**SUBMISSIONS, **ON_THE_GRADER}[name]
     assert program.tries.endswith(".")
     assert set(program.outcome) <= OUTCOMES
     assert program.outcome

@@ -64,7 +64,7 @@ def scripted(fork_server: ForkServer) -> Scripted:
     """Run a program's source through a scenario, as its author wrote it."""
     level = choose(None)
 
-    def run_it(source: str, scenario: Scenario) -> Recording:
+    def run_it(source: str, scenario: Scenario, outcome: str = "completed") -> Recording:
         complete = ready(scenario)
 
         def start(hub: Path) -> SandboxedProgram:
@@ -74,7 +74,7 @@ def scripted(fork_server: ForkServer) -> Scripted:
             return fork_server.start(given, level, Limits())
 
         found = run(Task(EXERCISE, complete, "node.py", source), start)
-        assert found.ending.outcome == "completed", found.ending.message + found.log
+        assert found.ending.outcome == outcome, found.ending.message + found.log
         return found
 
     return run_it
@@ -302,6 +302,21 @@ def test_a_client_that_asks_for_the_result_of_a_rejected_goal_is_recorded(script
     (goal,) = recording.goals
     assert goal.asked_result is not None
     assert received(recording, "/text")[-1][1] == "status 0 []"
+
+
+def test_goals_without_end_are_not_kept(scripted: Scripted) -> None:
+    asks = "sent = self.client.send_goal_async(Fibonacci.Goal(order=3), self.fed)"
+    flood = ACTION_CLIENT.replace(asks, f"for _ in range(400): {asks}")
+    scenario = Scenario("s", "t", servers=ActionServer("/climb", goals=rejects()), duration=1.5)
+    ending = scripted(program(flood), scenario, "over-limit").ending
+    assert ending.message == "Your node sent more than 300 goals to /climb."
+
+
+def test_answers_without_end_are_not_kept(scripted: Scripted, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("grader.runner.service_servers.MOST_BYTES", 10_000)
+    scenario = Scenario("s", "t", servers=Server("/lamp", replies=reply(message="x" * 4_000)), duration=3.0)
+    ending = scripted(program(SERVICE_CLIENT), scenario, "over-limit").ending
+    assert ending.message.startswith("Your node called /lamp so often that the answers take more than 10,000 bytes")
 
 
 def test_a_turtle_goes_where_the_program_drives_it(scripted: Scripted) -> None:

@@ -17,7 +17,7 @@ class HubGraph:
     def __init__(self) -> None:
         self.nodes: dict[int, NodeFrame] = {}
         self.endpoints: dict[int, EndpointFrame] = {}
-        self._by_name: dict[str, list[EndpointFrame]] = {}
+        self._by_name: dict[str, dict[int, EndpointFrame]] = {}
         self._readers: dict[int, tuple[EndpointFrame, ...]] = {}
 
     def add_node(self, node: NodeFrame) -> None:
@@ -31,14 +31,14 @@ class HubGraph:
     def add(self, endpoint: EndpointFrame) -> None:
         """Add an endpoint."""
         self.endpoints[endpoint.id] = endpoint
-        self._by_name.setdefault(endpoint.name, []).append(endpoint)
+        self._by_name.setdefault(endpoint.name, {})[endpoint.id] = endpoint
         self._readers.clear()
 
     def remove(self, number: int) -> EndpointFrame:
         """Remove an endpoint."""
         endpoint = self.endpoints.pop(number)
         same_name = self._by_name[endpoint.name]
-        same_name.remove(endpoint)
+        del same_name[number]
         if not same_name:
             del self._by_name[endpoint.name]
         self._readers.clear()
@@ -76,8 +76,8 @@ class HubGraph:
 
     def of_program(self, name: str, kind: int) -> list[EndpointFrame]:
         """Return the program's own endpoints of this kind and name."""
-        return [e for e in self._by_name.get(name, ()) if e.kind == kind and e.process != HUB]
+        return [e for e in self._by_name.get(name, {}).values() if e.kind == kind and e.process != HUB]
 
     def _named(self, other: EndpointFrame, kind: int) -> list[EndpointFrame]:
         """Return the endpoints of this kind with the same name and type."""
-        return [e for e in self._by_name.get(other.name, ()) if e.kind == kind and e.type == other.type]
+        return [e for e in self._by_name.get(other.name, {}).values() if e.kind == kind and e.type == other.type]

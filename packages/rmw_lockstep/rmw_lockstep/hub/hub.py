@@ -359,12 +359,12 @@ class Hub:
 
     def _take(self) -> None:
         """Wait at most 20 ms for something to arrive, and take it. Raises `Violation`, and what `on_tick` raises."""
-        links, before = self.links, time.thread_time()
-        if len(links) == 1 and not self._awaited and not links[0].unsent:
-            self._read(links[0], 0)
-        else:
-            self._take_from_any()
-        self._use.cpu(time.thread_time() - before)
+        links = self.links
+        with self._use.cpu():
+            if len(links) == 1 and not self._awaited and not links[0].unsent:
+                self._read(links[0], 0)
+            else:
+                self._take_from_any()
         now = time.monotonic()
         if now >= self._due:
             self._due = now + TICK_S

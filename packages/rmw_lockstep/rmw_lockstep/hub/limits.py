@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal
 
@@ -19,6 +22,7 @@ Reason = Literal[
     "endpoints",
     "connections",
     "unread",
+    "unanswered",
     "wake-ups",
     "cpu",
 ]
@@ -55,14 +59,18 @@ class HubLimits:
     """Requests of other processes that it leaves unanswered."""
     wake_ups: int = 1_000_000
     """How often several processes may be granted time. A single process gets it in one piece."""
-    cpu_s: int = 5
+    cpu_s: float = 5.0
     """CPU seconds that taking what they send may cost the hub. 10,000 messages cost it about 0.3 s."""
+
+
+#: How many frames are handled before the CPU time is looked at again: some take milliseconds each.
+FRAMES_PER_LOOK = 100
 
 
 class Violation(Exception):
     """Raised when a program sends what no correct program sends. `found` exceeds `limit`, unless that is 0."""
 
-    def __init__(self, reason: Reason, text: str, *, found: int = 0, limit: int = 0) -> None:
+    def __init__(self, reason: Reason, text: str, *, found: float = 0, limit: float = 0) -> None:
         super().__init__(text)
         self.reason = reason
         self.text = text
@@ -81,13 +89,15 @@ class HubUsage:
         self.unread_bytes = 0
         self.connections = 0
         self.wake_ups = 0
-        self.cpu_s = 0.0
+        self.cpu_s = self._since = 0.0
 
     def frame(self) -> None:
         """Count a frame."""
         self.frames += 1
         if self.frames > self.limits.frames:
             raise _exceeded("frames", "frames", self.frames, self.limits.frames)
+        if not self.frames % FRAMES_PER_LOOK:
+            self._look_at_cpu()
 
     def data(self, size: int) -> None:
         """Count a message of `size` bytes."""
@@ -115,11 +125,18 @@ class HubUsage:
         if self.wake_ups > self.limits.wake_ups:
             raise _exceeded("wake-ups", "wake-ups", self.wake_ups, self.limits.wake_ups)
 
-    def cpu(self, seconds: float) -> None:
-        """Count CPU time of the hub."""
-        self.cpu_s += seconds
+    @contextmanager
+    def cpu(self) -> Iterator[None]:
+        """Count the CPU time of this thread inside the `with` block, in which frames are taken."""
+        self._since = time.thread_time()
+        yield
+        self._look_at_cpu()
+
+    def _look_at_cpu(self) -> None:
+        now = time.thread_time()
+        self.cpu_s, self._since = self.cpu_s + now - self._since, now
         if self.cpu_s > self.limits.cpu_s:
-            raise _exceeded("cpu", "CPU seconds of the hub", int(self.cpu_s) + 1, self.limits.cpu_s)
+            raise _exceeded("cpu", "CPU seconds of the hub", self.cpu_s, self.limits.cpu_s)
 
     def nodes(self, count: int) -> None:
         """Check that there may be `count` nodes."""
@@ -134,14 +151,14 @@ class HubUsage:
     def unread(self, size: int) -> None:
         """Count `size` more bytes that are kept for a process until it reads them; fewer if `size` is negative."""
         self.unread_bytes += size
-        if self.unread_bytes > self.limits.unread_bytes:
+        if size > 0 and self.unread_bytes > self.limits.unread_bytes:
             raise _exceeded("unread", "unread bytes", self.unread_bytes, self.limits.unread_bytes)
 
     def unanswered(self, count: int) -> None:
         """Check that `count` requests may be left unanswered."""
         if count > self.limits.unanswered:
-            raise _exceeded("messages", "unanswered requests", count, self.limits.unanswered)
+            raise _exceeded("unanswered", "unanswered requests", count, self.limits.unanswered)
 
 
-def _exceeded(reason: Reason, what: str, found: int, limit: int) -> Violation:
+def _exceeded(reason: Reason, what: str, found: float, limit: float) -> Violation:
     return Violation(reason, f"{found:,} {what}; the limit is {limit:,}", found=found, limit=limit)

@@ -1,0 +1,93 @@
+"""Whatever a submission makes the grader keep or compute is bounded, and the next student's grade is as before."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import threading
+from collections.abc import Iterator
+
+import psutil
+import pytest
+from submissions import HONEST, ON_THE_GRADER
+from test_through_the_grader import EXERCISE, shown
+
+from grader.exercise import load
+from grader.grading import Grade, Options, grading_of
+from grader.grading.grading import Grading
+from grader.submission.reader import of_source
+from grader.workers import WorkerPool
+
+#: What all of the grader's processes may take together (bytes), and one submission of its time (CPU seconds).
+MOST_MEMORY, MOST_CPU_S = 1_000_000_000, 60.0
+
+
+@pytest.fixture(scope="module")
+def grading() -> Iterator[Grading]:
+    with WorkerPool() as workers:
+        yield grading_of(load(EXERCISE), Options(parallel=2), workers)
+
+
+class GraderProcesses:
+    """Watches, in a thread, the memory and CPU time of this process and its children, without the students' own."""
+
+    def __init__(self) -> None:
+        self.most_memory, self.cpu_s = 0, 0.0
+        self._cpu = {process: seconds(process) for process in grader_processes()}
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._watch, daemon=True)
+
+    def _watch(self) -> None:
+        while not self._ended.wait(0.1):
+            memory = 0
+            for process in grader_processes():
+                with contextlib.suppress(psutil.Error):
+                    memory += process.memory_full_info().pss
+                    before = self._cpu.get(process, 0.0)
+                    self._cpu[process] = seconds(process)
+                    self.cpu_s += self._cpu[process] - before
+            self.most_memory = max(memory, self.most_memory)
+
+    def __enter__(self) -> GraderProcesses:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._ended.set()
+        self._thread.join()
+
+
+def seconds(process: psutil.Process) -> float:
+    times = process.cpu_times()
+    return times.user + times.system
+
+
+def grader_processes() -> Iterator[psutil.Process]:
+    """Yield this process and all that it started, down to the supervisors, whose children are students' programs."""
+    waiting = [psutil.Process()]
+    while waiting:
+        process = waiting.pop()
+        yield process
+        with contextlib.suppress(psutil.Error):
+            is_fork_server = "grader.sandbox.zygote" in process.cmdline()
+            waiting += [] if is_fork_server else process.children()
+
+
+def grade_of(grading: Grading, name: str, source: str) -> Grade:
+    return grading.grade(of_source(f"{name}.py", source.encode(), grading.runner.exercise))
+
+
+@pytest.mark.parametrize("name", ON_THE_GRADER)
+def test_an_attack_on_the_grader_is_over_within_its_limits(grading: Grading, name: str) -> None:
+    program = ON_THE_GRADER[name]
+    with GraderProcesses() as processes:
+        grade = grade_of(grading, name, program.source)
+    assert grade.outcome in program.outcome, (grade.outcome, grade.message)
+    assert (grade.score == 0) if program.score == "zero" else not grade.full_marks
+    assert all(re.search(words, shown(grade)) for words in program.words), shown(grade)
+    assert processes.most_memory < MOST_MEMORY
+    assert processes.cpu_s < MOST_CPU_S
+
+
+def test_the_next_student_gets_the_same_grade_as_before(grading: Grading) -> None:
+    assert grade_of(grading, "honest", HONEST.read_text()).full_marks
