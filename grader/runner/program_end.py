@@ -152,8 +152,8 @@ _MESSAGES = {
     "endpoints": "Your program created more than {limit:,} publishers, subscriptions, clients and services.",
     "connections": "Your program started more than {limit:,} processes.",
     "unread": (
-        "Your program does not take what is sent to it, by the grader or by its own processes: more than {limit:,} bytes "
-        "are waiting."
+        "Your program does not take what is sent to it, by the grader or by its own processes: more than {limit:,} "
+        "bytes are waiting."
     ),
     "unanswered": "More than {limit:,} requests between your program's processes wait for an answer.",
     "wake-ups": "Your program woke up more than {limit:,} times in one scenario. Does a loop wait for no time at all?",

@@ -18,7 +18,6 @@ from grader.scenario.servers import Server as Declared
 from grader.scenario.values import InvalidValue, check_fields
 from rmw_lockstep.hub import HubServer, PendingRequest
 
-
 #: No exercise needs more calls of one service from a node in one scenario, and no more bytes in the answers.
 MOST_CALLS, MOST_BYTES = 5_000, 8_000_000
 

@@ -39,7 +39,7 @@ class Raw:
         self.sent(frame("H", struct.pack("<IIIB", 3, next(PIDS), 1, 1)))
 
     def join(self):
-        kind, payload = self.read()
+        _, payload = self.read()
         self.base = struct.unpack_from("<I", payload, 4)[0] << 32
         self.handled = 1
         return self.sent(frame("J"), self.node())
@@ -86,5 +86,3 @@ def attack(does):
             print("the attack ended:", error)
 
     threading.Thread(target=tries, daemon=True).start()
-
-

@@ -25,6 +25,7 @@ from rmw_lockstep.hub.moment_counter import MomentCounter
 from rmw_lockstep.qos import TRANSIENT_LOCAL, QosPolicies
 from rmw_lockstep.type_hash import type_hash
 
+
 @dataclass(frozen=True)
 class Route:
     """Where the messages of one publisher go: to the hub's subscriptions, and to processes.
