@@ -37,7 +37,9 @@ _AT_ONCE = 2 * (os.cpu_count() or 1)
     show_default=True,
     help="Time limit per notebook, in seconds.",
 )
-@click.option("--strict", "is_strict", is_flag=True, help="Treat code that is shown but not run as an error.")
+@click.option(
+    "--strict", "is_strict", is_flag=True, help="Treat code that is shown but not run, and errors of nodes, as errors."
+)
 @click.option("--again", is_flag=True, help="Also run notebooks that have not changed since their last good run.")
 @click.argument("chapters", nargs=-1)
 def build(
@@ -49,8 +51,9 @@ def build(
     build/executed/. It does not run a chapter again whose code has not changed since a good run. CHAPTERS, such as
     03-nodes-and-topics, run only those.
 
-    Code that can't run here is shown with the reason, and counted at the end; `spinbook lint` lists each place. With
-    --strict, for the CI of your own course, it is an error.
+    Code that can't run here is shown with the reason, and counted at the end; `spinbook lint` lists each place. What
+    goes wrong in a node after its cell has ended is reported, too. With --strict, for the CI of your own course, both
+    are errors; write `expect-error` on a fence whose node is meant to fail.
 
     Exit code: 0 no errors, 1 a chapter has an error or a cell failed; the other chapters are built anyway.
     """
@@ -66,7 +69,7 @@ def build(
     if run and compiled:
         chosen = [item for item in built if not item.failed and _is_chosen(item, chapters)]
         try:
-            failed = _execute(console, course, chosen, jobs, deadline, again) or failed
+            failed = _execute(console, course, chosen, jobs, deadline, again, is_strict) or failed
         except KeyboardInterrupt:
             console.print("Interrupted: the notebooks that were running have been ended; finished ones are kept.")
             sys.exit(130)
@@ -130,9 +133,15 @@ def _report_built(console: Console, built: list[BuildResult]) -> None:
 
 
 def _execute(
-    console: Console, course: Course, built: list[BuildResult], at_once: int, deadline_s: float, again: bool
+    console: Console,
+    course: Course,
+    built: list[BuildResult],
+    at_once: int,
+    deadline_s: float,
+    again: bool,
+    is_strict: bool,
 ) -> bool:
-    """Run notebooks with a progress bar. Return whether one failed."""
+    """Run notebooks with a progress bar. Return whether one failed; with `is_strict`, an error of a node counts."""
     jobs = [NotebookJob(item.chapter, item.notebook, course.build_folder, deadline_s) for item in built]
     columns = (
         TextColumn("{task.description}"),
@@ -153,13 +162,18 @@ def _execute(
         for executed in execute(jobs, at_once, on_progress, again=again):
             bars.remove_task(tasks[executed.chapter])
             _report_executed(console, executed)
-            failed = failed or bool(executed.failures)
+            failed = failed or bool(executed.failures) or (is_strict and bool(executed.node_errors))
     return failed
 
 
 def _report_executed(console: Console, executed: ExecutionResult) -> None:
     name = executed.file.name.removesuffix(".ipynb")
-    if executed.cached:
+    if executed.node_errors and not executed.failures:
+        since = "unchanged since its last run" if executed.cached else f"ran in {executed.seconds:.0f} s"
+        count = len(executed.node_errors)
+        what = f"but something went wrong in its nodes ({count} report{'s' * (count > 1)})"
+        console.print(f"  ✗ {name}: {since}, {what}", markup=False, style="red")
+    elif executed.cached:
         console.print(f"  ✓ {name}: unchanged since its last run", markup=False)
     elif not executed.failures:
         console.print(f"  ✓ {name}: ran in {executed.seconds:.0f} s", markup=False, style="green")
@@ -168,5 +182,5 @@ def _report_executed(console: Console, executed: ExecutionResult) -> None:
         console.print(f"  ✗ {name}: {count} cell{'s' * (count > 1)} failed", markup=False, style="red")
         for failure in executed.failures:
             console.print(str(failure), markup=False)
-    for warning in executed.warnings:
+    for warning in (*executed.node_errors, *executed.warnings):
         console.print(str(warning), markup=False, style="yellow")

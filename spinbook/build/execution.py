@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import shutil
 import sys
 import tempfile
@@ -20,101 +19,8 @@ import grader
 from groundwork.files import write_if_changed
 from interface_compiler import activation
 from spinbook.build.digest import code_digest, digest, folders_digest, versions
-from spinbook.kernel.cell_output import NEVER_APPEARED, in_short
+from spinbook.build.failures import CellFailure, find_failures, find_node_errors, find_warnings
 from spinbook.kernel.process import KeptProcess
-
-_ANSI = re.compile(r"\x1b\[[0-9;]*m")
-#: A traceback's line in a module that a node cell wrote, or in a snippet's cell.
-_IN_MODULE = r'File "[^"]*\b{module}\.py", line (\d+)'
-_IN_CELL = re.compile(r"Cell In\[\d+\], line (\d+)|^File <[^>]*>:(\d+)|-+> (\d+) ", re.MULTILINE)
-_LOG_LINES = (8, 12)
-
-
-@dataclass(frozen=True)
-class CellFailure:
-    """One cell that failed. `line` is the chapter's line, as near to the fault as is known; `log` is the output."""
-
-    chapter: Path
-    line: int
-    what: str
-    log: str
-
-    def __str__(self) -> str:
-        text = f"{self.chapter}:{self.line}: {self.what}"
-        return text + "".join(f"\n    | {line}" for line in self.log.splitlines())
-
-
-def find_failures(chapter: Path, ran: dict[str, Any], ended: dict[str, Any]) -> list[CellFailure]:
-    """Return the failures of one run. If the run was interrupted in a cell, the outputs of that cell in `ran` say so.
-    `ended` is what the run's process reported about its end: {"finished": …}, {"timed_out": INDEX}, {"died": INDEX} or
-    {"crashed": words}; `ran` is the notebook with the outputs that were written.
-    """
-    cells = ran["cells"]
-    failures = list(_failed_cells(chapter, cells))
-    if "timed_out" in ended or "died" in ended:
-        index = ended.get("timed_out", ended.get("died"))
-        cell = cells[index] if index is not None else cells[0]
-        what = (
-            "the notebook's time limit passed in this cell" if "timed_out" in ended else "the kernel died in this cell"
-        )
-        note = f"{what}; it and its nodes were ended, and the cells below did not run."
-        failures.append(CellFailure(chapter, _line(cell), note, _printed(cell)))
-        if cell["cell_type"] == "code":
-            cell["outputs"].append({"output_type": "stream", "name": "stderr", "text": f"{note.capitalize()}\n"})
-    elif "crashed" in ended:
-        words = in_short(ended["crashed"], *_LOG_LINES)
-        failures.append(
-            CellFailure(chapter, 1, "the notebook could not be run (this is not the chapter's fault).", words)
-        )
-    return failures
-
-
-def find_warnings(chapter: Path, ran: dict[str, Any]) -> list[CellFailure]:
-    """Find the cells that waited in vain for a text (`until=`): their outputs do not show what the chapter says."""
-    warnings = []
-    for cell in ran["cells"]:
-        if cell["cell_type"] == "code" and (never := NEVER_APPEARED.search(_printed(cell))):
-            what = f"`until` failed: {never[1]} was not printed within {never[2]} s. Correct it, or raise `seconds`."
-            warnings.append(CellFailure(chapter, _line(cell), what, ""))
-    return warnings
-
-
-def _failed_cells(chapter: Path, cells: list[dict[str, Any]]) -> Iterator[CellFailure]:
-    for cell in cells:
-        if cell["cell_type"] != "code":
-            continue
-        error = next((o for o in cell["outputs"] if o["output_type"] == "error"), None)
-        expected = "raises-exception" in cell["metadata"].get("tags", [])
-        if error and not expected:
-            yield _failure(chapter, cell, error)
-        elif expected and not error and cell["execution_count"]:
-            what = "this cell says `raises`, but it did not fail."
-            yield CellFailure(chapter, _line(cell), what, in_short(_printed(cell), *_LOG_LINES))
-
-
-def _failure(chapter: Path, cell: dict[str, Any], error: dict[str, Any]) -> CellFailure:
-    traceback = _ANSI.sub("", "\n".join(error["traceback"]))
-    printed = _printed(cell)
-    line = _line(cell)
-    node = cell["metadata"].get("spinbook", {}).get("node")
-    above = cell["metadata"].get("spinbook", {}).get("above", 0)
-    if node:
-        inside = re.findall(_IN_MODULE.format(module=re.escape(node)), printed)
-        line += max(int(inside[-1]) - above, 1) - 1 if inside else 0
-    elif inside := _IN_CELL.findall(traceback):
-        line += max(next(int(number) for number in inside[0] if number) - above, 1) - 1
-    is_ours = error["ename"] == "CellFailed"
-    what = error["evalue"] if is_ours else f"{error['ename']}: {error['evalue']}"
-    return CellFailure(chapter, line, what, in_short(printed, *_LOG_LINES) if printed else "")
-
-
-def _line(cell: dict[str, Any]) -> int:
-    return int(cell["metadata"].get("spinbook", {}).get("line", 1))
-
-
-def _printed(cell: dict[str, Any]) -> str:
-    return "".join("".join(o["text"]) for o in cell.get("outputs", []) if o["output_type"] == "stream")
-
 
 #: The time limit of a notebook (s), and how much longer its process may take to report it.
 DEADLINE_S = 600.0
@@ -134,6 +40,8 @@ class ExecutionResult:
     cached: bool
     warnings: tuple[CellFailure, ...] = ()
     """Cells that did not fail, but did not show what they should."""
+    node_errors: tuple[CellFailure, ...] = ()
+    """What went wrong in nodes, although their cells did not fail."""
 
 
 @dataclass(frozen=True)
@@ -206,8 +114,7 @@ def _execute_one(
     if not again and (remembered := _remembered(job, key)) is not None:
         write_if_changed(job.executed, _with_outputs(notebook, remembered["outputs"]))
         _write_graph(job, remembered["graph"])
-        warnings = find_warnings(job.chapter, json.loads(job.executed.read_text(encoding="utf-8")))
-        return ExecutionResult(job.chapter, job.executed, (), 0.0, cached=True, warnings=tuple(warnings))
+        return _result(job, json.loads(job.executed.read_text(encoding="utf-8")), [], 0.0, cached=True)
     started = time.monotonic()
     raw = job.folder.with_name(f"{job.name}.ipynb")
     ended = _run(job, raw, on_progress, given_up)
@@ -222,10 +129,14 @@ def _execute_one(
     job.record.unlink(missing_ok=True)
     if not failures:
         write_if_changed(job.record, json.dumps({"key": key, "outputs": outputs, "graph": graph}))
-    never = tuple(find_warnings(job.chapter, ran))
-    return ExecutionResult(
-        job.chapter, job.executed, tuple(failures), time.monotonic() - started, cached=False, warnings=never
-    )
+    return _result(job, ran, failures, time.monotonic() - started)
+
+
+def _result(
+    job: NotebookJob, ran: dict[str, Any], failures: list[CellFailure], seconds: float, *, cached: bool = False
+) -> ExecutionResult:
+    warnings, errors = find_warnings(job.chapter, ran), find_node_errors(job.chapter, ran)
+    return ExecutionResult(job.chapter, job.executed, tuple(failures), seconds, cached, tuple(warnings), tuple(errors))
 
 
 def _graph_of(raw: Path) -> Path:
@@ -257,7 +168,7 @@ def _follow(
 ) -> dict[str, Any]:
     """Report the progress of the notebook's process until it ends, or has to be ended."""
     deadline = time.monotonic() + job.deadline_s + _TO_SAY_SO_S
-    cells, ended, rest, output = 0, {"crashed": ""}, "", ""
+    cells, done, ended, rest, output = 0, 0, {"crashed": ""}, "", ""
     try:
         while True:
             data, _ = process.read()
@@ -269,12 +180,13 @@ def _follow(
                 message = json.loads(line)
                 cells = message.get("cells", cells)
                 on_progress(NotebookProgress(job.chapter, message.get("done", 0), cells))
+                done = message.get("done", done)
                 if not {"cells", "done"} & set(message):
                     ended = message
             if process.status.exit is not None:
                 return ended if ended != {"crashed": ""} else {"crashed": output}
             if time.monotonic() > deadline or given_up.is_set():
-                return {"timed_out": None}
+                return {"timed_out": done}
             time.sleep(0.05)
     finally:
         if process.status.running:

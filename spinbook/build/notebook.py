@@ -241,6 +241,8 @@ def _runnable(cell: ChapterCell) -> dict[str, Any]:
         source = cell.shown
     if cell.before:
         metadata["above"] = cell.before.count("\n")
+    if cell.expects_error:
+        metadata["expects_error"] = True
     tags = dict.fromkeys([*cell.tags, *(["raises-exception"] if cell.raises else [])])
     return _code(cell.id, source, metadata, list(tags))
 
@@ -257,9 +259,10 @@ def _how(cell: ChapterCell) -> str:
 
 
 def _bounds(cell: ChapterCell) -> str:
-    """Return the options that say how long a cell shows or runs."""
+    """Return the options that say how long a cell shows or runs, and whether its errors are meant."""
     seconds = f" --seconds {cell.seconds:g}" if cell.seconds else ""
-    return seconds + (f" --until {shlex.quote(cell.until)}" if cell.until else "")
+    until = f" --until {shlex.quote(cell.until)}" if cell.until else ""
+    return seconds + until + (" --expect-error" if cell.expects_error else "")
 
 
 def _shell_line(command: Command, cell: ChapterCell) -> str:

@@ -26,8 +26,11 @@ from nbclient import NotebookClient
 from nbclient.exceptions import DeadKernelError
 
 from groundwork.files import write_if_changed
+from spinbook.build.streams import joined
 from spinbook.graph.model import GraphEndpoint, GraphNode, GraphTopic, NodeGraph
 from spinbook.kernel.environment import DOMAIN_NOTE, EXECUTING, for_domain
+from spinbook.kernel.long_lines import whole_in, with_short_lines
+from spinbook.kernel.node_errors import ERROR
 
 
 class History:
@@ -175,20 +178,23 @@ async def run(notebook: Any, folder: Path, deadline_s: float, watch: GraphWatch,
 
     async def on_executed(cell: Any, cell_index: int, execute_reply: Any) -> None:
         _report(done=cell_index + 1)
-        await watch.cell_ends(cell.id)
+        if cell.id != _END:
+            await watch.cell_ends(cell.id)
 
+    # nbclient would join streams in a time that is quadratic in the length of a line.
     client = NotebookClient(
         notebook,
         km=manager,
         allow_errors=True,
         timeout=None,
         record_timing=False,
-        coalesce_streams=True,
+        coalesce_streams=False,
         resources={"metadata": {"path": str(folder)}},
         on_cell_execute=on_start,
         on_cell_executed=on_executed,
     )
     _report(cells=len(notebook.cells))
+    _add_end(notebook)
     await watch.start()
     running = asyncio.ensure_future(client.async_execute())
     done, _ = await asyncio.wait([running], timeout=deadline_s)
@@ -204,6 +210,23 @@ async def run(notebook: Any, folder: Path, deadline_s: float, watch: GraphWatch,
         _report(died=current)
     else:
         _report(finished=True)
+
+
+#: The id of a cell that runs after the chapter's last one, and is not kept: it ends the nodes.
+_END = "spinbook-end"
+
+
+def _add_end(notebook: Any) -> None:
+    if any("%load_ext spinbook" in cell.source for cell in notebook.cells):
+        notebook.cells.append(nbformat.v4.new_code_cell("%stop --all", id=_END))
+
+
+def _without_end(notebook: Any) -> None:
+    """Remove the last cell; what it reports about nodes is shown in the chapter's last one."""
+    if notebook.cells and notebook.cells[-1].id == _END:
+        reports = [output for output in notebook.cells.pop().outputs if ERROR in output.get("metadata", {})]
+        code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+        code[-1].outputs += reports
 
 
 def _kernel_manager(folder: Path) -> Any:
@@ -224,6 +247,11 @@ def main() -> None:
     watch = GraphWatch(folder / "domain")
     with contextlib.suppress(KeyboardInterrupt):
         asyncio.run(run(notebook, Path.cwd(), deadline_s, watch, _kernel_manager(folder)))
+    _without_end(notebook)
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            cell.outputs = joined(cell.outputs)
+            with_short_lines(cell.outputs, whole_in(Path.cwd(), cell.id))
     if watch.graph is not None:
         write_if_changed(out.with_name(out.name.removesuffix(".ipynb") + ".graph.json"), watch.graph.to_json())
     write_if_changed(out, json.dumps(notebook, ensure_ascii=False, indent=1, sort_keys=True) + "\n")

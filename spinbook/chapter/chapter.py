@@ -20,11 +20,12 @@ class ChapterCell:
 
     `name` is a node's name (its file without .py), an exercise's, or an interface's, such as
     `my_interfaces/msg/Pose.msg`. `seconds` bounds how long it shows or runs (None: the runtime's default), `until` is a
-    text in its log that ends that time early. `raises` says that failing is the lesson. `spin_classes` are the classes
-    to spin where a node's code only defines them, `runs_main` says that its `main` has to be called. `before` is the
-    code that completes a node, taken from the nodes and parts that `after` names; a part is code that later nodes use,
-    and with `runs_in_kernel` a snippet as well. `keeps` says that a node is only saved, because it reads command-line
-    arguments. `executables` are what `ros2 run` calls a node: (package, executable).
+    text in its log that ends that time early. `raises` says that failing is the lesson, `expects_error` that the node's
+    errors are meant. `spin_classes` are the classes to spin where a node's code only defines them, `runs_main` says
+    that its `main` has to be called. `before` is the code that completes a node, taken from the nodes and parts that
+    `after` names; a part is code that later nodes use, and with `runs_in_kernel` a snippet as well. `keeps` says that a
+    node is only saved, because it reads command-line arguments. `executables` are what `ros2 run` calls a node:
+    (package, executable).
     """
 
     kind: CellKind
@@ -35,6 +36,7 @@ class ChapterCell:
     seconds: float | None = None
     until: str | None = None
     raises: bool = False
+    expects_error: bool = False
     spin_classes: tuple[str, ...] = ()
     runs_main: bool = False
     before: str = ""
@@ -154,6 +156,7 @@ def _runnable(item: ClassifiedFence, ids: _Ids) -> ChapterCell:
         seconds=float(fence.attributes["seconds"]) if "seconds" in fence.attributes else None,
         until=fence.attributes.get("until"),
         raises=fence.has("raises"),
+        expects_error=fence.has("expect-error"),
         spin_classes=item.spin_classes,
         runs_main=item.runs_main,
         before=item.before,

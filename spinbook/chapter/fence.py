@@ -22,6 +22,7 @@ ATTRIBUTES = {
     "seconds": "how long the log is shown, or how long each command may run",
     "until": "the cell is done once the log contains this text",
     "raises": "the cell is expected to fail",
+    "expect-error": "the node is expected to log errors, or to fail at some time",
     "static": "shown, never run",
 }
 

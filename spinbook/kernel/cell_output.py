@@ -10,7 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ros_in_python.ros2.domain import participates
+from spinbook.kernel.long_lines import shortened
 from spinbook.kernel.process import KeptProcess
+from spinbook.kernel.reader_frames import ReaderFrames
 
 #: The number of lines shown at first and, if there are more, at the end.
 FIRST_LINES = 60
@@ -26,11 +28,13 @@ _STARTING_S = 20.0
 class DisplayLimit:
     """How long a process is shown: for so many seconds, until it has printed this text, or until it ends.
 
-    The seconds count from its first line, so that a slow machine shows as much as a fast one.
+    The seconds count from its first line, so that a slow machine shows as much as a fast one. `expects_error` says that
+    what goes wrong in it is meant.
     """
 
     seconds: float
     until: str | None = None
+    expects_error: bool = False
 
 
 class Countdown:
@@ -94,12 +98,17 @@ def joins(process: KeptProcess, domain: int) -> Callable[[], bool]:
 class OutputPrinter:
     """Prints lines as they arrive; if there are very many, only the first and, at the end, the last."""
 
-    def __init__(self, first: int = FIRST_LINES, last: int = LAST_LINES) -> None:
+    def __init__(
+        self, first: int = FIRST_LINES, last: int = LAST_LINES, short: Callable[[str], str] = shortened
+    ) -> None:
+        self._short = short
         self._first = first
         self._last: deque[str] = deque(maxlen=last)
         self._count = 0
         self._part = ""
         self._lost = False
+        self._frames = ReaderFrames()
+        self._left_out = 0
         self.seen = ""
         """The last output, to find a text in it."""
 
@@ -115,14 +124,16 @@ class OutputPrinter:
         # A text that arrives in two pieces is found, too.
         self.seen = self.seen[-1000:] + data.decode(errors="replace")
         *lines, self._part = text.split("\n")
-        for line in lines:
+        shown = list(self._frames.shown(lines))
+        self._left_out += len(lines) - len(shown)
+        for line in shown:
             self._line(line)
         sys.stdout.flush()
 
     def _line(self, line: str) -> None:
         self._count += 1
         if self._count <= self._first:
-            print(line.rstrip("\r"))
+            print(self._short(line.rstrip("\r")))
         else:
             self._last.append(line)
 
@@ -131,11 +142,11 @@ class OutputPrinter:
         if self._part:
             self._line(self._part)
             self._part = ""
-        hidden = max(self._count, total_lines) - self._first - len(self._last)
+        hidden = max(self._count, total_lines - self._left_out) - self._first - len(self._last)
         if hidden > 0 or self._lost:
             print(f"… {hidden:,} more lines{rest_is} …")
         for line in self._last:
-            print(line.rstrip("\r"))
+            print(self._short(line.rstrip("\r")))
         sys.stdout.flush()
 
 
@@ -149,13 +160,17 @@ def never_appeared(bound: DisplayLimit) -> str:
 
 
 def show_for(
-    process: KeptProcess, bound: DisplayLimit, rest_is: str, has_joined: Callable[[], bool] = lambda: False
+    process: KeptProcess,
+    bound: DisplayLimit,
+    rest_is: str,
+    has_joined: Callable[[], bool] = lambda: False,
+    short: Callable[[str], str] = shortened,
 ) -> None:
     """Show what a process prints until it ends, or until its time is up; then say what is missing.
 
-    `has_joined` says whether the process takes part in ROS yet (see `joins`).
+    `has_joined` says whether the process takes part in ROS yet (see `joins`), `short` shortens lines that are too long.
     """
-    shown = OutputPrinter()
+    shown = OutputPrinter(short=short)
     countdown = Countdown(bound, has_joined)
     over = came = False
     while not over:
@@ -167,7 +182,7 @@ def show_for(
         if not over:
             time.sleep(_POLL_S)
     shown.end(process.status.lines, rest_is)
-    if bound.until is not None and not came:
+    if bound.until is not None and not came and process.status.exit in (None, 0):
         print(never_appeared(bound))
     elif process.status.running and not shown.has_any:
         print(f"— nothing arrived in {countdown.silent_s:.0f} s —")
@@ -187,7 +202,7 @@ def show_rest(process: KeptProcess, seconds: float) -> None:
 
 def in_short(text: str, first: int = FIRST_LINES, last: int = LAST_LINES) -> str:
     """Return a long log with its middle left out."""
-    lines = text.rstrip("\n").split("\n")
+    lines = [shortened(line) for line in text.rstrip("\n").split("\n")]
     if len(lines) <= first + last:
         return "\n".join(lines)
     left_out = len(lines) - first - last

@@ -6,11 +6,16 @@ import atexit
 import os
 import sysconfig
 import warnings
+from collections.abc import Iterator
+from types import TracebackType
 from typing import Any
+
+from IPython.display import display
 
 from groundwork.clean_environment import without_foreign
 from spinbook.kernel import environment, magics
 from spinbook.kernel import environment as domain
+from spinbook.kernel.node_errors import ERROR
 from spinbook.kernel.process import KeptProcess
 from spinbook.kernel.session import Session
 
@@ -35,6 +40,9 @@ def load(shell: Any) -> None:
     session = Session(domain.shared_domain(int(asked_for)) if asked_for.isdigit() else domain.claim_domain())
     shell.spinbook_session = session
     magics.register(shell, session)
+    shell.events.register("pre_run_cell", lambda info: report_errors(session))
+    shell.events.register("post_run_cell", lambda result: report_errors(session))
+    shell.set_custom_exc((Exception,), _show_own_frames)
     _find_scripts()
     atexit.register(farewell, session)
 
@@ -49,6 +57,35 @@ def _leave_other_installations() -> None:
         del os.environ[name]
     for name in removed.keys() & {"PYTHONPATH", "AMENT_PREFIX_PATH"}:
         print(f"Nodes and checks of this notebook do not use {name}={removed[name]}, which is of another installation.")
+
+
+def report_errors(session: Session) -> None:
+    """Show what has gone wrong in the notebook's nodes since the last call."""
+    for error in session.new_errors():
+        display({"text/plain": error.in_words}, raw=True, metadata={ERROR: error.plain})
+
+
+def _show_own_frames(
+    shell: Any, kind: type[BaseException], error: BaseException, frames: TracebackType, tb_offset: int | None = None
+) -> None:
+    """Show an exception with the frames of cells only, if it has any."""
+    own = None
+    for frame in reversed(list(_each(frames))):
+        if _is_of_cell(frame):
+            own = TracebackType(own, frame.tb_frame, frame.tb_lasti, frame.tb_lineno)
+    shell.showtraceback((kind, error, own or frames), tb_offset=0 if own else tb_offset)
+
+
+def _each(first: TracebackType) -> Iterator[TracebackType]:
+    frame: TracebackType | None = first
+    while frame is not None:
+        yield frame
+        frame = frame.tb_next
+
+
+def _is_of_cell(frame: TracebackType) -> bool:
+    file = frame.tb_frame.f_code.co_filename
+    return "ipykernel_" in file and "site-packages" not in file
 
 
 def _find_scripts() -> None:

@@ -19,7 +19,7 @@ from spinbook.kernel.cell_output import DisplayLimit
 from spinbook.kernel.process import CellFailed
 from spinbook.kernel.session import COMMAND_SECONDS, GRAPH_SECONDS, LOG_SECONDS, NODE_SECONDS, NodeStart, Session
 
-_OWN_OPTION = re.compile(r"""\s*--(seconds|until)\s+("[^"]*"|'[^']*'|\S+)\s*""")
+_OWN_OPTION = re.compile(r"""\s*--(?:(seconds|until)\s+("[^"]*"|'[^']*'|\S+)|(expect-error)(?!\S))\s*""")
 
 
 class LineReader(argparse.ArgumentParser):
@@ -52,13 +52,16 @@ def split(line: str) -> list[str]:
 
 
 def own_options(line: str, seconds: float) -> tuple[DisplayLimit, str]:
-    """Split leading options `--seconds N` and `--until TEXT` from a line whose rest belongs to another command.
-    `seconds` is the default.
+    """Split leading options `--seconds N`, `--until TEXT`, `--expect-error` from a line whose rest belongs to another
+    command. `seconds` is the default.
     """
-    until = None
+    until, expects_error = None, False
     while match := _OWN_OPTION.match(line):
-        option, value = match.groups()
+        option, value, flag = match.groups()
         line = line[match.end() :]
+        expects_error = expects_error or bool(flag)
+        if flag:
+            continue
         if option == "until":
             until = shlex.split(value)[0]
             continue
@@ -66,7 +69,7 @@ def own_options(line: str, seconds: float) -> tuple[DisplayLimit, str]:
             seconds = float(value)
         except ValueError:
             raise CellFailed("`--seconds` needs a number, as in --seconds 5.") from None
-    return DisplayLimit(seconds, until), line
+    return DisplayLimit(seconds, until, expects_error), line
 
 
 @magics_class
@@ -132,16 +135,18 @@ class SpinbookMagics(Magics):
             metavar="PACKAGE/EXECUTABLE",
             help="the name of this node for `ros2 run`",
         )
+        reader.add_argument("--expect-error", action="store_true", help="its errors are meant: do not report them")
         if arguments := reader.read(line):
             name = arguments.name.removesuffix(".py")
             if not name.isidentifier():
                 raise CellFailed(f"`{name}` can't be a node's file name: use letters, digits and underscores.")
             parts = arguments.after if arguments.after or arguments.usual_imports else None
             start = NodeStart(tuple(arguments.classes), arguments.main, tuple(arguments.known_as))
+            bound = DisplayLimit(arguments.seconds, arguments.until, arguments.expect_error)
             if arguments.keep:
                 self.session.keep_node(name, cell, start, parts)
             else:
-                self.session.run_node(name, cell, DisplayLimit(arguments.seconds, arguments.until), start, parts)
+                self.session.run_node(name, cell, bound, start, parts)
 
     @no_var_expand
     @cell_magic
@@ -187,8 +192,6 @@ class SpinbookMagics(Magics):
             running = ", ".join(self.session.nodes.names()) or "none"
             raise CellFailed(f"Which one? %stop NAME, or %stop --all. Started: {running}.")
         for stopped in self.session.stop(None if arguments.all else arguments.names):
-            if not stopped.had_ended and stopped.status.exit not in (0, None) and stopped.output.strip():
-                print(stopped.output.rstrip())
             print(stopped.in_words)
 
     @no_var_expand
@@ -210,6 +213,7 @@ class SpinbookMagics(Magics):
     def ros2(self, line: str) -> None:
         """%ros2 …: run the command of a terminal, with a time limit."""
         bound, rest = own_options(line, COMMAND_SECONDS)
+        self.session.expects_error |= bound.expects_error
         terminal_cells.run_ros2(self.session, split(rest), bound)
 
     @no_var_expand

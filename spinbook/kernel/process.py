@@ -57,16 +57,17 @@ class KeptProcess:
 
     def read(self) -> tuple[bytes, int]:
         """Return (output since the last call, number of bytes dropped before it), and update `status`."""
-        data, dropped, self._offset = self._read_from(self._offset)
+        data, dropped, self._offset = self.read_from(self._offset)
         return data, dropped
 
     def read_all(self) -> tuple[bytes, int]:
         """Return (all output that was kept, number of bytes missing in the middle)."""
-        head, _, offset = self._read_from(0)
-        tail, dropped, _ = self._read_from(offset)
+        head, _, offset = self.read_from(0)
+        tail, dropped, _ = self.read_from(offset)
         return head + tail, dropped
 
-    def _read_from(self, offset: int) -> tuple[bytes, int, int]:
+    def read_from(self, offset: int) -> tuple[bytes, int, int]:
+        """Return (output from this offset on, number of bytes dropped before it, the next offset); update `status`."""
         self._ask({"read": offset})
         line = self._answers.readline()
         if not line:
@@ -90,7 +91,7 @@ class KeptProcess:
         """Wait until it has ended, or for `timeout_s`; its output stays to be read."""
         deadline = time.monotonic() + timeout_s
         while True:
-            self._read_from(1 << 62)
+            self.read_from(1 << 62)
             if not self.status.running or time.monotonic() >= deadline:
                 return self.status
             time.sleep(0.01)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -16,90 +16,14 @@ from spinbook.course.course import Package
 from spinbook.kernel import environment
 from spinbook.kernel.cell_output import DisplayLimit, in_short, joins, show_for, show_rest
 from spinbook.kernel.environment import Domain
-from spinbook.kernel.process import STOP_GRACE, CellFailed, KeptProcess, Status
+from spinbook.kernel.long_lines import whole_in
+from spinbook.kernel.node_errors import AS_EXPECTED, NodeError, how_it_ended
+from spinbook.kernel.node_registry import NodeRegistry, RunningNode, StopResult
+from spinbook.kernel.process import CellFailed, KeptProcess
+from spinbook.kernel.reader_frames import readable
 from spinbook.kernel.timeline_cell import TimelineProcess
 from spinbook.package.files import Module
 from spinbook.package.workspace import add_file, add_module
-
-
-@dataclass
-class RunningNode:
-    """A node that was started and may have ended since."""
-
-    name: str
-    process: KeptProcess
-
-
-@dataclass(frozen=True)
-class StopResult:
-    """How a node ended when it was stopped. `output` is what it printed after that."""
-
-    name: str
-    status: Status
-    output: str
-    had_ended: bool
-
-    @property
-    def in_words(self) -> str:
-        """The result in one line, for the reader."""
-        code, by = self.status.exit, self.status.ended_by
-        if self.had_ended:
-            return f"{self.name} had ended before (exit code {code})."
-        if by == "SIGKILL":
-            return f"{self.name} ignored Ctrl-C and SIGTERM for {sum(STOP_GRACE):g} s; it was killed."
-        if code == 0 or (code is not None and code < 0):
-            late = f", but only after {STOP_GRACE[0]:g} s and SIGTERM" if by == "SIGTERM" else ""
-            return f"{self.name} stopped{late}."
-        return f"{self.name} stopped with exit code {code}; a node that ends normally has 0."
-
-
-class NodeRegistry:
-    """The nodes that this notebook started and did not replace or stop."""
-
-    def __init__(self) -> None:
-        self._nodes: dict[str, RunningNode] = {}
-
-    def start(self, name: str, argv: Sequence[str], settings: Mapping[str, str], cwd: Path) -> RunningNode:
-        """Start a process under this name; one that has the name already is stopped first."""
-        if name in self._nodes:
-            self.stop(name)
-        node = RunningNode(name, KeptProcess(argv, {**os.environ, **settings}, cwd))
-        self._nodes[name] = node
-        return node
-
-    def get(self, name: str) -> RunningNode | None:
-        """Return the node of that name, running or ended."""
-        return self._nodes.get(name)
-
-    def names(self) -> list[str]:
-        """Return the names, in the order in which they were started."""
-        return list(self._nodes)
-
-    def status(self, name: str) -> Status:
-        """Return the current status of a node."""
-        return self._nodes[name].process.wait(0)
-
-    def stop(self, name: str) -> StopResult:
-        """End a node as Ctrl-C would, or by force if that does not help, and forget it."""
-        return self.stop_all([name])[0]
-
-    def stop_all(self, names: Sequence[str] | None = None) -> list[StopResult]:
-        """End these nodes (all without `names`) at the same time, and forget them."""
-        chosen = [self._nodes.pop(name) for name in (self.names() if names is None else names)]
-        had_ended = []
-        for node in chosen:
-            node.process.read()
-            had_ended.append(not node.process.status.running)
-            if not had_ended[-1]:
-                node.process.stop()
-        stopped = []
-        for node, ended in zip(chosen, had_ended, strict=True):
-            status = node.process.wait(sum(STOP_GRACE) + 5)
-            output, _ = node.process.read()
-            node.process.close()
-            stopped.append(StopResult(node.name, status, output.decode(errors="replace"), ended))
-        return stopped
-
 
 #: How long a node's log is shown, and how long a command that does not end may run (s).
 NODE_SECONDS = 3.0
@@ -140,7 +64,7 @@ class Session:
 
     domain: Domain
     package: Package = field(default_factory=lambda: Package(name="notebook_nodes", workspace="notebook_ws"))
-    nodes: NodeRegistry = field(default_factory=NodeRegistry)
+    nodes: NodeRegistry = field(init=False)
     ran: dict[str, str] = field(default_factory=dict)
     """The code of each node's cell as it last ran, by the node's name."""
     ran_at: dict[str, float] = field(default_factory=dict)
@@ -149,10 +73,15 @@ class Session:
     """Code that later nodes use, by its name."""
     starts: dict[str, tuple[Path, NodeStart]] = field(default_factory=dict)
     """The file of each node and how it is started, by the node's name."""
+    above: dict[Path, int] = field(default_factory=dict)
+    """How many lines of each node's file are not from its own cell, but above it."""
+    expects_error: bool = False
+    """Whether a command of the current cell says that errors of nodes are meant."""
     timeline: TimelineProcess | None = None
     """The recorder for `%timeline`, if one is running."""
 
     def __post_init__(self) -> None:
+        self.nodes = NodeRegistry(self.line_of_cell)
         self.use_domain(self.domain)
 
     def use_domain(self, domain: Domain) -> None:
@@ -203,7 +132,20 @@ class Session:
         module = Module(name, whole.rstrip("\n") + "\n", executables)
         file = add_module(self.workspace, package, module)
         self.starts[name] = (file, start)
+        self.above[file] = whole[: -len(code)].count("\n") if whole.endswith(code) else 0
         return file
+
+    def line_of_cell(self, file: str, line: int) -> tuple[str, int] | None:
+        """Return (file name, line of its cell's code) of a line of a node's file; None if no cell made it."""
+        tail = Path(file).parts[-2:]
+        # `colcon build` copies a file into other folders.
+        above = next((count for known, count in self.above.items() if known.parts[-2:] == tail), None)
+        return None if above is None else (tail[-1], max(line - above, 1))
+
+    def new_errors(self) -> list[NodeError]:
+        """Return what has gone wrong in nodes since the last call, meant if the cell's commands expected it."""
+        expected, self.expects_error = self.expects_error, False
+        return [replace(error, meant=error.meant or expected) for error in self.nodes.new_errors()]
 
     def write_file(self, path: str, text: str) -> None:
         """Put a launch or parameter file into the package. Raises CellFailed for any other path."""
@@ -263,13 +205,14 @@ class Session:
             if self.nodes.status(name).running:
                 print(f"(restarting {name})")
             self.nodes.stop(name)
-        node = self.nodes.start(name, argv, settings, cwd)
+        node = self.nodes.start(name, argv, settings, cwd, expects_error=bound.expects_error)
         self._show(node, bound)
 
     def _show(self, node: RunningNode, bound: DisplayLimit) -> None:
         has_joined = joins(node.process, self.domain.number)
         try:
-            show_for(node.process, bound, f": %log {node.name} shows them", has_joined)
+            rest_is, short = f": %log {node.name} shows them", whole_in(Path.cwd(), node.name)
+            show_for(node.process, bound, rest_is, has_joined, short)
         except KeyboardInterrupt:
             print(f"\n{self.nodes.stop(node.name).in_words}")
             return
@@ -280,8 +223,9 @@ class Session:
             )
         elif status.exit == 0:
             print(f"— {node.name} has ended (exit code 0) —")
-        else:
-            raise CellFailed(f"{node.name} {_how_it_ended(status.exit)} Its last output is above.")
+        elif not node.expects_error:
+            node.forget_errors()
+            raise CellFailed(f"{node.name} {how_it_ended(status.exit)} Its last output is above.")
 
     def run_command(
         self, argv: list[str], settings: dict[str, str], cwd: Path, bound: DisplayLimit, shown_as: str
@@ -290,7 +234,7 @@ class Session:
         process = KeptProcess(argv, {**os.environ, **settings}, cwd)
         try:
             try:
-                show_for(process, bound, "", joins(process, self.domain.number))
+                show_for(process, bound, "", joins(process, self.domain.number), whole_in(Path.cwd(), shown_as))
                 bounded = process.status.running
             except KeyboardInterrupt:
                 bounded = True
@@ -303,7 +247,9 @@ class Session:
         if bounded and status.ended_by == "SIGKILL":
             print(f"— {shown_as} ignored Ctrl-C and was killed —")
         elif not bounded and status.exit != 0:
-            raise CellFailed(f"{shown_as}: {_how_it_ended(status.exit or 0)}")
+            if not bound.expects_error:
+                raise CellFailed(f"{shown_as}: {how_it_ended(status.exit or 0)}")
+            print(f"{AS_EXPECTED}{shown_as} {how_it_ended(status.exit or 0)} —")
 
     def wait_for(self, name: str, bound: DisplayLimit) -> None:
         """Wait until a node's log contains the limit's text, or time is up. Raises CellFailed for an unknown name."""
@@ -320,7 +266,7 @@ class Session:
         """Return the output of a node that was kept. Raises CellFailed for an unknown name."""
         node = self.find(name)
         data, dropped = node.process.read_all()
-        text = data.decode(errors="replace")
+        text = readable(data.decode(errors="replace"))
         if dropped:
             text += f"\n({dropped:,} bytes in the middle were not kept)"
         return text if whole else in_short(text)
@@ -338,9 +284,3 @@ class Session:
         for name in names or ():
             self.find(name)
         return self.nodes.stop_all(names)
-
-
-def _how_it_ended(code: int) -> str:
-    if code < 0:
-        return f"was ended by signal {-code}."
-    return f"ended with exit code {code}."

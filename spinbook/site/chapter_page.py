@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from spinbook.build.failures import node_errors
 from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.classify import CellKind
 from spinbook.site.drawings import smaller, still_of
@@ -29,6 +30,21 @@ class ExecutedNotebook:
     def outputs(self, cell_id: str) -> list[dict[str, Any]]:
         """Return the outputs of a cell; none if it has not run."""
         return list(self.cells.get(cell_id, {}).get("outputs", []))
+
+    def went_wrong(self, cell: ChapterCell) -> bool:
+        """Return whether a cell failed, or reports an error of a node, and its author does not expect it."""
+        outputs = self.outputs(cell.id)
+        failed = not cell.raises and any(output["output_type"] == "error" for output in outputs)
+        return failed or any(not about["meant"] for about in node_errors({"outputs": outputs}))
+
+
+def wrong_cells(chapter: Chapter, ran: ExecutedNotebook) -> list[str]:
+    """Return the anchors of the outputs that show that something went wrong."""
+    return [_anchor(cell) for cell in chapter.cells if ran.went_wrong(cell)]
+
+
+def _anchor(cell: ChapterCell) -> str:
+    return f"wrong-{cell.id}"
 
 
 @dataclass(frozen=True)
@@ -99,6 +115,7 @@ def _code(cell: ChapterCell, ran: ExecutedNotebook, source_link: str, download: 
         "alts": [alternative(output, cell) for output in outputs if is_picture(output)],
         "stills": [still.path if still else "" for still in stills],
         "fails": cell.raises,
+        "wrong": _anchor(cell) if ran.went_wrong(cell) else "",
         "run": _run(cell),
     }
     if cell.kind is CellKind.NODE:

@@ -26,7 +26,7 @@ from spinbook.course.course import Course
 from spinbook.handout.wheels import interface_wheels, package_of
 from spinbook.problem import SpinbookError
 from spinbook.site import page as names
-from spinbook.site.chapter_page import ExecutedNotebook, ExerciseCard, as_text, chapter_notebook, stills
+from spinbook.site.chapter_page import ExecutedNotebook, ExerciseCard, as_text, chapter_notebook, stills, wrong_cells
 from spinbook.site.drawings import DrawingError, Picture, draw, drawing_files, drawing_html
 from spinbook.site.exercise_page import exercise_markdown, public_checks
 from spinbook.site.graph_section import node_graph_excerpt, node_graph_of, node_graph_section
@@ -206,7 +206,7 @@ def _chapter(
         source,
         chapter.name,
         summary=chapter.summary,
-        about={"minutes": _minutes(chapter)},
+        about={"minutes": _minutes(chapter), "errors": wrong_cells(chapter, ran)},
         runs=runs,
     )
 
@@ -314,7 +314,7 @@ def _home(
     pictures = home_pictures(runs)
     contents.files |= {path: data for picture in pictures for path, data in picture.files.items()}
     about = {
-        "chapters": home_chapters(chapters, exercises),
+        "chapters": home_chapters(runs, exercises),
         "graph": next((node_graph_excerpt(graph) for graph in graphs if graph), ""),
         "drawing": home_drawing(drawings.pictures),
         "pictures": [picture.about for picture in pictures],

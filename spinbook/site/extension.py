@@ -131,8 +131,7 @@ def _describe(cell: nodes.container, about: dict[str, Any]) -> None:
                 code["language"] = _language(kind, about)
         elif part.get("nb_element") == "cell_code_output":
             _pictures(part, about["alts"], about["stills"])
-            words = "Output: it fails, as expected" if about["fails"] else "Output"
-            part.insert(0, nodes.raw("", f'<p class="output-name">{words}</p>', format="html"))
+            part.insert(0, nodes.raw("", _output_name(about), format="html"))
     _fold(cell)
     cell.insert(0, nodes.raw("", _head(kind, about), format="html"))
 
@@ -155,6 +154,14 @@ def _fold(cell: nodes.container) -> None:
             opening = f'<details class="hidden-part"><summary>{words}</summary>'
             cell.insert(cell.index(part), nodes.raw("", opening, format="html"))
             cell.insert(cell.index(part) + 1, nodes.raw("", "</details>", format="html"))
+
+
+def _output_name(about: dict[str, Any]) -> str:
+    """Return the heading of a cell's output. If something went wrong, the page's first lines link to it."""
+    if about["wrong"]:
+        return f'<p class="output-name went-wrong" id="{about["wrong"]}">✗ Output: something went wrong</p>'
+    words = "Output: it fails, as expected" if about["fails"] else "Output"
+    return f'<p class="output-name">{words}</p>'
 
 
 def _language(kind: str, about: dict[str, Any]) -> str:

@@ -50,7 +50,7 @@ def node_graph_section(graph: NodeGraph) -> str:
 
 This picture was not drawn by hand: it is the ROS graph, watched while the outputs of this page were made. Round shapes
 are nodes. Boxes are topics, with their types, and with their rates where these were measured. Along a dashed arrow
-nothing flows, because no other end fits.
+nothing flowed: no other end that fits was there at the same time.
 
 {node_graph_html(graph)}
 """

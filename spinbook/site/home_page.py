@@ -21,7 +21,7 @@ from spinbook.build.digest import digest
 from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.classify import CellKind
 from spinbook.course.course import Course
-from spinbook.site.chapter_page import ExecutedNotebook, alternative, is_picture
+from spinbook.site.chapter_page import ExecutedNotebook, alternative, is_picture, wrong_cells
 from spinbook.site.drawings import PICTURE_FOLDER, Picture, drawing_html, smaller, still_of
 from spinbook.site.log_lexer import LogLexer
 from spinbook.site.page import Repository, chapter_page, exercise_page
@@ -37,21 +37,24 @@ class HomePicture:
     about: dict[str, Any]
 
 
-def home_chapters(chapters: list[Chapter], exercises: Mapping[str, Exercise]) -> list[dict[str, Any]]:
-    """Return the chapters with their exercises, for the list on the home page."""
+def home_chapters(
+    runs: list[tuple[Chapter, ExecutedNotebook]], exercises: Mapping[str, Exercise]
+) -> list[dict[str, Any]]:
+    """Return the chapters with their exercises, and whether they ran well, for the list on the home page."""
     return [
         {
             "title": chapter.title,
             "page": chapter_page(chapter.name),
             "summary": chapter.summary,
             "nodes": sum(1 for _ in chapter.nodes),
+            "errors": len(wrong_cells(chapter, ran)),
             "exercises": [
                 {"title": exercises[cell.name].title, "page": exercise_page(cell.name)}
                 for cell in chapter.cells
                 if cell.kind is CellKind.EXERCISE and cell.name
             ],
         }
-        for chapter in chapters
+        for chapter, ran in runs
     ]
 
 

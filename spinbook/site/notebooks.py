@@ -25,8 +25,8 @@ from spinbook.site.page import Repository
 def bring_up_to_date(course: Course, console: Console, *, is_strict: bool) -> bool:
     """Compile the course's interfaces, build each chapter's notebook, and run those whose code has changed.
 
-    Return False if something has to be fixed first. If `is_strict`, that includes cells that fail, and code that is
-    shown but not run.
+    Return False if something has to be fixed first. If `is_strict`, that includes cells that fail, errors of nodes, and
+    code that is shown but not run.
     """
     try:
         compile_course(course)
@@ -50,11 +50,11 @@ def bring_up_to_date(course: Course, console: Console, *, is_strict: bool) -> bo
         ):
             for failure in executed.failures:
                 console.print(str(failure), markup=False)
-            for warning in executed.warnings:
+            for warning in (*executed.node_errors, *executed.warnings):
                 console.print(str(warning), markup=False)
             if not executed.cached and not executed.failures:
                 console.print(f"{executed.chapter} ran in {executed.seconds:.0f} s", markup=False)
-            good = good and not (is_strict and executed.failures)
+            good = good and not (is_strict and (executed.failures or executed.node_errors))
     return good
 
 

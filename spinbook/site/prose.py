@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Any
 from urllib.parse import quote, unquote
 
+from docutils.nodes import make_id
 from markdown_it.token import Token
 
 from spinbook.chapter.comments import without_comments
@@ -140,5 +141,5 @@ def _plurals(name: str) -> tuple[str, ...]:
 
 
 def anchor_of(title: str) -> str:
-    """Return the id of a heading: its words in lower case, with hyphens."""
-    return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")
+    """Return the id that Sphinx gives a heading."""
+    return str(make_id(title))

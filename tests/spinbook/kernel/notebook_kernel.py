@@ -63,6 +63,8 @@ class Kernel:
                 shown.text += content["text"]
             elif kind == "error":
                 shown.error = "\n".join(content["traceback"])
+            elif kind == "display_data" and set(content["data"]) == {"text/plain"}:
+                shown.text += content["data"]["text/plain"] + "\n"
             elif kind == "display_data":
                 shown.pictures.append(content["data"])
                 shown.metadata.append(content["metadata"])

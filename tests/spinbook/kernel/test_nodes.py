@@ -151,7 +151,7 @@ def test_a_class_that_forgets_an_import_fails_as_in_a_new_python(kernel: Kernel)
 
     file = kernel.folder / "robot_ws" / "src" / "robot" / "robot" / "quiet.py"
     python = subprocess.run([sys.executable, str(file)], capture_output=True, text=True, check=False)
-    error = python.stderr.splitlines()[1:]
+    error = python.stderr.replace(f"{kernel.folder}/", "").splitlines()[1:]
     assert error[-1] == "AttributeError: module 'rclpy' has no attribute 'node'"
     assert shown.text.splitlines()[0] == python.stdout.strip() == "[]"
     assert shown.text.splitlines()[-len(error) :] == error
@@ -224,3 +224,29 @@ def test_nodes_run_where_there_is_no_home(new_kernel: Callable[..., Kernel], hom
     kernel = new_kernel(HOME=home)
 
     assert "talking" in kernel.run(f"%%node talker --seconds 60 --until talking\n{TALKER}").text
+
+
+ANGRY = """import rclpy
+from rclpy.executors import ExternalShutdownException
+from std_srvs.srv import Trigger
+rclpy.init()
+node = rclpy.create_node("angry")
+def on_request(request, response):
+    node.get_logger().error("leave me alone")
+    return response
+node.create_service(Trigger, "ask", on_request)
+node.get_logger().info("here")
+try:
+    rclpy.spin(node)
+except (KeyboardInterrupt, ExternalShutdownException):
+    pass
+"""
+
+
+def test_an_error_that_a_command_provokes_can_be_expected_there(kernel: Kernel) -> None:
+    kernel.run(f"%%node angry --seconds 60 --until here\n{ANGRY}")
+    call = "service call /ask std_srvs/srv/Trigger"
+
+    assert "✗ angry: it logged ERROR: leave me alone.\n" in kernel.run(f"%ros2 --seconds 60 {call}").text
+    meant = kernel.run(f"%ros2 --seconds 60 --expect-error {call}").text
+    assert "— as expected, angry: it logged ERROR: leave me alone. —\n" in meant

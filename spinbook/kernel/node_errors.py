@@ -1,0 +1,184 @@
+"""What goes wrong in a node: errors that it logs, exceptions in its output, and how it ends."""
+
+from __future__ import annotations
+
+import re
+import signal
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from spinbook.kernel.long_lines import shortened
+from spinbook.kernel.reader_frames import ReaderFrames
+
+#: The key of an error in the metadata of a cell's output.
+ERROR = "spinbook_error"
+#: How the report of an error begins that an author expects.
+AS_EXPECTED = "— as expected, "
+#: How many lines of a node's last output a report quotes.
+_QUOTED_LINES = 8
+#: `ros2 launch` puts the program's name before each line.
+_LAUNCHED = re.compile(r"\[[\w./-]+-\d+\] ")
+#: The notebook's log format, with or without a time stamp.
+_LOGGED = re.compile(r"\[(ERROR|FATAL)\] (?:\[[\d.]+\] )?\[[^\]]*\]: ?(.*)")
+_TRACEBACK = "Traceback (most recent call last):"
+_FRAME = re.compile(r'\s*File "([^"]+)", line (\d+)(, in <module>)?')
+_RAISED = re.compile(r"[A-Za-z_][\w.]*(Error|Exception|Interrupt|Exit|Warning|Iteration)?(: .*)?$")
+_CHAINED = ("During handling of the above exception", "The above exception was the direct cause")
+#: How programs end, and what they say then, when they are interrupted: Ctrl-C itself shuts rclpy's context down, below
+#: callbacks that still run in other threads.
+_ON_CTRL_C = re.compile(
+    r"(\w+\.)*(KeyboardInterrupt|ExternalShutdownException|InvalidHandle)\b"
+    r"|.*(rcl_shutdown already|context is |(publisher|subscription|service|client|node|implementation) is invalid)"
+)
+_FROM_US = frozenset({-signal.SIGINT, -signal.SIGTERM, -signal.SIGKILL, 128 + signal.SIGINT, 128 + signal.SIGTERM})
+
+#: Finds the (file's name, line of its cell) of a frame; None for a file that no cell made.
+FindLine = Callable[[str, int], "tuple[str, int] | None"]
+
+
+@dataclass(frozen=True)
+class NodeError:
+    """Something that went wrong in a node. `file` and `line` (of the cell's code) are where, if that is known.
+
+    `meant` says that the author expects it (`expect-error`).
+    """
+
+    node: str
+    what: str
+    file: str = ""
+    line: int = 0
+    output: str = ""
+    meant: bool = False
+
+    @property
+    def in_words(self) -> str:
+        """The report for readers: one line, and the node's last output below it."""
+        where = f"{self.file}, line {self.line}: " if self.file else ""
+        if self.meant:
+            return f"{AS_EXPECTED}{self.node}: {where}{self.what} —"
+        quoted = (f"    | {line}" for line in self.output.splitlines())
+        return "\n".join([f"✗ {self.node}: {where}{self.what}", *quoted])
+
+    @property
+    def plain(self) -> dict[str, Any]:
+        """The error as JSON, for `spinbook build`."""
+        return {"node": self.node, "what": self.what, "file": self.file, "line": self.line, "meant": self.meant}
+
+
+@dataclass(frozen=True)
+class _Raised:
+    """An exception in the output; `frames` are the (file, line) of its traceback.
+
+    One that nothing caught comes from the top of a module: it ends the program.
+    """
+
+    text: str
+    frames: tuple[tuple[str, int], ...] = ()
+    is_uncaught: bool = False
+    quoted: str = field(default="", compare=False)
+    """The output's last lines up to it."""
+
+
+@dataclass
+class NodeLog:
+    """Reads a node's output as it arrives, and collects what went wrong in it."""
+
+    logged: list[str] = field(default_factory=list)
+    raised: list[_Raised] = field(default_factory=list)
+    last: deque[str] = field(default_factory=lambda: deque(maxlen=_QUOTED_LINES))
+    was_interrupted: bool = False
+    """Whether an exception says that Ctrl-C ended the program."""
+    _frames_shown: ReaderFrames = field(default_factory=ReaderFrames)
+    _part: str = ""
+    _chain: list[_Raised] = field(default_factory=list)
+    _frames: list[tuple[str, int]] | None = None
+    _uncaught: bool = False
+    _ignored: bool = False
+
+    @property
+    def is_ending(self) -> bool:
+        """Whether an exception that was raised is about to end the program."""
+        return any(item.is_uncaught for item in self.raised)
+
+    def add(self, text: str, *, stopping: bool = False) -> None:
+        """Add output. While a node is `stopping`, the exceptions of an interrupted program are no errors."""
+        *lines, self._part = (self._part + text).split("\n")
+        for line in lines:
+            self.last.extend(shortened(shown.rstrip()) for shown in self._frames_shown.shown([line]) if line.strip())
+            self._line(_LAUNCHED.sub("", line, count=1), stopping)
+        self._end_chain(stopping)
+
+    def _line(self, line: str, stopping: bool) -> None:
+        if line.strip() == _TRACEBACK:
+            self._frames, self._uncaught = [], False
+        elif self._frames is not None:
+            self._in_traceback(line, self._frames)
+        elif line.startswith(_CHAINED) or not line.strip():
+            return
+        else:
+            self._end_chain(stopping)
+            self._ignored = line.startswith("Exception ignored")
+            if (log := _LOGGED.match(line)) and not (stopping and _ON_CTRL_C.match(log[2])):
+                self.logged.append(f"it logged {log[1]}: {log[2]}")
+
+    def _in_traceback(self, line: str, frames: list[tuple[str, int]]) -> None:
+        if frame := _FRAME.match(line):
+            frames.append((frame[1], int(frame[2])))
+            self._uncaught = self._uncaught or bool(frame[3])
+        elif line.strip() and not line[0].isspace():
+            quoted = "\n".join(self.last)
+            self._chain += [_Raised(line.strip(), tuple(frames), self._uncaught, quoted)] if _RAISED.match(line) else []
+            self._frames = None
+
+    def _end_chain(self, stopping: bool) -> None:
+        """Keep the last exception of a chain, without those that Ctrl-C causes."""
+        if self._frames is not None or not self._chain:
+            return
+        errors = [item for item in self._chain if not (stopping and _ON_CTRL_C.match(item.text))]
+        self.was_interrupted = self.was_interrupted or not errors
+        self.raised += [] if self._ignored else errors[-1:]
+        self._chain, self._ignored = [], False
+
+    def take(self) -> tuple[list[str], list[_Raised]]:
+        """Return what was logged and raised since the last call. rclpy also logs what a callback raised: it counts
+        once."""
+        raised = list(dict.fromkeys(self.raised))
+        texts = [item.text.partition(": ")[2] or item.text for item in raised]
+        logged = [line for line in dict.fromkeys(self.logged) if not any(text in line for text in texts)]
+        self.logged, self.raised = [], []
+        return logged, raised
+
+
+def how_it_ended(code: int) -> str:
+    """Return how a process ended, in words."""
+    if code >= 0:
+        return f"ended with exit code {code}."
+    try:
+        return f"was ended by signal {-code} ({signal.Signals(-code).name})."
+    except ValueError:
+        return f"was ended by signal {-code}."
+
+
+def ended_badly(code: int | None, *, stopped: bool, interrupted: bool = False) -> bool:
+    """Return whether an exit code means an error. A node that was `stopped` may end as Ctrl-C ends a program, also with
+    exit code 1 after an exception that says that it was `interrupted`."""
+    if code in (0, None):
+        return False
+    return not (stopped and (code in _FROM_US or interrupted))
+
+
+def describe(node: str, log: NodeLog, ended: str, find_line: FindLine, *, meant: bool = False) -> NodeError | None:
+    """Return what is new in a node's log as one report; `ended` says how it ended, "" if it did not end badly."""
+    logged, raised = log.take()
+    causes = [*(item.text for item in raised), *logged]
+    if not causes and not ended:
+        return None
+    first = shortened(causes[0]).rstrip(".") if causes else ""
+    more = f" (and {len(causes) - 1} more)" if len(causes) > 1 else ""
+    what = f"{first}{more}. It {ended}" if causes and ended else f"It {ended}" if ended else f"{first}{more}."
+    places = [place for item in raised[:1] for frame in item.frames if (place := find_line(*frame))]
+    file, line = places[-1] if places else ("", 0)
+    output = next((item.quoted for item in raised), "\n".join(log.last))
+    return NodeError(node, what, file, line, output, meant)

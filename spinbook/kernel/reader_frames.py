@@ -1,0 +1,57 @@
+"""Tracebacks as readers need them: only frames of their own code, with paths that are the same on every machine."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+_LAUNCHED = r"(?P<launched>\[[\w./-]+-\d+\] )?"
+_BEGIN = re.compile(_LAUNCHED + r"\s*Traceback \(most recent call last\):$")
+_FRAME = re.compile(_LAUNCHED + r'(?P<before>\s+File ")(?P<file>[^"]+)(?P<after>", line \d+.*)')
+_INDENTED = re.compile(_LAUNCHED + r"\s")
+
+
+class ReaderFrames:
+    """Goes through the lines of an output in order, and leaves out frames of files that are not below `root`."""
+
+    def __init__(self, root: Path | None = None) -> None:
+        self._root = root or Path.cwd()
+        self._inside = False
+        self._keeps = True
+
+    def shown(self, lines: Iterable[str]) -> Iterator[str]:
+        """Yield those of the next lines that are shown."""
+        for line in lines:
+            shown = self._line(line)
+            if shown is not None:
+                yield shown
+
+    def _line(self, line: str) -> str | None:
+        if _BEGIN.match(line):
+            self._inside, self._keeps = True, True
+        elif self._inside and (frame := _FRAME.match(line)):
+            file = self._of_reader(frame["file"])
+            self._keeps = bool(file)
+            return f"{frame['launched'] or ''}{frame['before']}{file}{frame['after']}" if file else None
+        elif self._inside and _INDENTED.match(line):
+            return line if self._keeps else None
+        else:
+            self._inside = False
+        return line
+
+    def _of_reader(self, name: str) -> str:
+        """Return a file's path for the reader; "" if it is a library's."""
+        if name.startswith("<"):
+            return "" if name.startswith("<frozen") else name
+        file = Path(name)
+        # What `colcon build` has installed for the reader is theirs; the script that starts it is not.
+        is_library = file.is_relative_to(sys.prefix) or file.suffix != ".py"
+        return os.path.relpath(file, self._root) if file.is_relative_to(self._root) and not is_library else ""
+
+
+def readable(text: str) -> str:
+    """Return a whole output with the reader's frames only."""
+    return "\n".join(ReaderFrames().shown(text.split("\n")))

@@ -1,0 +1,87 @@
+"""What goes wrong in a node is read from its output and its exit code."""
+
+from __future__ import annotations
+
+import pytest
+
+from spinbook.kernel.node_errors import NodeError, NodeLog, describe, ended_badly, how_it_ended
+
+RAISED = 'Traceback (most recent call last):\n  File "/ws/arm.py", line 9, in go\n    a.b\nValueError: no grip\n'
+CTRL_C = 'Traceback (most recent call last):\n  File "/ws/arm.py", line 3, in <module>\nKeyboardInterrupt\n'
+AGAIN = "\nDuring handling of the above exception, another exception occurred:\n\n"
+SHUT_DOWN = "\n".join(
+    [
+        "Traceback (most recent call last):",
+        '  File "/ws/arm.py", line 30, in main',
+        "rclpy._rclpy_pybind11.RCLError: failed to shutdown: rcl_shutdown already called on the given context",
+        "",
+    ]
+)
+
+
+def find_line(file: str, line: int) -> tuple[str, int] | None:
+    return ("arm.py", line) if file == "/ws/arm.py" else None
+
+
+def report(text: str, *, ended: str = "", stopping: bool = False) -> NodeError | None:
+    log = NodeLog()
+    for letter in (text[:40], text[40:]):
+        log.add(letter, stopping=stopping)
+    return describe("arm", log, ended, find_line)
+
+
+def test_an_exception_is_reported_with_its_line() -> None:
+    error = report(RAISED, ended="ended with exit code 1.")
+
+    assert error is not None
+    assert (error.file, error.line) == ("arm.py", 9)
+    assert error.what == "ValueError: no grip. It ended with exit code 1."
+    assert error.in_words.splitlines()[0] == "✗ arm: arm.py, line 9: ValueError: no grip. It ended with exit code 1."
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("[ERROR] [arm]: too hot\n", "it logged ERROR: too hot."),
+        ("[FATAL] [1700000000.123] [arm.left]: on fire\n", "it logged FATAL: on fire."),
+        ("[arm-1] [ERROR] [arm]: too hot\n", "it logged ERROR: too hot."),
+        ("[ERROR] [arm]: Error raised in execute callback: no grip\n" + RAISED, "ValueError: no grip."),
+        ("Exception in thread Thread-1 (go):\n" + RAISED, "ValueError: no grip."),
+        (RAISED + AGAIN + RAISED.replace("no grip", "worse"), "ValueError: worse."),
+        ("[ERROR] [arm]: a\n[ERROR] [arm]: b\n[ERROR] [arm]: a\n", "it logged ERROR: a (and 1 more)."),
+    ],
+)
+def test_errors_in_the_log_are_found(text: str, what: str) -> None:
+    error = report(text)
+
+    assert error is not None
+    assert error.what == what
+
+
+@pytest.mark.parametrize(
+    "text", ["[WARN] [arm]: warm\n", "an ERROR in words\n", "Exception ignored in: <f>\n" + RAISED]
+)
+def test_other_lines_are_no_errors(text: str) -> None:
+    assert report(text) is None
+
+
+@pytest.mark.parametrize("text", [CTRL_C, CTRL_C + AGAIN + SHUT_DOWN, SHUT_DOWN])
+def test_a_program_that_ctrl_c_ends_has_no_error_when_it_is_stopped(text: str) -> None:
+    assert report(text, stopping=True) is None
+    assert report(text) is not None, "nobody stopped it"
+
+
+def test_an_exception_while_a_program_is_stopped_is_an_error() -> None:
+    error = report(CTRL_C + AGAIN + RAISED, stopping=True)
+
+    assert error is not None
+    assert error.what == "ValueError: no grip."
+
+
+def test_exit_codes() -> None:
+    assert how_it_ended(-11) == "was ended by signal 11 (SIGSEGV)."
+    assert ended_badly(3, stopped=False)
+    assert ended_badly(-11, stopped=True)
+    assert not ended_badly(-2, stopped=True)
+    assert not ended_badly(1, stopped=True, interrupted=True)
+    assert not ended_badly(0, stopped=False)
