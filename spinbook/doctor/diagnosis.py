@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import dataclasses
 import importlib
 import json
@@ -20,7 +19,7 @@ from rich.table import Table
 from rich.text import Text
 
 from groundwork.child_process import run_program
-from groundwork.clean_environment import GUARD, IGNORED, module_command
+from groundwork.clean_environment import GUARD, ignored, module_command
 
 
 class State(str, Enum):
@@ -177,7 +176,7 @@ def examine(check: MachineCheck) -> MachineFinding:
     argv = module_command("spinbook.doctor.diagnosis", check.function, check.name)
     try:
         done = run_program(argv, check.seconds, env=_of_terminal() if check.word in OF_TERMINAL else None)
-        if IGNORED in os.environ and not _reported(done.stdout):
+        if ignored() and not _reported(done.stdout):
             # It can't even start with the terminal's variables: the check of variables says which these are.
             done = run_program(argv, check.seconds)
     except subprocess.TimeoutExpired:
@@ -201,9 +200,9 @@ def _reported(output: str) -> MachineFinding | None:
 
 def _of_terminal() -> dict[str, str]:
     """Return the terminal's variables: this command has been started again without those of another installation."""
-    ignored = ast.literal_eval(os.environ.get(IGNORED, "{}"))
-    terminal = {**os.environ, **ignored}
-    if GUARD in ignored and "LD_LIBRARY_PATH" not in ignored:
+    values = ignored()
+    terminal = {**os.environ, **values}
+    if GUARD in values and "LD_LIBRARY_PATH" not in values:
         terminal.pop("LD_LIBRARY_PATH", None)
     return terminal
 

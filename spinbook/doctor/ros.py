@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import importlib
 import os
 import sys
@@ -10,7 +9,7 @@ from importlib.metadata import version as distribution_version
 from pathlib import Path
 from xml.etree import ElementTree
 
-from groundwork.clean_environment import GUARD, IGNORED
+from groundwork.clean_environment import GUARD, ignored
 from spinbook.doctor.diagnosis import MachineFinding, missing, ok, warning
 from spinbook.doctor.ros_origin import NoRos, ros_origin, this_machine
 from spinbook.kernel.environment import HIGHEST, LOOPBACK_PROFILE
@@ -97,14 +96,14 @@ def examine_ros_settings(name: str) -> MachineFinding:
 
 
 def _about_other_installations() -> list[tuple[str, str]]:
-    ignored = ast.literal_eval(os.environ.get(IGNORED, "{}"))
-    names = sorted(ignored.keys() - {GUARD})
+    values = ignored()
+    names = sorted(values.keys() - {GUARD})
     if not names:
         return []
-    values = ", ".join(f"{name}={ignored[name]}" for name in names)
+    shown = ", ".join(f"{name}={values[name]}" for name in names)
     return [
         (
-            f"of another installation, so Spinbook's programs do not use it: {values}",
+            f"of another installation, so Spinbook's programs do not use it: {shown}",
             f"Jupyter and your own programs still do. If they fail: unset {' '.join(names)}",
         )
     ]

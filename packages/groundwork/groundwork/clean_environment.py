@@ -20,7 +20,7 @@ OF_PYTHON = (
 #: Set by PyPI's ROS wheels once they have extended `LD_LIBRARY_PATH`. Where it is set, they leave that as it is.
 GUARD = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 
-#: In a command that was started again: the text of a dict of the variables that it does not use, with their values.
+#: In a command that was started again: its process's number, and a dict of the variables that it does not use, as text.
 IGNORED = "SPINBOOK_IGNORED"
 
 #: The lists of folders in which programs find modules, libraries and ROS packages.
@@ -75,10 +75,18 @@ def restart_if_polluted(module: str) -> None:
     environment = dict(os.environ)
     cleaned = without_foreign(environment)
     removed = {name: text for name, text in environment.items() if cleaned.get(name) != text}
-    if cleaned == environment or environment.get(IGNORED) == repr(removed):
+    # A process keeps its number when it starts again, which it does once.
+    if cleaned == environment or environment.get(IGNORED, "").startswith(f"({os.getpid()}, "):
         return
-    sys.stdout.flush()
-    os.execve(sys.executable, module_command(module, *sys.argv[1:]), {**cleaned, IGNORED: repr(removed)})
+    note = repr((os.getpid(), removed))
+    os.execve(sys.executable, module_command(module, *sys.argv[1:]), {**cleaned, IGNORED: note})
+
+
+def ignored() -> dict[str, str]:
+    """Return the variables that this command, or the one that started it, does not use, with their values."""
+    import ast
+
+    return dict(ast.literal_eval(os.environ.get(IGNORED, "(0, {})"))[1])
 
 
 #: `python -c` adds the current folder to the path as an empty text.
@@ -169,8 +177,14 @@ def _uses_foreign_user_site() -> bool:
 
 
 def _is_inside(path: str, folders: list[str]) -> bool:
-    real = os.path.realpath(path)
-    return any(real == folder or real.startswith(folder.rstrip("/") + "/") for folder in map(os.path.realpath, folders))
+    """Return whether a path is one of these folders or below one, as it is written or without its symbolic links."""
+    paths = {os.path.abspath(path), os.path.realpath(path)}
+    return any(
+        one == folder or one.startswith(folder.rstrip("/") + "/")
+        for one in paths
+        for name in folders
+        for folder in (os.path.abspath(name), os.path.realpath(name))
+    )
 
 
 def _holds(folder: str, packages: tuple[str, ...] | list[str]) -> bool:

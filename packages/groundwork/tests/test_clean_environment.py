@@ -56,6 +56,31 @@ def test_beside_the_wheels_another_ros_is_left_out_with_the_workspaces_on_top_of
     assert without_foreign({**alone, "AMENT_PREFIX_PATH": f"{workspace}:{ros}"}) == {}
 
 
+def test_a_folder_behind_a_symbolic_link_is_an_own_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "lib").symlink_to(tmp_path / "elsewhere")
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    environment = {"LD_LIBRARY_PATH": str(tmp_path / "lib"), GUARD: "1"}
+    assert without_foreign(environment) == environment
+
+
+def test_a_command_starts_again_only_once_whatever_it_finds_then(tmp_path: Path) -> None:
+    (tmp_path / "loop.py").write_text(
+        "import os\nfrom groundwork.clean_environment import ignored, restart_if_polluted\n"
+        "def main():\n    os.environ['LD_PRELOAD'] = ''\n    restart_if_polluted('loop')\n"
+        "    print(sorted(ignored()))\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": f"{tmp_path}:{tmp_path / 'foreign'}", "PYTHONOPTIMIZE": "1"}
+    (tmp_path / "groundwork").mkdir()
+    (tmp_path / "groundwork" / "__init__.py").write_text(
+        f"__path__ = [{str(Path(__file__).parents[1] / 'groundwork')!r}]\n"
+    )
+
+    done = subprocess.run(module_command("loop"), env=environment, capture_output=True, text=True, timeout=60)
+
+    assert done.stdout == "['LD_PRELOAD', 'PYTHONOPTIMIZE', 'PYTHONPATH']\n", done.stderr
+
+
 def test_the_guard_of_another_installations_wheels_is_left_out() -> None:
     assert GUARD not in without_foreign({GUARD: "1", "LD_LIBRARY_PATH": "/another/lib"})
 
