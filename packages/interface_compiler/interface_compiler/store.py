@@ -7,11 +7,11 @@ import fcntl
 import functools
 import hashlib
 import os
+import platform
 import shutil
 import subprocess
 import sys
-import sysconfig
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -58,7 +58,7 @@ def ensure(definitions: Sequence[Definition], store: Path) -> CompiledPackages:
         CompileError: if this machine can't compile.
     """
     found = keys(definitions)
-    prefix = store.resolve() / digest(*found.values())
+    prefix = _prefix(found, store)
     packages = tuple(found)
     if not prefix.is_dir():
         _check(definitions)
@@ -73,8 +73,13 @@ def ensure(definitions: Sequence[Definition], store: Path) -> CompiledPackages:
 def find(definitions: Sequence[Definition], store: Path) -> CompiledPackages | None:
     """Return the compiled packages of these definitions, if the store has them."""
     found = keys(definitions)
-    prefix = store.resolve() / digest(*found.values())
+    prefix = _prefix(found, store)
     return CompiledPackages(prefix, tuple(found)) if prefix.is_dir() else None
+
+
+def _prefix(found: Mapping[str, str], store: Path) -> Path:
+    """Return the prefix of packages with these keys. Each version of Python has its own, though a wheel fits all."""
+    return store.resolve() / digest(PYTHON.as_posix(), *found.values())
 
 
 def digest(*texts: str) -> str:
@@ -107,9 +112,9 @@ def keys(definitions: Sequence[Definition]) -> dict[str, str]:
 
 @functools.cache
 def _machine() -> str:
-    """Return what decides the result besides the definitions: how it is made here, Python, and ROS's generators."""
+    """Return what decides the result besides the definitions: how it is made here, the CPU, and ROS's generators."""
     own = [Path(__file__).with_name(name) for name in _OWN]
-    parts = [sysconfig.get_config_var("EXT_SUFFIX") or "", *(file.read_text(encoding="utf-8") for file in own)]
+    parts = [platform.machine(), *(file.read_text(encoding="utf-8") for file in own)]
     for wheel in _WHEELS:
         with contextlib.suppress(metadata.PackageNotFoundError):
             parts.append(f"{wheel} {metadata.version(wheel)}")
