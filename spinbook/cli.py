@@ -72,6 +72,9 @@ STUDENTS = {
     "check": Verb(
         "spinbook.submit.command:check", "Say what the public checks say of your node.", needs="rclpy", runs=True
     ),
+    "hint": Verb(
+        "spinbook.submit.command:hint", "Show the next hint about the first check that failed.", needs="rclpy"
+    ),
     "submit": Verb(
         "spinbook.submit.command:submit",
         "Run the public checks, and write one file to upload.",

@@ -7,6 +7,7 @@ import inspect
 import tempfile
 import traceback
 from collections.abc import Callable, Generator, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Literal
@@ -17,6 +18,9 @@ from grader.checking.ending_message import message_of
 from grader.checking.run import Run
 from grader.checking.verdict import CheckOptions, Finding, Verdict, Wrong, check_options
 from grader.exercise.exercise import ExerciseError
+
+#: Of a hint that says what to do: students don't read more.
+MOST_WORDS = 160
 
 
 def fixtures_of(runs: Mapping[str, Run | None]) -> ModuleType:
@@ -106,6 +110,8 @@ class Checks:
             problem, fix = f"{item.name} has no docstring", "Its docstring is the title that the student reads."
         elif isinstance(mark.points, bool) or not isinstance(mark.points, (int, float)) or not mark.points >= 0:
             problem, fix = f"{item.name} gives {mark.points!r} points", "Give points of 0 or more, such as points=5."
+        elif (words := len(mark.todo.split())) > MOST_WORDS:
+            problem, fix = f"the todo of {item.name} has {words} words", f"Say what to do in up to {MOST_WORDS} words."
         elif missing := self._unknown_scenario(item):
             problem = f"{item.name} asks for the scenario {missing}, which scenarios.py does not have"
             fix = f"Its scenarios are: {', '.join(self.scenarios)}."
@@ -169,19 +175,21 @@ class Checks:
         mark = self._marks[item.name]
         title = (inspect.getdoc(getattr(item, "function", None)) or "").replace("\n", " ")
         hidden = item.path.name == "hidden_checks.py"
-        common = (mark.points, mark.hint, mark.misconception, hidden)
+        verdict = Verdict(
+            *(item.name, title, "passed", mark.points, mark.hint, mark.misconception, hidden),
+            todo=mark.todo,
+            untested=mark.untested,
+        )
         error = call.excinfo.value if call.excinfo else None
         if error is None:
-            return Verdict(item.name, title, "passed", *common)
+            return verdict
         if isinstance(error, pytest.skip.Exception):
-            return Verdict(item.name, title, "blocked", *common, blocked_by=self._blocking(item.name))
+            return replace(verdict, status="blocked", blocked_by=self._blocking(item.name))
         if isinstance(error, AssertionError):
             wrong = error if isinstance(error, Wrong) else Wrong(Finding(str(error)))
             finding = wrong.finding.shortened()
-            return Verdict(
-                item.name, title, "failed", *common, finding=finding, share=wrong.share, partial=mark.partial
-            )
-        return Verdict(item.name, title, "error", *common, error=_describe(error, item.path))
+            return replace(verdict, status="failed", finding=finding, share=wrong.share, partial=mark.partial)
+        return replace(verdict, status="error", error=_describe(error, item.path))
 
 
 def _describe(error: BaseException, file: Path) -> str:

@@ -73,7 +73,8 @@ class Verdict:
 
     A failed check has a `finding`, and `share` is how much of what it looked at is right, between 0 and 1. If it is
     `partial`, that gives part of the points. `blocked_by` names the checks without which a blocked one can't be judged.
-    `error` says what crashed in the check, with file and line.
+    `error` says what crashed in the check, with file and line. `hint` and `todo` are the author's hints: where to look,
+    and what to do. `untested` says what the check can't show in a self-check.
     """
 
     name: str
@@ -88,6 +89,8 @@ class Verdict:
     error: str = ""
     share: float = 0.0
     partial: bool = False
+    todo: str = ""
+    untested: str = ""
 
     @property
     def earned(self) -> float:
@@ -113,7 +116,7 @@ ATTRIBUTE = "__check__"
 
 @dataclass(frozen=True)
 class CheckOptions:
-    """The arguments of the `check` decorator of a test function.
+    """The arguments of the `check` decorator of a test function, by its names.
 
     `depends` are names of other checks. `rules` name rules of task.md, each by its id or by a sentence.
     """
@@ -124,6 +127,8 @@ class CheckOptions:
     misconception: str
     rules: tuple[str, ...] = ()
     partial: bool = False
+    todo: str = ""
+    untested: str = ""
 
 
 def check(
@@ -134,6 +139,8 @@ def check(
     misconception: str = "",
     rule: str | Sequence[str] = (),
     partial: bool = False,
+    todo: str = "",
+    untested: str = "",
 ) -> Callable[[Test], Test]:
     """Make a test function a check that gives `points`. Its docstring is the check's title.
 
@@ -143,12 +150,16 @@ def check(
     three words. `rule` names the rules of task.md that the check is based on, each by its id or by a sentence of it,
     word for word: `spinbook audit` needs one for each hidden check. A `partial` check gives part of its points for what
     is right.
+
+    `todo` says what to do, in up to 160 words, to a student who asks for more than `hint`. Both are shown only if the
+    recording shows no cause that has hints of its own. `untested` is for a check whose rule no public scenario tests in
+    full: what passes it all the same, such as "a stamp from now() passes, too." A self-check then shows no ✓.
     """
     names = tuple(item if isinstance(item, str) else item.__name__ for item in depends)
     rules = (rule,) if isinstance(rule, str) else tuple(rule)
 
     def mark(test: Test) -> Test:
-        setattr(test, ATTRIBUTE, CheckOptions(points, hint, names, misconception, rules, partial))
+        setattr(test, ATTRIBUTE, CheckOptions(points, hint, names, misconception, rules, partial, todo, untested))
         return test
 
     return mark

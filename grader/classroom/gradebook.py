@@ -83,7 +83,7 @@ def _case(exercise: Exercise, verdict: Verdict) -> ET.Element:
     if verdict.status == "failed":
         text = verdict.finding.text if verdict.finding else ""
         ET.SubElement(case, "failure", message=_xml_text(verdict.title)).text = _xml_text(
-            f"{text}\nHint: {verdict.hint}"
+            f"{text}\nHint: {(verdict.finding and verdict.finding.where) or verdict.hint}"
         )
     elif verdict.status == "blocked":
         ET.SubElement(case, "skipped", message=_xml_text("blocked by " + ", ".join(verdict.blocked_by)))

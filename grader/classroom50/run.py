@@ -19,7 +19,7 @@ from grader.exercise.loading import load
 from grader.gradescope.run import cache_next_to_course, submission
 from grader.grading.grade import Grade, Options
 from grader.grading.grading import grading_of
-from grader.report.feedback import ShownCheck, shown_checks
+from grader.report.checks import ShownCheck, shown_checks
 from grader.report.printable import printable
 from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.workers.pool import HostFault, WorkerPool

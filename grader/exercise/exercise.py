@@ -105,7 +105,7 @@ class Exercise:
     the author's solution, and is None in a student's copy of the course. With `public_only` the hidden checks are left
     out, as in a student's copy. `programs` are the programs of a submission with several; `class_name` and `node_name`
     are then those of the first. `advice` maps the name of an exception, such as "KeyError", to a sentence for students
-    whose program ended with it.
+    whose program ended with it. With `count_hints`, the upload says how many further hints a student took.
     """
 
     name: str
@@ -124,6 +124,7 @@ class Exercise:
     programs: tuple[ProgramFile, ...] = ()
     reference_node: str = REFERENCE_NODE
     advice: dict[str, str] = field(default_factory=dict)
+    count_hints: bool = False
 
     @property
     def scenarios_file(self) -> Path:

@@ -35,7 +35,7 @@ DEADLINE = "deadline"
 
 #: The keys of exercise.toml, of its tables, and whether a table's key is required.
 KEYS: dict[str, dict[str, bool]] = {
-    "": dict.fromkeys(("title", "points", "file", "class", "node", "reference_node", "advice"), False),
+    "": dict.fromkeys(("title", "points", "file", "class", "node", "reference_node", "advice", "count_hints"), False),
     **{
         direction: {
             "topic": True,
@@ -141,6 +141,13 @@ class TomlTable:
     def units(self) -> dict[str, str]:
         """Return the unit of each field."""
         return self.texts("units", '{ x = "m" }')
+
+    def flag(self, key: str) -> bool:
+        """Return true or false; false if it is not there."""
+        value = self.entries.get(key, False)
+        if not isinstance(value, bool):
+            self.fault(key, f"{key} = {value!r}: it is not true or false", f"Write {key} = true.")
+        return value
 
     def texts(self, key: str, example: str) -> dict[str, str]:
         """Return a table whose values are all texts."""

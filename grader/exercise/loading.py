@@ -55,6 +55,7 @@ def load(folder: Path | str) -> Exercise:
         programs=parts,
         reference_node=top.text("reference_node", REFERENCE_NODE),
         advice=top.texts("advice", '{ KeyError = "What if a key is missing?" }'),
+        count_hints=top.flag("count_hints"),
     )
     if not exercise.topics and not exercise.endpoints and not exercise.parameters:
         fix = "Declare each topic under [[subscribe]] or [[publish]], and services, actions and parameters likewise."

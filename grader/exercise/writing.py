@@ -15,6 +15,7 @@ def to_toml(exercise: Exercise) -> str:
         top |= {"class": exercise.class_name, "node": exercise.node_name}
     top["reference_node"] = "" if exercise.reference_node == REFERENCE_NODE else exercise.reference_node
     top["advice"] = exercise.advice
+    top |= {"count_hints": True} if exercise.count_hints else {}
     tables = [_lines(top)]
     tables += [_table("program", _program(program)) for program in exercise.programs]
     tables += [_table(topic.direction, _topic(topic)) for topic in exercise.topics]

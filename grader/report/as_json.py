@@ -15,7 +15,8 @@ from typing import Any
 
 from grader.checking.verdict import Finding, Verdict
 from grader.grading.grade import Adjustment, Entry, Grade, Student
-from grader.report.feedback import ShownCheck, shown_checks, tail
+from grader.report.checks import ShownCheck, shown_checks
+from grader.report.feedback import tail
 from grader.report.printable import printable
 
 

@@ -7,74 +7,11 @@ import re
 from dataclasses import dataclass
 from html import unescape
 
-from grader.checking.verdict import Finding, Status, Verdict
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Adjustment, Entry, Grade, Outcome
+from grader.report.checks import shown_checks
 from grader.report.pages import render
 from grader.report.printable import as_students_see_it, printable
-
-# A public check is shown in full. A hidden one is shown with its title, its points, whether it passed, and its hint,
-# which its author wrote for students; never with its name, its scenario, or an expected number, which would reveal it.
-
-
-#: A status as a sign and as a word. `error` is the grader's fault, and then there is no score.
-SIGNS: dict[Status, tuple[str, str]] = {
-    "passed": ("✓", "passed"),
-    "failed": ("✗", "failed"),
-    "blocked": ("–", "can't be judged yet"),
-    "error": ("!", "not judged"),
-}
-
-
-@dataclass(frozen=True)
-class ShownCheck:
-    """One check as a student sees it; hidden ones have no `finding`. `needs` are titles of checks to fix first."""
-
-    title: str
-    status: Status
-    sign: str
-    word: str
-    earned: float
-    points: float
-    hidden: bool
-    finding: Finding | None
-    hint: str
-    needs: tuple[str, ...]
-
-    @property
-    def text(self) -> str:
-        """Return the same in a few lines of plain text, without title and points."""
-        lines = [self.finding.text] if self.finding else []
-        if self.needs:
-            lines.append("Can't be judged until this is right: " + " ".join(self.needs))
-        if self.hint:
-            lines.append(f"Hint: {self.hint}")
-        return "\n".join(lines)
-
-
-def shown_checks(grade: Grade) -> tuple[ShownCheck, ...]:
-    """Return every check of `grade`, in order, with what a student may know about it."""
-    titles = {verdict.name: verdict.title for verdict in grade.verdicts}
-    return tuple(_shown_check(verdict, grade, titles) for verdict in grade.verdicts)
-
-
-def _shown_check(verdict: Verdict, grade: Grade, titles: dict[str, str]) -> ShownCheck:
-    # If the first scenario broke off, the message says so, and each check would repeat it.
-    telling = grade.outcome == "graded"
-    sign, word = SIGNS[verdict.status]
-    failed = verdict.status == "failed" and telling
-    return ShownCheck(
-        title=verdict.title,
-        status=verdict.status,
-        sign=sign,
-        word=word,
-        earned=verdict.earned,
-        points=verdict.points,
-        hidden=verdict.hidden,
-        finding=verdict.finding if failed and not verdict.hidden else None,
-        hint=verdict.hint if failed else "",
-        needs=tuple(titles.get(name, name) for name in verdict.blocked_by) if telling else (),
-    )
 
 
 @dataclass(frozen=True)
@@ -185,7 +122,7 @@ def feedback_page(entry: Entry, exercise: Exercise, plot_svg: str | None) -> str
         advice=advice(grade, exercise),
         public=[check for check in checks if not check.hidden],
         hidden=[check for check in checks if check.hidden],
-        first=next((check for check in checks if check.status == "failed" and (check.finding or check.hint)), None),
+        first=next((check for check in checks if check.status == "failed" and (check.finding or check.hints)), None),
         adjustments=[(_kind(adjustment), adjustment) for adjustment in entry.adjustments],
         plot=_picture(plot_svg) if plot_svg else "",
         plot_says=_description(plot_svg) if plot_svg else "",

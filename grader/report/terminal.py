@@ -6,17 +6,11 @@ from rich.console import Console
 from rich.padding import Padding
 from rich.text import Text
 
-from grader.checking.verdict import Status, Verdict
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
+from grader.report.checks import ShownCheck, public_total, shown_checks
 from grader.report.printable import as_students_see_it, printable
 from grader.sandbox.program import Isolation
-
-
-def points_so_far(grade: Grade) -> str:
-    """Return how many of the checks that can be judged here passed: "8 of 8 public checks, 50 of 50 points"."""
-    passed = sum(verdict.status == "passed" for verdict in grade.verdicts)
-    return f"{passed} of {len(grade.verdicts)} public checks, {grade.score:g} of {grade.points:g} points"
 
 
 def hidden_checks_to_come(grade: Grade) -> str:
@@ -38,25 +32,26 @@ def self_check_standing(grade: Grade) -> str:
 def self_check_lines(grade: Grade) -> list[str]:
     """Return the whole result of a self-check, as lines."""
     return [
-        line for line in (f"{points_so_far(grade)}.", hidden_checks_to_come(grade), self_check_standing(grade)) if line
+        line
+        for line in (f"{public_total(grade.verdicts)}.", hidden_checks_to_come(grade), self_check_standing(grade))
+        if line
     ]
 
 
-SIGNS: dict[Status, tuple[str, str]] = {
-    "passed": ("✓", "green"),
-    "failed": ("✗", "red"),
-    "blocked": ("–", "yellow"),
-    "error": ("!", "magenta"),
-}
+STYLES: dict[str, str] = {"✓": "green", "✗": "red", "–": "yellow", "!": "magenta", "○": "cyan"}
 
 
-def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = False) -> None:
-    """Print a grade: every check with its points, and for each failed one why, and where to look."""
+def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = False, steps: int = 2) -> None:
+    """Print a grade: every check with its points, and for each failed one why, once for each cause.
+
+    `steps` is how much of a hint is shown: 1 is what was seen, 2 also where to look, 3 also what to do.
+    """
     console.print(Text(printable(f"{exercise.title}: {grade.submission}"), style="bold"), soft_wrap=True)
     if grade.message:
         console.print(Text(printable(f"{grade.outcome}: {grade.message}"), style="red"), soft_wrap=True)
-    for verdict in grade.verdicts:
-        _show_verdict(verdict, grade, console)
+    checks = shown_checks(grade)
+    for check, verdict in zip(checks, grade.verdicts, strict=True):
+        _show_check(check, verdict.error, console, steps)
     if grade.has_score:
         style = "bold green" if grade.full_marks else "bold"
         if grade.self_check:
@@ -70,24 +65,13 @@ def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = Fal
         console.print(Text(printable(as_students_see_it(grade.log)) or "(nothing)"), soft_wrap=True)
 
 
-def _show_verdict(verdict: Verdict, grade: Grade, console: Console) -> None:
-    sign, style = SIGNS[verdict.status]
-    points = f"{verdict.earned:g}/{verdict.points:g}"
-    console.print(Text.assemble((f" {sign} ", style), (f"{points:>6}  ", "dim"), verdict.title), soft_wrap=True)
-    lines = []
-    if verdict.status == "failed":
-        # The message of a run that broke off is already at the top.
-        if verdict.finding and grade.outcome == "graded":
-            lines.append(verdict.finding.text)
-        if grade.outcome == "graded":
-            lines.append(f"Hint: {verdict.hint}")
-    elif verdict.status == "blocked" and grade.outcome == "graded":
-        titles = {other.name: other.title for other in grade.verdicts}
-        lines.append("Can't be judged until this is right: " + " ".join(titles[name] for name in verdict.blocked_by))
-    elif verdict.status == "error":
-        lines.append(verdict.error)
-    for line in lines:
+def _show_check(check: ShownCheck, error: str, console: Console, steps: int) -> None:
+    points = f"{check.earned:g}/{check.points:g}"
+    sign = (f" {check.sign} ", STYLES[check.sign])
+    console.print(Text.assemble(sign, (f"{points:>6}  ", "dim"), check.title), soft_wrap=True)
+    lines = [(check.finding.text, "")] if check.finding else []
+    lines += [(f"{label}: {hint}", "") for label, hint in check.labelled_hints[: steps - 1]]
+    lines += [(check.note, "dim"), (error, "")]
+    for line, style in lines:
         if line:
-            console.print(
-                Padding(Text(printable(line), style="dim" if line.startswith("Can't") else ""), (0, 0, 0, 11))
-            )
+            console.print(Padding(Text(printable(line), style=style), (0, 0, 0, 11)))

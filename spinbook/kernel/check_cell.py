@@ -16,6 +16,7 @@ from IPython.display import display
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
+from grader.report import hint_steps
 from grader.sandbox.middleware import MiddlewareUnavailable, require_middleware
 from grader.submission.code import Code, as_text, code_of_notebook
 from grader.submission.notebook import RECORD, Notebook, NotebookCell, read_notebook
@@ -140,8 +141,8 @@ def notebook_file(variables: Mapping[str, Any], environment: Mapping[str, str]) 
 _GRACE = (0.5, 0.5)
 
 
-def checked(exercise: Path, code: Code, seconds: float) -> dict[str, str]:
-    """Return the result for `code`, by media type: text/html and text/plain.
+def checked(exercise: Path, code: Code, seconds: float) -> dict[str, Any]:
+    """Return the result for `code`: by media type (text/html and text/plain) in `shown`, and further `hints`.
 
     Raises CellFailed if there is none: after `seconds`, when interrupted, or because of a fault of ours.
     """
@@ -170,9 +171,9 @@ def checked(exercise: Path, code: Code, seconds: float) -> dict[str, str]:
         return _result(folder / "result", output)
 
 
-def _result(file: Path, output: str) -> dict[str, str]:
+def _result(file: Path, output: str) -> dict[str, Any]:
     try:
-        result: dict[str, str] = json.loads(file.read_text(encoding="utf-8"))
+        result: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         last = "\n".join(output.strip().splitlines()[-3:])
         raise CellFailed(f"The check itself failed, which is not your fault:\n{last}") from None
@@ -193,7 +194,16 @@ def check_cell(session: Session, shell: Any, name: str, course: str, seconds: fl
     _prepare()
     # Saved with the notebook: the record says which of several cells counts.
     record = {RECORD: {"exercise": exercise.name, "code": digest_of(result.code.source)}}
-    display(checked(exercise.folder, result.code, seconds), metadata=record, raw=True)
+    answer = checked(exercise.folder, result.code, seconds)
+    with contextlib.suppress(OSError):  # a folder that can't be written: then there is no %hint
+        hint_steps.remember(exercise, answer["hints"], Path.cwd())
+    display(answer["shown"], metadata=record, raw=True)
+
+
+def show_hint(shell: Any, name: str, course: str) -> None:
+    """Print the next hint of the last check of the exercise `name`."""
+    exercise = exercise_of(name, course, notebook_file(shell.user_ns, os.environ))
+    print(hint_steps.next_hint(exercise, Path.cwd()))
 
 
 def _prepare() -> None:

@@ -287,6 +287,18 @@ class SpinbookMagics(Magics):
 
     @no_var_expand
     @line_magic
+    def hint(self, line: str) -> None:
+        """%hint EXERCISE: show the next hint for the first check that failed."""
+        reader = LineReader("%hint", "Show where to look, and then what to do, for the first check that failed.")
+        reader.add_argument("exercise")
+        reader.add_argument("--course", default="", help="the folder of the handout, if it is not this one")
+        if arguments := reader.read(line):
+            from spinbook.kernel import check_cell
+
+            check_cell.show_hint(self.shell, arguments.exercise, arguments.course)
+
+    @no_var_expand
+    @line_magic
     def submit(self, line: str) -> None:
         """%submit EXERCISE: write one file to upload, with the exercise's cell as it was last run."""
         reader = LineReader("%submit", "Write one file to upload: the exercise's cell, as you last ran it.")

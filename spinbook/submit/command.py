@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +13,8 @@ from rich.console import Console
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
+from grader.report import hint_steps
+from grader.report.checks import first_hints
 from grader.report.terminal import show
 from grader.sandbox.program import SandboxUnavailable
 from grader.submission.reader import Submission
@@ -87,7 +90,7 @@ def submit(
 def print_result(checked: SelfCheck, exercise: Exercise, console: Console) -> None:
     """Print the result of the self-check, or why there is none."""
     if checked.grade:
-        show(checked.grade, exercise, console)
+        show(checked.grade, exercise, console, steps=1)
     else:
         console.print(f"No self-check: {checked.why} You can still hand in.", markup=False, soft_wrap=True)
 
@@ -140,8 +143,24 @@ def check(exercise: str, file: Path | None, verbose: bool) -> None:
     chosen = candidate_in(file, loaded) if file else choose_candidate(loaded, Path.cwd(), command, question)
     click.echo(f"Checking {chosen.origin}.")
     grade = _grade(loaded, chosen.submission)
-    show(grade, loaded, Console(soft_wrap=False, highlight=False), verbose)
+    console = Console(soft_wrap=False, highlight=False)
+    show(grade, loaded, console, verbose, steps=1)
+    with contextlib.suppress(OSError):  # a folder that can't be written: then there are no further hints
+        hint_steps.remember(loaded, hint_steps.last_hints(grade), Path.cwd())
+        if first_hints(grade)[1]:
+            console.print(f"More help: spinbook hint {exercise}", markup=False)
     sys.exit(HOST_FAULT if grade.outcome == "host-error" else ALL_PASS if grade.full_marks else SOME_FAIL)
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("exercise")
+def hint(exercise: str) -> None:
+    """Show the next hint about the first check that failed: where to look, and the next time what to do.
+
+    It is about the last `spinbook check` (or %check) in this folder. How many hints you took is in
+    .spinbook/hints.json; your instructor sees it only if the exercise says that hints are counted.
+    """
+    click.echo(hint_steps.next_hint(exercise_named(exercise), Path.cwd()))
 
 
 def _grade(exercise: Exercise, submission: Submission) -> Grade:

@@ -1,6 +1,6 @@
 """Checks one cell's code: `python -m spinbook.submit.program EXERCISE CODE RESULT`, the last two being files.
 
-RESULT is JSON: the result by media type, or {"problem": TEXT} where there is none.
+RESULT is JSON: the result by media type in `shown`, and further `hints`; or {"problem": TEXT} where there is none.
 """
 
 from __future__ import annotations
@@ -9,11 +9,13 @@ import json
 import sys
 import threading
 from pathlib import Path
+from typing import Any
 
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.loading import load
 from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
+from grader.report.hint_steps import last_hints
 from grader.sandbox.program import SandboxUnavailable
 from grader.submission.code import from_text
 from grader.submission.reader import of_code
@@ -29,7 +31,7 @@ def main() -> None:
     write_if_changed(result, json.dumps(_checked(folder, code.read_text(encoding="utf-8"))))
 
 
-def _checked(folder: Path, code: str) -> dict[str, str]:
+def _checked(folder: Path, code: str) -> dict[str, Any]:
     try:
         exercise = load(folder).public()
         grade: Grade = grade_submission(exercise, of_code("your cell", from_text(code), exercise))
@@ -39,7 +41,8 @@ def _checked(folder: Path, code: str) -> dict[str, str]:
         return {"problem": f"The machine or the grader is at fault, not your code: {error}"}
     from spinbook.submit.self_check_view import as_html, as_text
 
-    return {"text/html": as_html(grade, exercise), "text/plain": as_text(grade, exercise)}
+    shown = {"text/html": as_html(grade, exercise), "text/plain": as_text(grade, exercise)}
+    return {"shown": shown, "hints": last_hints(grade)}
 
 
 def _load_drawing() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import io
 from dataclasses import dataclass
-from itertools import groupby
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -16,7 +15,8 @@ from grader.checking.verdict import Finding
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
 from grader.report import terminal
-from grader.report.feedback import ShownCheck, advice, shown_checks
+from grader.report.checks import ShownCheck, first_hints, public_total, shown_checks
+from grader.report.feedback import advice
 from grader.report.feedback_plot import feedback_plot
 from grader.report.printable import as_students_see_it, printable
 from grader.report.terminal import show
@@ -33,26 +33,29 @@ LAST_LINES = 12
 
 @dataclass(frozen=True)
 class CheckRow:
-    """One check as it is shown. `facts` are (label, value); `remark` is the rest of the finding.
-
-    `before` is shown above the first of several checks that depend on the same one.
-    """
+    """One check as it is shown. `facts` are (label, value); `remark` is the rest of the finding."""
 
     check: ShownCheck
     facts: tuple[tuple[str, str], ...] = ()
     remark: str = ""
-    before: str = ""
 
 
 def as_text(grade: Grade, exercise: Exercise) -> str:
     """Return the text that the terminal shows, without colours."""
     out = io.StringIO()
-    show(grade, exercise, Console(file=out, width=WIDTH, color_system=None, highlight=False))
+    show(grade, exercise, Console(file=out, width=WIDTH, color_system=None, highlight=False), steps=1)
     lines = [line.rstrip() for line in out.getvalue().rstrip("\n").split("\n")]
     if printed := _end(grade.log):
         last = printed.splitlines()[-LAST_LINES:]
         lines += ["What your program printed:", *(f"  {printable(line, WIDTH)}" for line in last)]
+    lines += [more_help(exercise)] if first_hints(grade)[1] else []
     return "\n".join([*lines, f"Next: {next_step(grade, exercise)}"])
+
+
+def more_help(exercise: Exercise) -> str:
+    """Return how to get the further hints in a notebook."""
+    counted = ", and each one is counted" if exercise.count_hints else ""
+    return f"More help: %hint {exercise.name} shows where to look, and then what to do{counted}."
 
 
 def next_step(grade: Grade, exercise: Exercise) -> str:
@@ -81,16 +84,18 @@ def as_html(grade: Grade, exercise: Exercise) -> str:
     plot = feedback_plot(grade, exercise)
     return environment.get_template("self_check_view.html").render(
         title=exercise.title,
-        total=terminal.points_so_far(grade),
+        total=public_total(grade.verdicts),
         full=grade.full_marks,
         message=grade.message,
         step=_first_step(grade, exercise),
         log=_end(grade.log),
         log_open=grade.outcome != "graded",
         rows=_rows(grade, exercise),
+        fold_hints=not exercise.count_hints,
         # In an <img>, an SVG can neither run nor load anything.
         plot=Markup("data:image/svg+xml;base64,") + base64.b64encode(plot.encode()).decode() if plot else "",
         plot_says=_plot_says(grade),
+        more_help=more_help(exercise) if first_hints(grade)[1] else "",
         next_step=next_step(grade, exercise),
         to_come=terminal.hidden_checks_to_come(grade),
         standing=terminal.self_check_standing(grade),
@@ -113,16 +118,7 @@ def _end(log: str) -> str:
 
 
 def _rows(grade: Grade, exercise: Exercise) -> list[CheckRow]:
-    rows = []
-    for needs, group in groupby(shown_checks(grade), key=lambda check: check.needs):
-        first, *rest = group
-        if needs:
-            which = f"The next {len(rest) + 1} checks" if rest else "The next check"
-            before = f"{which} can't be judged until this is right: {' '.join(needs)}"
-            rows += [CheckRow(first, before=before), *(CheckRow(check) for check in rest)]
-        else:
-            rows += [_row(check, grade, exercise) for check in (first, *rest)]
-    return rows
+    return [_row(check, grade, exercise) for check in shown_checks(grade)]
 
 
 def _row(check: ShownCheck, grade: Grade, exercise: Exercise) -> CheckRow:

@@ -26,7 +26,13 @@ def test_a_mistake_is_reported_with_when_and_where_drawn_and_recorded(tmp_path: 
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (1, "")
     text = " ".join(done.stdout.split())
-    for message in ("90 of 100 points", "Message 2 of 20 (0.10 s", "left_shoulder_roll", "expected velocity", "Hint:"):
+    for message in (
+        "90 of 100 points",
+        "Message 2 of 20 (0.10 s",
+        "left_shoulder_roll",
+        "expected velocity",
+        "Where to look:",
+    ):
         assert message in text
     svg = (tmp_path / "out.svg").read_text()
     assert "first wrong" in svg

@@ -17,7 +17,7 @@ from grader.classroom.formats.format import Export, ExportTable, Format, Interpr
 from grader.classroom.tables import Cell, csv_text, number
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Entry, Student
-from grader.report.feedback import shown_checks
+from grader.report.checks import shown_checks
 
 NAME = re.compile(r"(?P<name>.+?)(?:_(?P<number>\d+))?_assignsubmission_(?P<kind>[a-z]+)(?:_(?P<file>.*))?", re.DOTALL)
 WORKSHEET = ("Identifier", "Full name")
@@ -100,8 +100,9 @@ def _comment(entry: Entry) -> str:
     if grade.message:
         lines.append(grade.message[:500])
     for check in shown_checks(grade):
-        if check.status == "failed" and (check.finding or check.hint):
-            lines.append(f"✗ {check.title}" + (f" Hint: {check.hint}" if check.hint else ""))
+        if check.status == "failed" and (check.finding or check.hints or check.same_as):
+            hint = f"Hint: {check.hints[0]}" if check.hints else ""
+            lines.append(" ".join(filter(None, (f"✗ {check.title}", hint, check.note))))
     return "<br>".join(escape(line) for line in lines)
 
 

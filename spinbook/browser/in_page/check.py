@@ -9,7 +9,6 @@ import ast
 import json
 import sys
 import zipfile
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load
 from grader.recording.recording import Recording, from_plain, not_run_because
+from grader.report.checks import ShownCheck, public_total, shown_verdicts
 from grader.scenario.scenario import Message, Scenario
 from grader.scenario.store import from_plain as scenario_from_plain
 from spinbook.browser.in_page import runner
@@ -136,30 +136,28 @@ def shown(
     exercise: Exercise, found: tuple[Verdict, ...], recordings: dict[str, Recording], hidden: dict[str, Any]
 ) -> dict[str, Any]:
     """Return the result in the page's form."""
-    titles = {verdict.name: verdict.title for verdict in found}
-    earned, points = sum(v.earned for v in found), sum(v.points for v in found)
-    passed = sum(verdict.status == "passed" for verdict in found)
+    first = next(iter(recordings.values()))
     broken = next((r for r in recordings.values() if r.ending.outcome != "completed"), None)
+    checks = shown_verdicts(found, telling=first.ending.outcome == "completed", self_check=True)
     message = message_of(broken.ending, exercise) if broken else ""
     return {
-        "total": f"{passed} of {len(found)} public checks, {earned:g} of {points:g} points",
-        "full": passed == len(found),
+        "total": public_total(found),
+        "full": all(verdict.status == "passed" for verdict in found),
         "message": message,
         "log": broken.log[-4000:] if broken else "",
         "hidden": hidden,
-        "rows": [_row(verdict, titles) for verdict in found],
+        "rows": [_row(check, exercise.count_hints) for check in checks],
     }
 
 
-def _row(verdict: Verdict, titles: dict[str, str]) -> dict[str, Any]:
-    failed = verdict.status == "failed"
-    finding = asdict(verdict.finding) if failed and verdict.finding else {}
+def _row(check: ShownCheck, count_hints: bool) -> dict[str, Any]:
+    """Return a check in the page's form. A page does not count hints: then they are only in the notebook."""
     return {
-        "title": verdict.title,
-        "status": verdict.status,
-        "earned": verdict.earned,
-        "points": verdict.points,
-        "text": finding.get("text", ""),
-        "hint": verdict.hint if failed else "",
-        "needs": [titles.get(name, name) for name in verdict.blocked_by],
+        "title": check.title,
+        "status": "untested" if check.untested else check.status,
+        "earned": check.earned,
+        "points": check.points,
+        "text": check.finding.text if check.finding else "",
+        "hints": () if count_hints else check.labelled_hints,
+        "note": check.note,
     }

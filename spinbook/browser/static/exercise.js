@@ -5,7 +5,7 @@ import { announce, button, element, failure, hindrance, style } from "./elements
 import { Process } from "./processes.js";
 
 const LIMIT_S = 120;
-const SIGNS = { passed: "✓", failed: "✗", blocked: "–", error: "!" };
+const SIGNS = { passed: "✓", failed: "✗", blocked: "–", error: "!", untested: "○" };
 
 let process = null;
 
@@ -35,15 +35,19 @@ async function check(exercise, source, say) {
 }
 
 function row(check) {
-  const { status, title, earned, points, text, hint, needs } = check;
-  const notes = [text, needs.length ? `Can't be judged until this is right: ${needs.join(" ")}` : "", hint && `Hint: ${hint}`];
+  const { status, title, earned, points, text, hints, note } = check;
+  const folded = hints.map(([label, hint]) =>
+    element("details", {}, element("summary", { textContent: label }), element("p", { textContent: hint })),
+  );
   return element(
     "li",
     { className: `check-${status}` },
     element("span", { className: "check-sign", textContent: SIGNS[status], ariaLabel: status }),
     element("span", { className: "check-title", textContent: title }),
     element("span", { className: "check-points", textContent: `${earned} of ${points}` }),
-    ...notes.filter(Boolean).map((note) => element("p", { textContent: note })),
+    ...(text ? [element("p", { textContent: text })] : []),
+    ...folded,
+    ...(note ? [element("p", { className: "check-note", textContent: note })] : []),
   );
 }
 

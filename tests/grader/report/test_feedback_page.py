@@ -35,12 +35,19 @@ def test_a_failed_public_check_tells_what_was_expected_and_got_when_and_where(
         in shown
     )
     assert "Every velocity is the position of the message that arrived, unchanged." in shown
-    assert "Hint: (position now - position before)" in shown
+    assert "Where to look Which line computes the value" in shown
+    assert "What to do The number that arrives is sent on as it is." in shown
+    assert "(position now - position before)" not in shown, "the author's hint is for another cause"
 
 
-def test_what_is_blocked_says_what_to_fix_first(graded: dict[str, Grade], exercise: Exercise) -> None:
-    shown = text(page_of(graded["position_for_velocity"], exercise))
-    assert "can't be judged until this is right: Each joint's velocity is its change of position" in shown
+def test_one_cause_is_said_once_with_how_many_checks_wait_for_it(graded: dict[str, Grade], exercise: Exercise) -> None:
+    page = page_of(graded["position_for_velocity"], exercise)
+    blocked = [verdict for verdict in graded["position_for_velocity"].verdicts if verdict.status == "blocked"]
+    assert blocked
+    said = re.findall(r"(\d+) more checks? waits? for this", page)
+    assert said[1:], "where to begin, and at the check"
+    assert int(said[0]) >= len(blocked)
+    assert "can't be judged until" not in page
 
 
 def test_of_a_hidden_check_only_title_points_outcome_and_hint_are_reported(
@@ -81,7 +88,7 @@ def test_full_marks_are_celebrated(graded: dict[str, Grade], exercise: Exercise)
     shown = text(page_of(graded["solution"], exercise))
     assert "Everything is right" in shown
     assert "100 of 100 points" in shown
-    assert "Hint:" not in shown
+    assert "Where to look" not in shown
 
 
 @pytest.mark.parametrize(
