@@ -48,11 +48,18 @@ class Course:
     """The file whose headings are the course's terms."""
     site: str = ""
     """Where the website is published; empty if neither course.toml nor the repository says so."""
+    run: tuple[Path, ...] | None = None
+    """The chapters that `spinbook site` runs; None: all."""
 
     @property
     def build_folder(self) -> Path:
         """The folder for everything that Spinbook makes."""
         return self.root / "build"
+
+    def is_run(self, chapter: Path) -> bool:
+        """Return whether the site runs a chapter: course.toml says so, or somebody has run it before."""
+        executed = self.build_folder / "executed" / f"{self.names[chapter]}.ipynb"
+        return self.run is None or chapter in self.run or executed.exists()
 
     @property
     def names(self) -> dict[Path, str]:
@@ -120,6 +127,7 @@ def read_course(root: Path) -> Course:
             problems.append(
                 Problem(FILE, None, f"`{name}` is outside the course.", "Name files inside the course's folder.")
             )
+    run = _chapters_to_run(data, chapters, problems)
     package = _package(data.get("package"), problems)
     if problems:
         raise SpinbookError(*problems)
@@ -133,7 +141,23 @@ def read_course(root: Path) -> Course:
         ros_distro=str(data.get("ros_distro", "jazzy")),
         glossary=Path(str(data["glossary"])) if data.get("glossary") else None,
         site=_site(str(data.get("site", "")), str(data.get("repository", ""))),
+        run=run,
     )
+
+
+def _chapters_to_run(data: dict[str, Any], chapters: list[Any], problems: list[Problem]) -> tuple[Path, ...] | None:
+    """Return the chapters that the site runs; None if course.toml does not say."""
+    run = data.get("run")
+    if run is None:
+        return None
+    if not isinstance(run, list):
+        fix = 'Write for example: run = ["chapters/01-start.md"], or leave it out to run all.'
+        problems.append(Problem(FILE, None, "`run` is not a list of chapters.", fix))
+        return None
+    for name in run:
+        if name not in chapters:
+            problems.append(Problem(FILE, None, f"`run` names `{name}`, which is not in `chapters`.", "Correct it."))
+    return tuple(Path(str(name)) for name in run)
 
 
 def _site(given: str, repository: str) -> str:

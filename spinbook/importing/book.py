@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,87 +13,25 @@ import yaml
 from markdown_it import MarkdownIt
 
 from groundwork.problem import Problem
-from spinbook.course.course import FILE
-from spinbook.importing.pages import Pages
+from spinbook.importing.javascript import objects_in, value_in
+from spinbook.importing.pages import ENDINGS, Pages
+from spinbook.importing.toctree import pages_below
 from spinbook.problem import SpinbookError
 
-_TOKEN = re.compile(
-    r"""\s+|//[^\n]*|/\*.*?\*/|(?P<string>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|`(?:\\.|[^`\\])*`)|(?P<mark>[{}\[\],:])"""
-    r"""|(?P<word>[^\s"'`{}\[\],:/]+|/)""",
-    re.DOTALL,
-)
-_OBJECT = re.compile(r"(?:=|\bexport\s+default)\s*(?=\{)")
-
-
-def objects_in(text: str) -> Iterator[Any]:
-    """Yield the objects that a file assigns or exports."""
-    for match in _OBJECT.finditer(text):
-        tokens = list(_tokens(text[match.end() :]))
-        value, _ = _value(tokens, 0)
-        yield value
-
-
-def _tokens(text: str) -> Iterator[tuple[str, str]]:
-    depth = 0
-    for match in _TOKEN.finditer(text):
-        kind = match.lastgroup
-        if kind is None:
-            continue
-        yield kind, match[0][1:-1] if kind == "string" else match[0]
-        depth += (match[0] in "{[") - (match[0] in "}]") if kind == "mark" else 0
-        if depth == 0:
-            return
-
-
-def _value(tokens: list[tuple[str, str]], at: int) -> tuple[Any, int]:
-    """Return the value that begins at a token, and the index after it. Anything but a literal is None."""
-    kind, text = tokens[at] if at < len(tokens) else ("mark", "}")
-    if (kind, text) == ("mark", "{"):
-        return _object(tokens, at + 1)
-    if (kind, text) == ("mark", "["):
-        return _list(tokens, at + 1)
-    if kind == "string":
-        return text, at + 1
-    words = ""
-    while at < len(tokens) and not (tokens[at][0] == "mark" and tokens[at][1] in ",}]"):
-        words += tokens[at][1]
-        at += 1
-    return {"true": True, "false": False}.get(words), at
-
-
-def _object(tokens: list[tuple[str, str]], at: int) -> tuple[dict[str, Any], int]:
-    found: dict[str, Any] = {}
-    while at < len(tokens) and tokens[at] != ("mark", "}"):
-        key, at = tokens[at][1], at + 1
-        if at < len(tokens) and tokens[at] == ("mark", ":"):
-            found[key], at = _value(tokens, at + 1)
-    return found, at + 1
-
-
-def _list(tokens: list[tuple[str, str]], at: int) -> tuple[list[Any], int]:
-    found: list[Any] = []
-    while at < len(tokens) and tokens[at] != ("mark", "]"):
-        if tokens[at] == ("mark", ","):
-            at += 1
-            continue
-        before = at
-        value, at = _value(tokens, at)
-        found.append(value)
-        at += at == before
-    return found, at + 1
-
-
 # The known files are mkdocs.yml, _toc.yml (Jupyter Book), myst.yml, _quarto.yml, sidebars.js (Docusaurus),
-# astro.config.mjs (Starlight), SUMMARY.md (mdBook, GitBook) and _sidebar.md (docsify). In a folder without any of them,
-# all Markdown files are chapters.
+# astro.config.mjs (Starlight), SUMMARY.md (mdBook, GitBook), _sidebar.md (docsify) and conf.py (Sphinx). In a folder
+# without any of them, all files that Spinbook reads are chapters.
+
+#: Texts that Spinbook does not read, and pandoc does.
+_OTHER_TEXTS = frozenset({".adoc", ".docx", ".html", ".odt", ".org", ".tex", ".textile", ".wiki"})
 
 
 @dataclass(frozen=True)
 class Book:
     """An existing book. `root` is the folder that becomes the course; `chapters` are relative to it, in order.
 
-    `contents` is the file that defines the order, None if there is none. `left_out` are listed pages that are not
-    Markdown or do not exist.
+    `contents` is the file that defines the order, None if there is none. `left_out` are listed pages that do not exist
+    or that Spinbook does not read.
     """
 
     root: Path
@@ -158,10 +97,20 @@ def _book(root: Path, pages: Pages, contents: Path | None, title: str, folder: P
         else:
             chapters[found.relative_to(root)] = None
     if not chapters:
-        found_none = "there are no chapters (.md, .mdx) here."
-        raise SpinbookError(Problem(root, None, found_none, f"Write a course.toml by hand: see docs ({FILE})."))
+        raise SpinbookError(_nothing_in(root))
     title = title or _title_of(root) or pages.title_of(root / next(iter(chapters)))
     return Book(root, title, tuple(chapters), contents, tuple(left_out), _repository(root))
+
+
+def _nothing_in(root: Path) -> Problem:
+    """Return what is wrong with a folder without chapters, and what to do with what is there."""
+    suffixes = Counter(path.suffix for path in root.rglob("*") if path.is_file() and path.suffix in _OTHER_TEXTS)
+    read = ", ".join(ENDINGS)
+    if suffixes:
+        there = ", ".join(f"{count} {suffix}" for suffix, count in suffixes.most_common())
+        example = f"pandoc chapter{suffixes.most_common()[0][0]} -o chapter.md"
+        return Problem(root, None, f"there are no chapters here, but: {there}.", f"Convert them, such as: {example}")
+    return Problem(root, None, f"there are no chapters here ({read}).", "Name their folder: spinbook import FOLDER")
 
 
 def _mkdocs(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
@@ -231,7 +180,7 @@ def _starlight(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
     folder = next((path for path in (file.parent / "src/content/docs", file.parent / "docs") if path.is_dir()), None)
     folder = folder or file.parent
     start = re.search(r"\bsidebar\s*:\s*(?=\[)", text)
-    sidebar = _value(list(_tokens(text[start.end() :])), 0)[0] if start else []
+    sidebar = value_in(text[start.end() :]) if start else []
     title = re.search(r"""starlight\(\{.*?\btitle\s*:\s*(["'`])(.+?)\1""", text, re.DOTALL)
     listed = [item for entry in sidebar or [] for item in _sidebar_items(entry, folder, pages)]
     return title[2] if title else "", folder, listed or list(pages.in_folder(folder))
@@ -252,6 +201,16 @@ def _sidebar_items(item: Any, folder: Path, pages: Pages) -> Iterator[str | Path
         yield from _sidebar_items(inner, folder, pages)
 
 
+def _sphinx(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
+    """Read the `project` of Sphinx's conf.py, which is never run, and the toctrees from the index on."""
+    title = re.search(
+        r"""^project\s*=\s*(["'])(.+?)\1""", file.read_text(encoding="utf-8", errors="replace"), re.MULTILINE
+    )
+    index = pages.find(file.parent, "index") or pages.find(file.parent, "contents")
+    listed = list(dict.fromkeys(pages_below(index, file.parent, pages, set()))) if index else []
+    return title[2] if title else "", file.parent, [*listed] if listed else list(pages.in_folder(file.parent))
+
+
 def _list_of_links(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
     tokens = MarkdownIt("commonmark").parse(file.read_text(encoding="utf-8", errors="replace"))
     targets = [str(child.attrs.get("href", "")) for token in tokens for child in token.children or []]
@@ -270,6 +229,7 @@ _READERS: dict[str, _Reader] = {
     "astro.config.": _starlight,
     "SUMMARY.md": _list_of_links,
     "_sidebar.md": _list_of_links,
+    "conf.py": _sphinx,
 }
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,8 @@ from spinbook.chapters import read_all
 from spinbook.course.course import FILE, Course, read_course
 from spinbook.course.obstacles import by_itself, obstacles, ranked
 from spinbook.importing.book import Book, read_book
+from spinbook.importing.conversion import as_markdown
+from spinbook.importing.pages import CONVERTED
 from spinbook.problem import SpinbookError
 
 _RUNS = (CellKind.NODE, CellKind.SNIPPET, CellKind.PART, CellKind.SHELL, CellKind.INTERFACE, CellKind.FILE)
@@ -91,7 +94,10 @@ def import_book(book: Path, title: str | None, package: str | None) -> None:
       spinbook import my-book                  a folder: its table of contents is found
       spinbook import my-book/mkdocs.yml       MkDocs
       spinbook import my-book/docs/_toc.yml    Jupyter Book; also myst.yml, _quarto.yml
-      spinbook import my-book/sidebars.js      Docusaurus; also SUMMARY.md, _sidebar.md
+      spinbook import my-book/sidebars.js      Docusaurus; also astro.config.mjs, SUMMARY.md, _sidebar.md
+      spinbook import my-book/docs/conf.py     Sphinx
+
+    Notebooks and reStructuredText (.ipynb, .rst) become Markdown files next to them.
 
     Writes course.toml with the chapters in the book's order, builds the notebooks, and writes a page that says
     what runs, what does not, and what to do first: build/import.html. Runs nothing. It never overwrites a course.toml.
@@ -100,14 +106,27 @@ def import_book(book: Path, title: str | None, package: str | None) -> None:
     if (read.root / FILE).exists():
         found = f"{read.root} is already a course."
         raise SpinbookError(Problem(read.root / FILE, None, found, "Go there, and run: spinbook build"))
+    originals = [chapter for chapter in read.chapters if chapter.suffix in CONVERTED]
+    read = _in_markdown(read)
     text = course_toml(read, title or read.title, package or package_of(title or read.title))
     write_if_changed(read.root / FILE, text)
     course = read_course(read.root)
     click.echo(f"{course.title}: {len(read.chapters)} chapters, in the order of {_shown(read.contents, read.root)}")
+    if originals:
+        click.echo(f"Converted to Markdown, next to the originals: {', '.join(map(str, originals))}")
     if read.left_out:
-        click.echo(f"Left out because they are missing or not Markdown: {', '.join(read.left_out)}")
+        click.echo(f"Left out because they are missing or of another kind: {', '.join(read.left_out)}")
     built = list(build_notebooks(course))
     _report(course, built)
+
+
+def _in_markdown(book: Book) -> Book:
+    """Return the book with its notebooks and reStructuredText converted. Raises SpinbookError."""
+    files = [as_markdown(book.root / chapter) for chapter in book.chapters if chapter.suffix in CONVERTED]
+    if not files:
+        return book
+    chapters = (chapter.with_suffix(".md") if chapter.suffix in CONVERTED else chapter for chapter in book.chapters)
+    return replace(book, chapters=tuple(dict.fromkeys(chapters)))
 
 
 def course_toml(book: Book, title: str, package: str) -> str:
@@ -117,6 +136,8 @@ def course_toml(book: Book, title: str, package: str) -> str:
     return (
         "# The course's title, and the order of its chapters: see docs/writing-chapters.md.\n"
         f"title = {_quoted(title)}\n{repository}chapters = [\n{chapters}]\n\n"
+        "# The chapters that `spinbook site` runs, besides those that `spinbook build --execute` has run.\n"
+        "run = []\n\n"
         "# The ROS 2 package that the chapters' nodes make: `spinbook package`.\n"
         f'[package]\nname = "{package}"\nworkspace = "{package}_ws"\n'
     )

@@ -14,7 +14,10 @@ import yaml
 
 from spinbook.chapter.source import read_source
 
-_ENDINGS = (".md", ".mdx", ".qmd", ".markdown")
+#: Files that become Markdown chapters.
+CONVERTED = (".ipynb", ".rst")
+_MARKDOWN = (".md", ".mdx", ".qmd", ".markdown")
+ENDINGS = (*_MARKDOWN, *CONVERTED)
 #: Folders without chapters.
 _SKIPPED = frozenset(
     {"node_modules", "build", "blog", "i18n", "versioned_docs", "vendor", "site", "_site", "dist", "venv"}
@@ -49,10 +52,10 @@ class Pages:
         name = unquote(name.strip().split("?")[0]).strip("/")
         for base in (folder, self._root):
             path = base / name
-            for candidate in (path, *(path.with_name(path.name + ending) for ending in _ENDINGS)):
-                if candidate.is_file() and candidate.suffix in _ENDINGS and self._is_inside(candidate):
+            for candidate in (path, *(path.with_name(path.name + ending) for ending in ENDINGS)):
+                if candidate.is_file() and candidate.suffix in ENDINGS and self._is_inside(candidate):
                     return candidate.resolve()
-            for index in ("index.md", "README.md", "index.mdx"):
+            for index in ("index.md", "README.md", "index.mdx", "index.rst"):
                 if (path / index).is_file() and self._is_inside(path):
                     return (path / index).resolve()
         return self._by_id(folder).get(name)
@@ -104,7 +107,10 @@ class Pages:
         is_root_readme = (
             entry.parent == self._root and entry.stem.lower() == "readme" and (self._root / "docs").is_dir()
         )
-        return entry.suffix in _ENDINGS and entry.stem.lower() not in _NOT_CHAPTERS and not is_root_readme
+        if entry.suffix in CONVERTED and any(entry.with_suffix(ending).is_file() for ending in _MARKDOWN):
+            # A notebook beside its Markdown, as jupytext keeps them.
+            return False
+        return entry.suffix in ENDINGS and entry.stem.lower() not in _NOT_CHAPTERS and not is_root_readme
 
     def _place(self, entry: Path) -> tuple[float, bool, list[tuple[int, str]]]:
         first = entry.stem.lower() in {"index", "readme", "intro", "introduction"} and entry.is_file()
@@ -129,7 +135,7 @@ class Pages:
 
     @functools.cache  # noqa: B019
     def _front_matter(self, file: Path) -> dict[str, Any]:
-        source, _ = read_source(file, file)
+        source, _ = read_source(file, file) if file.suffix in _MARKDOWN else (None, [])
         return dict(source.front_matter) if source else {}
 
     def title_of(self, file: Path) -> str:

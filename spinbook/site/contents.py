@@ -239,6 +239,8 @@ def _ran(course: Course, chapter: Chapter) -> ExecutedNotebook:
     try:
         return ExecutedNotebook.read(file)
     except (OSError, ValueError, KeyError):
+        if not course.is_run(chapter.file):
+            return ExecutedNotebook({})
         found = "it has not run yet, so there are no outputs to show."
         raise SpinbookError(Problem(chapter.file, None, found, "Run it: spinbook build --execute")) from None
 

@@ -15,7 +15,7 @@ from rich.console import Console
 
 from spinbook.build.execution import NotebookJob, execute
 from spinbook.build.notebooks import build_notebooks
-from spinbook.course.course import Course
+from spinbook.course.course import FILE, Course
 from spinbook.course.obstacles import ranked
 from spinbook.interfaces.definitions import compile_course
 from spinbook.problem import SpinbookError
@@ -42,7 +42,14 @@ def bring_up_to_date(course: Course, console: Console, *, is_strict: bool) -> bo
         console.print(line, markup=False)
     if any(item.failed for item in built):
         return False
-    jobs = [NotebookJob(item.chapter, item.notebook, course.build_folder) for item in built]
+    chosen = [item for item in built if course.is_run(item.chapter)]
+    if left := [item.name for item in built if item not in chosen]:
+        console.print(
+            f"{len(left)} chapters are shown without outputs, because nobody asked to run them.", markup=False
+        )
+        fix = f"To run one: spinbook build --execute {left[0]}, or add its file to `run` in {FILE}."
+        console.print(f"    {fix}", markup=False)
+    jobs = [NotebookJob(item.chapter, item.notebook, course.build_folder) for item in chosen]
     good = True
     with console.status("Checking which chapters have to run …") as status:
         for executed in execute(
