@@ -125,7 +125,7 @@ def feedback_page(entry: Entry, exercise: Exercise, plot_svg: str | None) -> str
         first=next((check for check in checks if check.status == "failed" and (check.finding or check.hints)), None),
         adjustments=[(_kind(adjustment), adjustment) for adjustment in entry.adjustments],
         plot=_picture(plot_svg) if plot_svg else "",
-        plot_says=_description(plot_svg) if plot_svg else "",
+        plot_says=described(plot_svg) if plot_svg else "",
         log=log,
         left_out=left_out,
         passed=sum(check.status == "passed" for check in checks),
@@ -147,7 +147,7 @@ def _picture(svg: str) -> str:
     return "data:image/svg+xml;base64," + base64.b64encode(svg.encode("utf-8", "replace")).decode()
 
 
-def _description(svg: str) -> str:
+def described(svg: str) -> str:
     """Return the picture's own description in <desc>."""
     match = re.search(r"<desc[^>]*>([^<]*)</desc>", svg)
     return unescape(match[1]).strip() if match else "Your node's output drawn over the solution's."

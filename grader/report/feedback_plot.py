@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from markupsafe import Markup
+
 from grader.checking.comparator import equal
 from grader.checking.message import Message
 from grader.checking.run import Run
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
 from grader.report.pages import template
+from grader.report.path_plot import path_of, path_plot
 
 #: (seconds after the scenario's start, value)
 Point = tuple[float, float]
@@ -70,7 +73,15 @@ def curves(grade: Grade, exercise: Exercise, scenario: str, quantity: Quantity) 
     except (LookupError, TypeError):
         return ()
     elements = [*expected, *(element for element in got if element not in expected)][:MOST]
-    return tuple(_curve(element, expected.get(element, []), got.get(element, [])) for element in elements)
+    since = _first_finding(grade, scenario, [exchange.sent.at for exchange in run.exchanges])
+    return tuple(_curve(element, expected.get(element, []), got.get(element, []), since) for element in elements)
+
+
+def _first_finding(grade: Grade, scenario: str, times: list[float]) -> float:
+    """Return the time of the last message before the first finding: an earlier difference is allowed."""
+    findings = [verdict.finding for verdict in grade.verdicts if verdict.status == "failed" and not verdict.hidden]
+    at = min((one.at for one in findings if one and one.scenario == scenario and one.at is not None), default=0.0)
+    return max((time for time in times if time <= at + 1e-9), default=at)
 
 
 def _values(message: Message, quantity: Quantity) -> dict[str, object]:
@@ -84,16 +95,16 @@ def _number(value: object) -> float:
     return float(value) if isinstance(value, (int, float)) else math.nan
 
 
-def _curve(element: str, expected: list[Point], got: list[Point]) -> Curve:
-    return Curve(element, _drawable(expected), _drawable(got), _first_difference(dict(expected), dict(got)))
+def _curve(element: str, expected: list[Point], got: list[Point], since: float) -> Curve:
+    return Curve(element, _drawable(expected), _drawable(got), _first_difference(dict(expected), dict(got), since))
 
 
 def _drawable(points: list[Point]) -> tuple[Point, ...]:
     return tuple(point for point in points if abs(point[1]) < HIGHEST)
 
 
-def _first_difference(expected: dict[float, float], got: dict[float, float]) -> Point | None:
-    for at in sorted({*expected, *got}):
+def _first_difference(expected: dict[float, float], got: dict[float, float], since: float) -> Point | None:
+    for at in sorted(at for at in {*expected, *got} if at >= since):
         if at not in expected or at not in got or not equal(got[at], expected[at], 1e-6):
             shown = (value for value in (got.get(at), expected.get(at)) if value is not None and abs(value) < HIGHEST)
             return at, next(shown, 0.0)
@@ -112,8 +123,8 @@ class Panel:
 
     element: str
     top: float
-    expected: str
-    got: str
+    expected: Markup
+    got: Markup
     lowest: str
     highest: str
     wrong: Point | None
@@ -130,6 +141,8 @@ def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
     scenario = _scenario(grade)
     if grade.outcome != "graded" or scenario is None:
         return None
+    if path := path_of(grade, exercise, scenario):
+        return path_plot(path)
     quantity = drawn_quantity(exercise)
     drawn = curves(grade, exercise, scenario, quantity) if quantity else ()
     if not quantity or not any(curve.got for curve in drawn):
@@ -197,8 +210,9 @@ def _x(at: float, start: float, end: float) -> float:
     return round(LEFT + (WIDTH - LEFT - RIGHT) * (at - start) / ((end - start) or 1.0), 1)
 
 
-def _line(points: list[Point]) -> str:
-    return " ".join(f"{x:g},{y:g}" for x, y in points)
+def _line(points: list[Point]) -> Markup:
+    """Return points for an SVG. They are numbers, so nothing has to be escaped, and long lines are not cut."""
+    return Markup(" ".join(f"{x:g},{y:g}" for x, y in points))
 
 
 def _marks(start: float, end: float) -> list[float]:

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
 from grader.report.feedback_plot import Curve, Point, Quantity, curves, drawn_quantity
+from grader.report.path_plot import PlanePath, path_of
 from grader.report.printable import printable
 from groundwork.files import write_if_changed
 
@@ -30,6 +31,9 @@ def draw(grade: Grade, exercise: Exercise, file: Path, scenario: str = "") -> No
     quantity = drawn_quantity(exercise)
     name = scenario or _first_wrong(grade)
     figure = Figure(figsize=(9, 1.2), layout="constrained")
+    if name in grade.recordings and (path := path_of(grade, exercise, name)):
+        _path(figure, path)
+        quantity = None
     drawn = curves(grade, exercise, name, quantity) if quantity and name in grade.recordings else ()
     if quantity and drawn:
         _panels(figure, drawn, quantity)
@@ -47,6 +51,22 @@ def _panels(figure: Figure, drawn: Sequence[Curve], quantity: Quantity) -> None:
     figure.legend(list(named.values()), list(named), loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     figure.align_ylabels()
     panels[-1].set_xlabel("simulated time (s)")
+
+
+def _path(figure: Figure, path: PlanePath) -> None:
+    figure.set_size_inches(6, 6)
+    panel = figure.subplots()
+    panel.set_aspect("equal", adjustable="datalim")
+    panel.set_xlabel(f"{path.fields[0]} ({path.unit})")
+    panel.set_ylabel(f"{path.fields[1]} ({path.unit})")
+    panel.plot(*_columns(path.expected), color="#999999", linewidth=3, label="solution")
+    panel.plot(*_columns(path.got), color="#0b6efd", linewidth=1, label="yours")
+    panel.plot(*_columns(path.goals), "o", color="#1a7f37", markersize=12, fillstyle="none", label="goal")
+    if path.wrong:
+        at, place = path.wrong
+        panel.plot(*_columns([place]), "x", color="#d00000", markersize=10, markeredgewidth=2, label="went wrong")
+        panel.annotate(f"{at:.2f} s", place, color="#d00000", textcoords="offset points", xytext=(8, 4))
+    figure.legend(loc="outside lower center", ncols=4, fontsize=8, frameon=False)
 
 
 def _panel(panel: Axes, curve: Curve) -> None:

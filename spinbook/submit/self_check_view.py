@@ -16,7 +16,7 @@ from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
 from grader.report import terminal
 from grader.report.checks import ShownCheck, first_hints, public_total, shown_checks
-from grader.report.feedback import advice
+from grader.report.feedback import advice, described
 from grader.report.feedback_plot import feedback_plot
 from grader.report.printable import as_students_see_it, printable
 from grader.report.terminal import show
@@ -94,7 +94,7 @@ def as_html(grade: Grade, exercise: Exercise) -> str:
         fold_hints=not exercise.count_hints,
         # In an <img>, an SVG can neither run nor load anything.
         plot=Markup("data:image/svg+xml;base64,") + base64.b64encode(plot.encode()).decode() if plot else "",
-        plot_says=_plot_says(grade),
+        plot_says=_plot_says(grade, plot) if plot else "",
         more_help=more_help(exercise) if first_hints(grade)[1] else "",
         next_step=next_step(grade, exercise),
         to_come=terminal.hidden_checks_to_come(grade),
@@ -146,9 +146,9 @@ def _facts(finding: Finding, grade: Grade, element: str) -> tuple[tuple[tuple[st
     return tuple(facts), remark
 
 
-def _plot_says(grade: Grade) -> str:
+def _plot_says(grade: Grade, plot: str) -> str:
     for check in shown_checks(grade):
         if check.finding and check.finding.message is not None:
             where = f", {check.finding.part}" if check.finding.part else ""
             return f"Yours over the solution's. First wrong: {check.finding.at or 0.0:.2f} s{where}."
-    return "Yours over the solution's."
+    return described(plot)

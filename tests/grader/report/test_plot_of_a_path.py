@@ -1,0 +1,76 @@
+"""Of a closed loop, the plot shows the path in the plane with the goal, and no value that merely differs."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import plain_grades as plain
+
+from grader.checking.verdict import Finding
+from grader.exercise import Exercise
+from grader.exercise.exercise import Topic
+from grader.recording import Ending, Recording
+from grader.recording.recording import ReceivedMessage, SentMessage
+from grader.report.feedback_plot import feedback_plot
+from grader.report.plot import draw
+from grader.scenario.scenario import SECOND, START
+
+METRES = {"x": "m", "y": "m"}
+POSE = Topic("/pose", "turtlesim/msg/Pose", "subscribe", units={**METRES, "theta": "rad"})
+GOAL = Topic("/goal", "geometry_msgs/msg/Point", "subscribe", units=METRES)
+COMMAND = Topic("/command", "std_msgs/msg/Float64", "publish", units={"data": "m/s"})
+EXERCISE = Exercise("drive", Path(), "Drive", 10.0, "drive.py", "", "drive", "", (POSE, GOAL, COMMAND), None)
+
+
+def drive(slope: float, count: int = 5) -> Recording:
+    """Return a recording of a world that moves along a line, and a goal at 4, 4."""
+    times = [START + i * SECOND for i in range(count)]
+    sent = [SentMessage(at, "/pose", POSE.type, {"x": float(i), "y": slope * i}) for i, at in enumerate(times)]
+    sent.insert(1, SentMessage(START, "/goal", GOAL.type, {"x": 4.0, "y": 4.0}))
+    received = tuple(ReceivedMessage(at, 1, "/command", COMMAND.type, {"data": slope}) for at in times)
+    return Recording("ahead", tuple(sent), received, (), (), True, Ending("completed"))
+
+
+def plot_of(mine: Recording, finding: Finding | None = None) -> str:
+    verdict = plain.failed(plain.PUBLIC, finding) if finding else plain.PUBLIC
+    grade = replace(plain.grade(verdict), recordings={"ahead": mine}, references={"ahead": drive(1.0)})
+    plot = feedback_plot(grade, EXERCISE)
+    assert plot
+    return plot.replace("&#39;", "'")
+
+
+def test_the_path_the_goal_and_where_it_went_wrong() -> None:
+    plot = plot_of(drive(0.5), Finding("At 2.00 s: wrong", "ahead", at=2.0))
+
+    assert "The path in the plane of x and y, yours drawn over the solution's. The goal is at x 4, y 4." in plot
+    assert "The cross marks where it went wrong: x 2, y 1 at 2.00 s." in plot
+    assert plot.count('class="goal"') == 2, "one in the legend"
+
+
+def test_another_way_to_the_goal_is_not_called_wrong() -> None:
+    plot = plot_of(drive(0.5))
+
+    assert "wrong" not in re.sub(r"<style>.*?</style>", "", plot, flags=re.DOTALL)
+
+
+def test_a_long_path_is_drawn_to_its_end_and_numbers_that_are_not_finite_are_left_out() -> None:
+    long = drive(0.5, 2000)
+    broken = SentMessage(START, "/pose", POSE.type, {"x": math.nan, "y": 0.0})
+
+    points = re.findall(r'class="got" points="([^"]*)"', plot_of(replace(long, sent=(broken, *long.sent))))[0].split()
+
+    assert len(points) == 2000
+    assert all(re.fullmatch(r"[\d.]+,[\d.]+", point) for point in points)
+
+
+def test_the_instructors_picture_shows_the_path_too(tmp_path: Path) -> None:
+    grade = plain.grade(plain.failed(plain.PUBLIC, Finding("At 2.00 s: wrong", "ahead", at=2.0)))
+
+    draw(
+        replace(grade, recordings={"ahead": drive(0.5)}, references={"ahead": drive(1.0)}), EXERCISE, tmp_path / "a.svg"
+    )
+
+    assert "went wrong" in (tmp_path / "a.svg").read_text(encoding="utf-8")
