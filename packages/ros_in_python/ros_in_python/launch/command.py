@@ -11,9 +11,10 @@ import click
 
 from interface_compiler import prefixes
 from ros_in_python.launch import markup_file, python_file
-from ros_in_python.launch.description import Context, DeclareLaunchArgument, LaunchDescription, text_of
-from ros_in_python.launch.processes import LaunchPlan, arguments_of
+from ros_in_python.launch.actions import DeclareLaunchArgument, LaunchDescription
+from ros_in_python.launch.plan import LaunchPlan, arguments_of
 from ros_in_python.launch.running import ProcessGroup
+from ros_in_python.launch.substitutions import Context, text_of
 from ros_in_python.ros2 import executables
 from ros_in_python.ros2.cli import CONTEXT, CommandError
 
@@ -34,8 +35,8 @@ def launch(show_args: bool, package_or_file: str, words: tuple[str, ...]) -> Non
       ros2 launch src/humanoid_control/launch/humanoid.launch.yaml
       ros2 launch --show-args humanoid_control humanoid.launch.py
 
-    It reads Python, YAML and XML files of nodes with parameters, remappings, arguments, conditions, groups and
-    namespaces. Whatever else ROS 2's own launch knows is refused by name.
+    It reads Python, YAML and XML files of nodes and other programs, with arguments, conditions, groups, other launch
+    files, timers and events. What else ROS 2's own launch knows, such as composable nodes, is refused by name.
     """
     cwd = Path.cwd()
     _source(cwd)
@@ -48,8 +49,9 @@ def launch(show_args: bool, package_or_file: str, words: tuple[str, ...]) -> Non
         return
     _refuse_unknown(given, declared)
     with tempfile.TemporaryDirectory(prefix="launch_params_") as folder:
-        steps = list(LaunchPlan.into(Path(folder), cwd).steps(description.entities, Context(given)))
-        raise click.exceptions.Exit(ProcessGroup().run(steps))
+        plan = LaunchPlan.into(Path(folder), cwd, read)
+        steps = list(plan.steps(description.entities, Context(given, file=file.absolute())))
+        raise click.exceptions.Exit(ProcessGroup(plan.reaction).run(steps))
 
 
 def read(file: Path) -> LaunchDescription:
@@ -61,6 +63,7 @@ def _source(cwd: Path) -> None:
     """Use the packages of the workspace here, as after `source install/setup.bash`."""
     for near in executables.workspaces_near(cwd)[:1]:
         near.extend(os.environ)
+    executables.add_own_prefix(os.environ)
 
 
 def _find(first: str, words: Sequence[str], cwd: Path) -> tuple[Path, list[str]]:
@@ -113,6 +116,13 @@ def _refuse_unknown(given: dict[str, str], declared: Sequence[DeclareLaunchArgum
         raise CommandError(f"the launch file has no argument '{unknown[0]}'. It has: {', '.join(names) or 'none'}.")
 
 
+def _default(argument: DeclareLaunchArgument) -> str:
+    try:
+        return text_of(argument.default_value, Context())
+    except CommandError:  # it needs another argument's value
+        return "known when it runs"
+
+
 def _show(declared: Sequence[DeclareLaunchArgument]) -> None:
     """Print them as the real command does."""
     click.echo("Arguments (pass arguments as '<name>:=<value>'):")
@@ -124,4 +134,4 @@ def _show(declared: Sequence[DeclareLaunchArgument]) -> None:
         if argument.choices:
             click.echo(f"        One of: {', '.join(argument.choices)}")
         if argument.default_value is not None:
-            click.echo(f"        (default: '{text_of(argument.default_value, Context())}')")
+            click.echo(f"        (default: '{_default(argument)}')")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import traceback
 from collections.abc import Iterator
@@ -10,31 +11,81 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from ros_in_python.launch import description as known
-from ros_in_python.launch.description import LaunchDescription
+from ros_in_python.launch import actions, conditions, events, parameters, substitutions
+from ros_in_python.launch.actions import LaunchDescription
 from ros_in_python.ros2.cli import CommandError
+
+_SOURCES = dict.fromkeys(
+    (
+        *("AnyLaunchDescriptionSource", "FrontendLaunchDescriptionSource", "PythonLaunchDescriptionSource"),
+        *("XMLLaunchDescriptionSource", "YAMLLaunchDescriptionSource"),
+    ),
+    actions.LaunchDescriptionSource,
+)
+
+
+def _named(module: ModuleType, *names: str) -> dict[str, Any]:
+    return {name: getattr(module, name) for name in names}
+
 
 #: The modules of ROS 2's launch API and what of each there is here.
 MODULES: dict[str, dict[str, Any]] = {
-    "launch": {"LaunchDescription": LaunchDescription},
-    "launch.actions": {
-        "DeclareLaunchArgument": known.DeclareLaunchArgument,
-        "GroupAction": known.GroupAction,
-        "LogInfo": known.LogInfo,
+    "launch": {
+        **_named(actions, "LaunchDescription", "LaunchDescriptionSource"),
+        **_named(substitutions, "Substitution"),
+        "LaunchContext": substitutions.Context,
     },
-    "launch.conditions": {"IfCondition": known.IfCondition, "UnlessCondition": known.UnlessCondition},
+    "launch.actions": {
+        **_named(actions, "AppendEnvironmentVariable", "DeclareLaunchArgument", "ExecuteProcess", "GroupAction"),
+        **_named(actions, "IncludeLaunchDescription", "LogInfo", "OpaqueFunction", "SetEnvironmentVariable"),
+        **_named(actions, "SetLaunchConfiguration", "Shutdown", "TimerAction", "UnsetEnvironmentVariable"),
+        **_named(events, "EmitEvent", "RegisterEventHandler"),
+        "ExecuteLocal": actions.ExecuteProcess,
+    },
+    "launch.conditions": _named(
+        conditions, "IfCondition", "UnlessCondition", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals"
+    ),
+    "launch.event_handlers": _named(events, "OnProcessExit", "OnProcessIO", "OnProcessStart", "OnShutdown"),
+    "launch.events": {"Shutdown": events.ShutdownRequested},
+    "launch.events.process": _named(events, "ProcessExited", "ProcessIO", "ProcessStarted"),
+    "launch.launch_context": {"LaunchContext": substitutions.Context},
+    "launch.launch_description": {"LaunchDescription": LaunchDescription},
+    "launch.launch_description_source": _named(actions, "LaunchDescriptionSource"),
+    "launch.launch_description_sources": _SOURCES,
+    "launch.some_substitutions_type": {"SomeSubstitutionsType": Any},
+    "launch.substitution": _named(substitutions, "Substitution"),
     "launch.substitutions": {
-        "EnvironmentVariable": known.EnvironmentVariable,
-        "LaunchConfiguration": known.LaunchConfiguration,
-        "PathJoinSubstitution": known.PathJoinSubstitution,
-        "TextSubstitution": known.TextSubstitution,
+        **_named(substitutions, "Command", "EnvironmentVariable", "FindExecutable", "LaunchConfiguration"),
+        **_named(substitutions, "PathJoinSubstitution", "PythonExpression", "TextSubstitution"),
+        **_named(substitutions, "ThisLaunchFile", "ThisLaunchFileDir"),
+        **_named(conditions, "AllSubstitution", "AndSubstitution", "AnySubstitution", "EqualsSubstitution"),
+        **_named(conditions, "IfElseSubstitution", "NotEqualsSubstitution", "NotSubstitution", "OrSubstitution"),
+        "PathSubstitution": substitutions.PathJoinSubstitution,
     },
     "launch_ros": {},
-    "launch_ros.actions": {"Node": known.Node, "PushRosNamespace": known.PushRosNamespace},
-    "launch_ros.parameter_descriptions": {"ParameterValue": known.ParameterValue},
-    "launch_ros.substitutions": {"FindPackageShare": known.FindPackageShare},
+    "launch_ros.actions": {
+        **_named(actions, "LifecycleNode", "Node", "PushRosNamespace", "SetParameter", "SetParametersFromFile"),
+        **_named(actions, "SetRemap", "SetUseSimTime"),
+        "PushROSNamespace": actions.PushRosNamespace,
+        "RosTimer": actions.TimerAction,
+    },
+    "launch_ros.parameter_descriptions": {
+        **_named(parameters, "ParameterFile", "ParameterValue"),
+        "Parameter": parameters.NodeParameter,
+    },
+    "launch_ros.substitutions": _named(substitutions, "ExecutableInPackage", "FindPackagePrefix", "FindPackageShare")
+    | {"FindPackage": substitutions.FindPackagePrefix},
+    "launch_xml": {},
+    "launch_xml.launch_description_sources": _SOURCES,
+    "launch_yaml": {},
+    "launch_yaml.launch_description_sources": _SOURCES,
 }
 _ELSEWHERE = "ROS 2's own launch, which `ros2 launch` uses where ROS 2 is installed, knows more."
+_NOT_FOUND = re.compile(r"cannot import name '(\w+)'")
+
+
+class _NotHere(AttributeError):
+    """A name of ROS 2's launch that there is not here."""
 
 
 class _Module(ModuleType):
@@ -43,8 +94,12 @@ class _Module(ModuleType):
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
-        there = ", ".join(sorted(MODULES[self.__name__])) or "nothing"
-        raise CommandError(f"`{name}` of {self.__name__} is not supported here. It has: {there}.", _ELSEWHERE)
+        raise _NotHere(_refusal(self.__name__, name))
+
+
+def _refusal(module: str, name: str) -> str:
+    there = ", ".join(sorted(MODULES[module])) or "nothing"
+    return f"`{name}` of {module} is not supported here. It has: {there}.\n{_ELSEWHERE}"
 
 
 def read(file: Path) -> LaunchDescription:
@@ -100,7 +155,12 @@ def _line(error: BaseException, file: Path) -> str:
 
 
 def _describe(error: BaseException) -> str:
-    if isinstance(error, ModuleNotFoundError) and (error.name or "").split(".")[0] in {"launch", "launch_ros"}:
+    if isinstance(error, _NotHere):
+        return str(error)
+    module = getattr(error, "name", None) or ""
+    if isinstance(error, ModuleNotFoundError) and module.partition(".")[0] in MODULES:
         there = ", ".join(MODULES)
-        return f"the module {error.name} is not supported here. There is: {there}.\n{_ELSEWHERE}"
+        return f"the module {module} is not supported here. There is: {there}.\n{_ELSEWHERE}"
+    if isinstance(error, ImportError) and module in MODULES and (name := _NOT_FOUND.search(str(error))):
+        return _refusal(module, name[1])
     return f"{type(error).__name__}: {error}"

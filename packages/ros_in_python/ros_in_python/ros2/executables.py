@@ -133,6 +133,12 @@ def _append(environment: MutableMapping[str, str], name: str, value: str) -> Non
         environment[name] = os.pathsep.join([*entries, value])
 
 
+def add_own_prefix(environment: MutableMapping[str, str]) -> None:
+    """Let programs find the packages of this Python's environment, too: `get_package_share_directory('std_msgs')`."""
+    if (Path(sys.prefix) / prefixes.RESOURCES).is_dir():
+        _append(environment, "AMENT_PREFIX_PATH", sys.prefix)
+
+
 _DEMOS = ("add_two_ints_client", "add_two_ints_server", "listener", "talker")
 #: Package -> executable -> its module and the arguments of that. Used if the installed package has no executables:
 #: of turtlesim, only the messages are compiled, and of the demo nodes, PyPI has nothing.
@@ -190,6 +196,7 @@ def find(package: str, executable: str, cwd: Path) -> Invocation:
             if prefix is not None:
                 near.extend(environment)
                 break
+    add_own_prefix(environment)
     there = in_prefix(prefix, package) if prefix is not None else []
     if there or (prefix is not None and package not in BUILT_IN):
         return Invocation([str(_only(there, package, executable))], environment)

@@ -1,0 +1,60 @@
+"""Parameters of nodes in launch files: values with types, and parameter files."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yaml
+
+from ros_in_python.launch.substitutions import Context, Substitution, Text, text_of
+from ros_in_python.ros2.cli import CommandError
+
+
+class ParameterValue:
+    """A parameter's value with its type: `ParameterValue(LaunchConfiguration('gain'), value_type=float)`."""
+
+    def __init__(self, value: Any, *, value_type: Any = None) -> None:
+        self.value, self.value_type = value, value_type
+
+    def evaluate(self, context: Context) -> Any:
+        """Return the value, converted to its type if one is given. Raises `CommandError` if it can't be."""
+        if self.value_type is None:
+            return parameter_of(self.value, context)
+        text = text_of(self.value, context)
+        if self.value_type is str:
+            return text
+        read = yaml.safe_load(text)
+        if self.value_type in (bool, int, float) and isinstance(read, bool) is (self.value_type is bool):
+            try:
+                return self.value_type(read)
+            except (TypeError, ValueError):
+                pass
+        raise CommandError(
+            f"'{text}' can't be a parameter of type {getattr(self.value_type, '__name__', self.value_type)}"
+        )
+
+
+class ParameterFile:
+    """A file of parameters; with `allow_substs`, `$(var NAME)` and the like in it are replaced."""
+
+    def __init__(self, param_file: Text, *, allow_substs: Any = False) -> None:
+        self.file, self.allow_substs = param_file, allow_substs
+
+
+class NodeParameter:
+    """One parameter with its name: `Parameter('gain', 2.0)`."""
+
+    def __init__(self, name: Text, value: Any, *, value_type: Any = None) -> None:
+        self.name = name
+        self.value = ParameterValue(value, value_type=value_type) if value_type else value
+
+
+def parameter_of(value: Any, context: Context) -> Any:
+    """Return a parameter's value as in a parameter file; the text of a substitution is read as YAML, as in ROS 2."""
+    if isinstance(value, ParameterValue):
+        return value.evaluate(context)
+    if isinstance(value, Substitution) or (
+        isinstance(value, list | tuple) and any(isinstance(part, Substitution) for part in value)
+    ):
+        return yaml.safe_load(text_of(value, context))
+    return list(value) if isinstance(value, tuple) else value
