@@ -11,6 +11,7 @@ from pathlib import Path
 
 from groundwork.files import claim_number
 from interface_compiler import prefixes
+from ros_in_python.ros2.executables import add_own_prefix
 
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
 #: No time stamps, so that the log is the same in every build.
@@ -46,6 +47,10 @@ def for_domain(domain: int, environment: Mapping[str, str]) -> dict[str, str]:
         "PYTHON_COLORS": environment.get("PYTHON_COLORS", "0"),
         "PYTHONUNBUFFERED": "1",
     }
+    searched = dict(environment)
+    add_own_prefix(searched)
+    if "AMENT_PREFIX_PATH" in searched:
+        settings["AMENT_PREFIX_PATH"] = searched["AMENT_PREFIX_PATH"]
     if is_fast_dds:
         settings["FASTRTPS_DEFAULT_PROFILES_FILE"] = os.fspath(LOOPBACK_PROFILE)
         settings["FASTDDS_DEFAULT_PROFILES_FILE"] = os.fspath(LOOPBACK_PROFILE)

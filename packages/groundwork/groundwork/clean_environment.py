@@ -38,6 +38,10 @@ _OWN_PACKAGES = (
 )
 
 
+#: Where tf2 and others that PyPI lacks are: in a checkout, outside of this Python's folders.
+_IMPORTABLE = os.path.join("ros_in_python", "importable")
+
+
 def without_foreign(environment: dict[str, str], workspaces: bool = True) -> dict[str, str]:
     """Return `environment` without what would change which modules and libraries this Python's programs load.
 
@@ -105,7 +109,11 @@ def own_path(path: list[str]) -> list[str]:
     """Return the entries of a module search path that are this installation's, or that `PYTHONPATH` names."""
     named = _entries(dict(os.environ), "PYTHONPATH")
     roots = [*_own_roots(), *named]
-    return [entry for entry in path if _is_inside(entry, roots) or _holds(entry, _OWN_PACKAGES)]
+    return [
+        entry
+        for entry in path
+        if _is_inside(entry, roots) or _holds(entry, _OWN_PACKAGES) or entry.endswith(_IMPORTABLE)
+    ]
 
 
 def _is_of_loaders(name: str) -> bool:

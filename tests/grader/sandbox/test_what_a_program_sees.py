@@ -287,3 +287,8 @@ def test_what_is_hidden_in_the_python_installation_is_not_seen(confined_runner: 
 
     assert seen[0] is None
     assert seen[1] is not None
+
+
+def test_what_pypi_lacks_of_ros_2_can_be_imported(confined_runner: Runner) -> None:
+    code = "import message_filters, tf2_geometry_msgs, tf2_ros\nprint(json.dumps(tf2_ros.Buffer.__name__))"
+    assert answer(confined_runner, code) == "Buffer"

@@ -63,7 +63,7 @@ class PushRosNamespace:
 
 
 @dataclass
-class SetParameter:
+class ParameterForAll:
     """Gives every node after it, in its group, a parameter."""
 
     name: Text

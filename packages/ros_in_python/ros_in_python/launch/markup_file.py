@@ -269,7 +269,7 @@ _MADE: dict[str, Callable[[Element], Any]] = {
     "node": _node,
     "push_ros_namespace": lambda of: known.PushRosNamespace(_needed_text(of, "namespace")),
     "set_env": lambda of: known.SetEnvironmentVariable(_needed_text(of, "name"), _needed_text(of, "value")),
-    "set_parameter": lambda of: known.SetParameter(_needed_text(of, "name"), [_needed_text(of, "value")]),
+    "set_parameter": lambda of: known.ParameterForAll(_needed_text(of, "name"), [_needed_text(of, "value")]),
     "set_remap": lambda of: known.SetRemap(_needed_text(of, "from"), _needed_text(of, "to")),
     "shutdown": lambda of: known.Shutdown(_optional(of, "reason") or "reason not given"),
     "timer": _timer,

@@ -77,7 +77,7 @@ _KNOWN: dict[str, tuple[int, int, Callable[..., Any]]] = {
     "find-exec": (1, 1, lambda name: substitutions.FindExecutable(name=name)),
     "dirname": (0, 0, substitutions.ThisLaunchFileDir),
     "filename": (0, 0, substitutions.ThisLaunchFile),
-    "command": (1, 2, lambda line, on_stderr="fail": substitutions.Command(line, on_stderr=on_stderr)),
+    "command": (1, 2, lambda line, on_stderr="fail": substitutions.CommandOutput(line, on_stderr=on_stderr)),
     "equals": (2, 2, conditions.EqualsSubstitution),
     "not-equals": (2, 2, conditions.NotEqualsSubstitution),
     "not": (1, 1, conditions.NotSubstitution),

@@ -215,7 +215,7 @@ class LaunchPlan:
         outer, outer_depth = context.file, context.depth
         if outer_depth >= _DEEPEST:
             raise CommandError(f"{file} is included {_DEEPEST} files deep: does it include itself?")
-        context.file, context.depth = file, outer_depth + 1
+        context.file, context.depth = file.absolute(), outer_depth + 1
         yield from self.steps(self.read(file).entities, context)
         context.file, context.depth = outer, outer_depth
 
@@ -296,7 +296,7 @@ def _configure(action: known.SetLaunchConfiguration, context: Context) -> None:
     context.values[text_of(action.name, context)] = text_of(action.value, context)
 
 
-def _parameter(action: known.SetParameter, context: Context) -> None:
+def _parameter(action: known.ParameterForAll, context: Context) -> None:
     context.parameters.append({text_of(action.name, context): parameter_of(action.value, context)})
 
 
@@ -342,7 +342,7 @@ _HOW: dict[type, Callable[[LaunchPlan, Any, Context], Iterator[Step]]] = {
     events.EmitEvent: _emit,
     known.PushRosNamespace: _changes(_push),
     known.SetLaunchConfiguration: _changes(_configure),
-    known.SetParameter: _changes(_parameter),
+    known.ParameterForAll: _changes(_parameter),
     known.SetParametersFromFile: _changes(_parameters),
     known.SetUseSimTime: _changes(_sim_time),
     known.SetRemap: _changes(_remap),

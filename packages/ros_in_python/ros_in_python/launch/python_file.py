@@ -55,18 +55,20 @@ MODULES: dict[str, dict[str, Any]] = {
     "launch.some_substitutions_type": {"SomeSubstitutionsType": Any},
     "launch.substitution": _named(substitutions, "Substitution"),
     "launch.substitutions": {
-        **_named(substitutions, "Command", "EnvironmentVariable", "FindExecutable", "LaunchConfiguration"),
+        **_named(substitutions, "EnvironmentVariable", "FindExecutable", "LaunchConfiguration"),
         **_named(substitutions, "PathJoinSubstitution", "PythonExpression", "TextSubstitution"),
         **_named(substitutions, "ThisLaunchFile", "ThisLaunchFileDir"),
         **_named(conditions, "AllSubstitution", "AndSubstitution", "AnySubstitution", "EqualsSubstitution"),
         **_named(conditions, "IfElseSubstitution", "NotEqualsSubstitution", "NotSubstitution", "OrSubstitution"),
+        "Command": substitutions.CommandOutput,
         "PathSubstitution": substitutions.PathJoinSubstitution,
     },
     "launch_ros": {},
     "launch_ros.actions": {
-        **_named(actions, "LifecycleNode", "Node", "PushRosNamespace", "SetParameter", "SetParametersFromFile"),
+        **_named(actions, "LifecycleNode", "Node", "PushRosNamespace", "SetParametersFromFile"),
         **_named(actions, "SetRemap", "SetUseSimTime"),
         "PushROSNamespace": actions.PushRosNamespace,
+        "SetParameter": actions.ParameterForAll,
         "RosTimer": actions.TimerAction,
     },
     "launch_ros.parameter_descriptions": {
@@ -104,7 +106,7 @@ def _refusal(module: str, name: str) -> str:
 
 def read(file: Path) -> LaunchDescription:
     """Return what a file's `generate_launch_description()` returns. Raises `CommandError` with the file's line."""
-    variables: dict[str, Any] = {"__name__": "launch_file", "__file__": str(file)}
+    variables: dict[str, Any] = {"__name__": "launch_file", "__file__": str(file.absolute())}
     with _modules():
         try:
             exec(compile(file.read_text(encoding="utf-8"), str(file), "exec"), variables)

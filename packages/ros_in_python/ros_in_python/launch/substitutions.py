@@ -226,7 +226,7 @@ class PythonExpression(Substitution):
             raise CommandError(f"the expression `{text}` fails: {type(error).__name__}: {error}") from None
 
 
-class Command(Substitution):
+class CommandOutput(Substitution):
     """What a command prints, such as `xacro robot.urdf.xacro`. What it says on stderr is shown."""
 
     def __init__(self, command: Text, *, on_stderr: Text = "fail") -> None:

@@ -196,12 +196,28 @@ def test_a_node_that_dies_is_named_and_the_launch_fails(workspace: Path, termina
 @pytest.mark.parametrize(
     ("name", "text", "expected"),
     [
-        ("a.launch.py", "from launch.actions import TimerAction\n", "a.launch.py:1: `TimerAction` of launch.actions"),
-        ("a.launch.py", "import launch.event_handlers\n", "a.launch.py:1: the module launch.event_handlers is not"),
+        (
+            "a.launch.py",
+            "from launch.actions import ResetEnvironment\n",
+            "a.launch.py:1: `ResetEnvironment` of launch.act",
+        ),
+        (
+            "a.launch.py",
+            "import launch_ros.actions as a\na.ComposableNodeContainer\n",
+            "a.launch.py:2: `ComposableNodeCon",
+        ),
+        ("a.launch.py", "import launch.logging\n", "a.launch.py:1: the module launch.logging is not"),
         ("a.launch.py", "def generate_launch_description(\n", "a.launch.py:1: not valid Python"),
         ("a.launch.py", "x = 1\n", "has no function generate_launch_description()"),
         ("a.launch.py", "def generate_launch_description():\n    return 1 / 0\n", "a.launch.py:2: ZeroDivisionError"),
-        ("a.launch.yaml", "launch:\n  - timer: {period: 1}\n", "the element `timer` is not supported here"),
+        (
+            "a.launch.yaml",
+            "launch:\n  - node_container: {pkg: a}\n",
+            "the element `node_container` is not supported here",
+        ),
+        ("a.launch.yaml", "launch:\n  - log: {message: $(anon a)}\n", "`$(anon a)` is not supported here"),
+        ("a.launch.yaml", "launch:\n  - log: {message: $(var a}\n", "no closing parenthesis"),
+        ("a.launch.yaml", "launch:\n  - param: {name: a, value: 1}\n", "stands within a node"),
         ("a.launch.yaml", "launch:\n  - node: {pkg: arm}\n", "`node` has no `exec`"),
         ("a.launch.xml", "<launch><node</launch>", "not well-formed"),
     ],
