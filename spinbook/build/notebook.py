@@ -253,6 +253,7 @@ def _how(cell: ChapterCell) -> str:
     words += ["--main"] if cell.runs_main else []
     words += ["--keep"] if cell.keeps else []
     words += [f"--as {package}/{executable}" for package, executable in cell.executables]
+    words += [f"--replaces {cell.replaces}"] if cell.replaces else []
     if cell.before:
         words.append(" ".join(["--after", *cell.after]) if cell.after else "--usual-imports")
     return "".join(f" {word}" for word in words)

@@ -37,6 +37,8 @@ class ChapterCell:
     until: str | None = None
     raises: bool = False
     expects_error: bool = False
+    replaces: str = ""
+    """The node of which this is a newer version in another file; that one is stopped."""
     spin_classes: tuple[str, ...] = ()
     runs_main: bool = False
     before: str = ""
@@ -164,6 +166,7 @@ def _runnable(item: ClassifiedFence, ids: _Ids) -> ChapterCell:
         runs_in_kernel=item.runs_in_kernel,
         keeps=item.keeps,
         executables=item.executables,
+        replaces=item.replaces,
         commands=item.commands,
         tags=fence.tags,
     )

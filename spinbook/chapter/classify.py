@@ -12,6 +12,7 @@ from groundwork.problem import Problem, Severity
 from spinbook.chapter.attributes import not_included
 from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_of, interface_title, is_someone_elses
 from spinbook.chapter.launch_files import is_package_file, unsupported_in_launch_file
+from spinbook.chapter.node_classes import snake_case
 from spinbook.chapter.own_packages import is_setup_excerpt
 from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect, programs_in_magics
 from spinbook.chapter.terminal import (
@@ -115,11 +116,15 @@ class ClassifiedFence:
     """What the author's terminal printed, if the fence is a transcript."""
     named: bool = True
     """Whether the author named its file."""
+    replaces: str = ""
+    """The node of which this is a newer version, if that has another file."""
+    has_main_above: bool = False
+    """Whether `before` has the `main` of an earlier version."""
 
     @property
     def runs_main(self) -> bool:
         """Whether the runtime must call the code's `main`."""
-        return self.kind is CellKind.NODE and self.code is not None and self.code.runs_main
+        return self.kind is CellKind.NODE and self.code is not None and (self.code.runs_main or self.has_main_above)
 
     @property
     def keeps(self) -> bool:
@@ -130,7 +135,7 @@ class ClassifiedFence:
     def spin_classes(self) -> tuple[str, ...]:
         """The classes that the runtime must run with `rclpy.spin`, if the code only defines them."""
         code = self.code
-        if self.kind is not CellKind.NODE or code is None or code.is_complete or code.calls_main:
+        if self.kind is not CellKind.NODE or code is None or code.is_complete or code.calls_main or self.has_main_above:
             return ()
         return code.alone
 
@@ -334,10 +339,6 @@ def node_name(item: ClassifiedFence, text: str, file: Path) -> tuple[str, bool, 
         return name, True, [Problem(file, item.fence.line, problem, fix, Severity.WARNING)]
     assert code is not None
     name = code.ros_name if code.ros_name and code.ros_name.isidentifier() else ""
-    name = name or (
-        re.sub(r"(?<!^)(?<![A-Z_])(?=[A-Z])", "_", code.node_classes[0]).lower() if code.node_classes else ""
-    )
-    name = name or "node"
-    problem = f"this fence is a node without a file name; it is called `{name}`."
-    fix = f'Name its file: ```python title="{name}.py"'
-    return name, False, [Problem(file, item.fence.line, problem, fix, Severity.WARNING, group="a file name")]
+    if code.own_classes:
+        return name or snake_case(code.own_classes[0]), False, []
+    return name or re.sub(r"\W+", "_", code.ros_name or "node"), False, []

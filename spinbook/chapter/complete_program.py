@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import ast
 import functools
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from interface_compiler import prefixes
 from ros_in_python.ros2 import interfaces
 from spinbook.chapter.class_pieces import assembled
-from spinbook.chapter.python_code import CodeError, inspect
+from spinbook.chapter.python_code import CodeError, PythonCode, inspect
 
 #: Module -> the names that ROS 2's own tutorials import from it.
 _USUAL = {
@@ -70,6 +71,8 @@ class CompleteProgram:
     missing: Mapping[str, int] | None = None
     amends: str = ""
     """The class of an earlier piece to which the code only adds methods."""
+    has_main_above: bool = False
+    """Whether `before` has the `main` of an earlier version, which the code goes without."""
 
     @property
     def whole(self) -> str:
@@ -101,8 +104,11 @@ def join(code: str, pieces: Sequence[str]) -> CompleteProgram:
     """
     groups = assembled(tuple(pieces))
     pieces = [text for _, text in groups]
-    needs = dict(inspect(code).needs)
+    facts = inspect(code)
+    needs = dict(facts.needs)
     amended, base = _amended(code, pieces)
+    version, main = earlier_main(facts, pieces)
+    needs |= dict.fromkeys((name for name in _needs_of(main) if name not in facts.defines), 1)
     missing: dict[str, int] = {}
     taken: dict[int, set[int]] = {}
     imports: dict[str, None] = {}
@@ -124,14 +130,16 @@ def join(code: str, pieces: Sequence[str]) -> CompleteProgram:
         more = [n for n in _needs_of(text) if n not in seen]
         seen.update(more)
         todo += more
-    before = _above(imports, taken, pieces)
+    before = _above(imports, taken, pieces) + (f"{main}\n\n\n" if main else "")
+    if main:
+        taken.setdefault(version, set())
     if amended:
         # The class below then extends the one above.
         before += f"{base} = {amended}\n\n\n"
     if code.lstrip().startswith("from __future__") and before:
         return CompleteProgram(code, missing=needs)
     used = sorted(number for group in taken for number in groups[group][0])
-    return CompleteProgram(code, before, tuple(used), missing, amended)
+    return CompleteProgram(code, before, tuple(used), missing, amended, bool(main))
 
 
 def _amended(code: str, pieces: Sequence[str]) -> tuple[str, str]:
@@ -147,6 +155,52 @@ def _amended(code: str, pieces: Sequence[str]) -> tuple[str, str]:
             if all(name in text for name in facts.lacking):
                 return item.name, item.bases[0].id
     return "", ""
+
+
+def earlier_main(facts: PythonCode, pieces: Sequence[str]) -> tuple[int, str]:
+    """Return (number of the piece, `main`) of the last whole program with a class that this code shows anew.
+
+    The statements of a program without a `main` become one. "" if the code needs none, or there is none.
+    """
+    classes = set(facts.node_classes)
+    if not classes or facts.is_complete or facts.calls_main:
+        return 0, ""
+    for number in range(len(pieces) - 1, -1, -1):
+        piece = _piece(pieces[number])
+        if classes & piece.bound.keys() and (main := _main_of(piece, classes)):
+            return number, main
+    return 0, ""
+
+
+def _main_of(piece: _CodePiece, classes: set[str]) -> str:
+    """Return a program's `main`, or the statements that it runs as one; "" if they do not use these classes."""
+    if "main" in piece.bound:
+        main = piece.statements[piece.bound["main"][-1]]
+        return piece.text(piece.bound["main"][-1]) if _uses(main, classes) else ""
+    for statement in piece.statements:
+        if _is_guard(statement) and _uses(statement, classes):
+            assert isinstance(statement, ast.If)
+            first, last = statement.body[0].lineno, statement.body[-1].end_lineno
+            body = textwrap.dedent("\n".join(piece.source.split("\n")[first - 1 : last]))
+            return _as_main(body, statement.body)
+        if _uses(statement, classes) and not isinstance(statement, _DEFINITIONS):
+            rest = [i for i, item in enumerate(piece.statements) if not isinstance(item, _DEFINITIONS)]
+            return _as_main("\n".join(piece.text(i) for i in rest), [piece.statements[i] for i in rest])
+    return ""
+
+
+_DEFINITIONS = (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef, ast.Import, ast.ImportFrom)
+
+
+def _as_main(body: str, statements: Iterable[ast.stmt]) -> str:
+    """Return statements of a module as a function; the names that they bind stay the module's."""
+    names = sorted({name for statement in statements for name in _bound_by(statement)})
+    body = f"global {', '.join(names)}\n{body}" if names else body
+    return "def main():\n" + textwrap.indent(body, "    ")
+
+
+def _uses(statement: ast.stmt, names: set[str]) -> bool:
+    return any(isinstance(item, ast.Name) and item.id in names for item in ast.walk(statement))
 
 
 def _above(imports: Iterable[str], taken: Mapping[int, set[int]], pieces: Sequence[str]) -> str:

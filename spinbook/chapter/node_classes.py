@@ -6,6 +6,7 @@ import ast
 import contextlib
 import functools
 import importlib.util
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
@@ -73,6 +74,15 @@ def _name_passed_on(calls: Sequence[ast.Call], classes: Mapping[str, ast.ClassDe
 def _argument(call: ast.Call, name: str, place: int) -> list[ast.expr]:
     named = [keyword.value for keyword in call.keywords if keyword.arg == name]
     return named or (call.args[place : place + 1] if place >= 0 else [])
+
+
+def snake_case(name: str) -> str:
+    """Return a class's name as a file's.
+
+    >>> snake_case("LeftElbow")
+    'left_elbow'
+    """
+    return re.sub(r"(?<!^)(?<![A-Z_])(?=[A-Z])", "_", name).lower()
 
 
 def can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], everything: Sequence[ast.AST]) -> bool:

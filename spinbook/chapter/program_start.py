@@ -24,6 +24,7 @@ _OF_SUBPROCESS = frozenset({"run", "call"})
 _NEEDS_INIT = frozenset(
     ["Node", "rclpy.node.Node", "rclpy.create_node", "rclpy.spin", "rclpy.spin_once", "rclpy.shutdown"]
 ) | {"rclpy.spin_until_future_complete"}
+_SPINS = frozenset({"spin", "spin_once", "spin_until_future_complete"})
 _ENDS = frozenset({"exit", "quit", "sys.exit", "os._exit"})
 _READS_COMMAND_LINE = frozenset({"parse_args", "parse_known_args"})
 
@@ -92,6 +93,23 @@ def wants_ros(tree: ast.Module) -> bool:
     outside = (item for item in tree.body if not isinstance(item, ast.ClassDef))
     calls = (item for statement in outside for item in ast.walk(statement) if isinstance(item, ast.Call))
     return any(_is_ros(call.func) for call in calls)
+
+
+def spins(tree: ast.Module) -> bool:
+    """Return whether a program spins by itself: outside classes, or in a method of a class that it uses."""
+    outside = [item for item in tree.body if not isinstance(item, ast.ClassDef)]
+    if any(map(_calls_spin, outside)):
+        return True
+    for own in (item for item in tree.body if isinstance(item, ast.ClassDef)):
+        others = (item for statement in tree.body if statement is not own for item in ast.walk(statement))
+        if _calls_spin(own) and any(isinstance(item, ast.Name) and item.id == own.name for item in others):
+            return True
+    return False
+
+
+def _calls_spin(statement: ast.stmt) -> bool:
+    calls = (item for item in ast.walk(statement) if isinstance(item, ast.Call))
+    return any(last_name(call.func) in _SPINS for call in calls)
 
 
 def leaves(tree: ast.Module) -> str:

@@ -11,7 +11,8 @@ from groundwork.problem import Problem, Severity
 from spinbook.chapter.classify import CellKind, ClassifiedFence, node_name
 from spinbook.chapter.complete_program import CompleteProgram, join, usual_import
 from spinbook.chapter.imports import MissingPackage, missing_imports
-from spinbook.chapter.node_classes import needs_arguments
+from spinbook.chapter.node_classes import needs_arguments, snake_case
+from spinbook.chapter.node_versions import NodeVersions
 from spinbook.chapter.python_code import PythonCode, inspect
 
 
@@ -30,7 +31,7 @@ class Programs:
     problems: list[Problem] = field(default_factory=list)
     _pieces: list[int] = field(default_factory=list)
     _defined: set[str] = field(default_factory=set)
-    _names: dict[str, str] = field(default_factory=dict)
+    _versions: NodeVersions = field(default_factory=NodeVersions)
     _used: dict[int, tuple[int, ...]] = field(default_factory=dict)
 
     def decide(self, items: Sequence[ClassifiedFence]) -> list[ClassifiedFence]:
@@ -43,7 +44,9 @@ class Programs:
                 out[number] = self._snippet(item)
             if item.code and not item.code.is_setup_script and not item.code.is_launch_file:
                 self._pieces.append(number)
-        return _with_parts(out, self._used)
+        out = _with_parts(out, self._used)
+        self.problems += _without_file_name(self.file, out)
+        return out
 
     def _node(self, number: int, item: ClassifiedFence, out: Sequence[ClassifiedFence]) -> ClassifiedFence:
         code = item.code
@@ -72,14 +75,14 @@ class Programs:
         return self._missing(item, missing, joined) if missing else None
 
     def _made(self, number: int, item: ClassifiedFence, joined: CompleteProgram) -> ClassifiedFence:
-        name, named = self._name(item)
         if joined.used:
             self._used[number] = tuple(self._pieces[i] for i in joined.used)
-        return replace(item, name=name, named=named, before=joined.before)
+        return replace(self._name(item, joined), before=joined.before, has_main_above=joined.has_main_above)
 
     def _joined(self, item: ClassifiedFence, out: Sequence[ClassifiedFence]) -> CompleteProgram:
         assert item.code is not None
-        if not (item.code.needs or item.code.lacking or item.code.nameless):
+        is_class = bool(item.code.node_classes) and not item.code.is_complete
+        if not (item.code.needs or item.code.lacking or item.code.nameless or is_class):
             return CompleteProgram(item.fence.code)
         return join(item.fence.code, [out[i].fence.code for i in self._pieces])
 
@@ -150,24 +153,26 @@ class Programs:
         verb = "is" if len(packages) == 1 else "are"
         return _static(item, f"it needs {names}, which {verb} not installed", f"it needs {names}, not installed here.")
 
-    def _name(self, item: ClassifiedFence) -> tuple[str, bool]:
-        """Return (name, whether the author chose it) for a node's cell; a file shown again keeps its name."""
+    def _name(self, item: ClassifiedFence, joined: CompleteProgram) -> ClassifiedFence:
+        """Name a node's cell. A file shown again keeps its name, and so does a node, which is then a newer version."""
         name, named, problems = node_name(item, self.named_files.get(item.fence.line, ""), self.file)
         self.problems += problems
-        wanted, count = name, 1
-        while not named and name in self._names:
-            count += 1
-            name = f"{wanted}_{count}"
+        earlier = self._versions.of(item.code, joined.whole)
+        if not named:
+            name = earlier or self._versions.free_name(name, item.code)
         if name in self.own:
             # Otherwise an import would find the package's folder instead.
             name = f"{name}_node"
-        self._names[name] = name
-        return name, named
+        self._versions.add(name, item.code, joined.whole)
+        return replace(item, name=name, named=named, replaces=earlier if earlier != name else "")
 
 
 def _why_fragment(item: ClassifiedFence, code: PythonCode, joined: CompleteProgram) -> str:
     """Return what keeps a class without a main from being a program; empty if nothing does."""
-    if code.is_complete or not code.node_classes or code.calls_main:
+    if code.is_complete or not code.node_classes or code.calls_main or joined.has_main_above:
+        return ""
+    if code.initializes and set(code.node_classes) - set(code.alone):
+        # A script that makes its node, and ends.
         return ""
     if code.lacking and not joined.amends:
         names = ", ".join(f"`self.{name}`" for name in list(code.lacking)[:3])
@@ -233,18 +238,31 @@ def _goes_on(number: int, used: Mapping[int, Iterable[int]], items: Sequence[Cla
 
 
 def _part_name(item: ClassifiedFence, taken: set[str | None]) -> str:
+    """Return a name for a part: its class's, otherwise that of another name that it defines."""
     code = item.code
     names = sorted(code.defines) if code else []
+    classes = code.own_classes if code else []
     base = (
         "imports"
         if code and code.imports and set(names) <= _imported(code)
-        else (names[0] if names else "part").lower()
+        else snake_case((classes or names or ["part"])[0])
     )
     name, count = base, 1
     while name in taken:
         count += 1
         name = f"{base}_{count}"
     return name
+
+
+def _without_file_name(file: Path, items: Sequence[ClassifiedFence]) -> list[Problem]:
+    """Return one warning for all nodes of a chapter whose file its author did not name."""
+    nodes = [item for item in items if item.kind is CellKind.NODE and not item.named]
+    if not nodes:
+        return []
+    names = ", ".join(f"`{item.name}` (line {item.fence.line})" for item in nodes)
+    which = "a node has no file name; it is called" if len(nodes) == 1 else "nodes have no file name; they are called"
+    fix = f'Name the file: ```python title="{nodes[0].name}.py"'
+    return [Problem(file, nodes[0].fence.line, f"{which} {names}.", fix, Severity.WARNING, group="a file name")]
 
 
 def _imported(code: PythonCode) -> set[str]:

@@ -28,6 +28,7 @@ from spinbook.chapter.program_start import (
     leaves,
     loops_forever,
     programs_started,
+    spins,
     starts_ros,
     wants_ros,
     words_read,
@@ -37,7 +38,6 @@ from spinbook.chapter.program_start import (
 _MAGIC = re.compile(r"^(\s*)([%!].*)$")
 #: What setup.py writes under console_scripts.
 _ENTRY_POINT = re.compile(r"[\w.-]+\s*=\s*[\w.]+:\w+")
-_SPINS = frozenset({"spin", "spin_once", "spin_until_future_complete"})
 _ALWAYS_THERE = frozenset(dir(builtins)) | {
     "__name__",
     "__file__",
@@ -73,6 +73,7 @@ class PythonCode:
     ros_name: str | None = None
     """The first node name it gives, as a text, a constant or a constructor's argument."""
     spins: bool = False
+    """Whether it spins a node by itself, not only in methods of a class that it does not use."""
     has_main: bool = False
     has_main_guard: bool = False
     is_setup_script: bool = False
@@ -119,6 +120,13 @@ class PythonCode:
         """Whether it is a complete program: it calls `rclpy.spin`, or defines a Node that can be run."""
         is_program = self.spins or self.starts_ros or self.loops or bool(self.node_classes)
         return is_program and not (self.is_setup_script or self.is_launch_file)
+
+    @property
+    def own_classes(self) -> list[str]:
+        """The names of its classes, those of nodes first."""
+        imported = {name for _, name in self.interfaces}
+        others = sorted(name for name in self.defines - imported if name[:1].isupper() and not name.isupper())
+        return list(dict.fromkeys([*self.node_classes, *others]))
 
     @property
     def runs_main(self) -> bool:
@@ -210,7 +218,7 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         **_imports(everything),
         node_classes=tuple(node_classes),
         ros_name=ros_name(everything, classes),
-        spins=not called.isdisjoint(_SPINS),
+        spins=spins(tree),
         has_main=any(map(_is_main, tree.body)),
         has_main_guard=any(map(_is_main_guard, tree.body)),
         is_setup_script=("setup" in called and _imports_setuptools(tree)) or any(map(_is_entry_point, everything)),

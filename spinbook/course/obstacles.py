@@ -14,7 +14,7 @@ _WORDS = {
         "shell fence needs a real shell (a pipe, or a command that is not ROS's)",
         "shell fences need a real shell",
     ),
-    "a file name": ("node has no file name", "nodes have no file name"),
+    "a file name": ("chapter has nodes without a file name", "chapters have nodes without a file name"),
     "files that are not there": ("link leads to a file that is not there", "links lead to files that are not there"),
     "labels that no chapter has": (
         "reference leads to a label that no chapter has",

@@ -135,6 +135,7 @@ class SpinbookMagics(Magics):
             metavar="PACKAGE/EXECUTABLE",
             help="the name of this node for `ros2 run`",
         )
+        reader.add_argument("--replaces", metavar="NODE", help="stop this node first: it is an earlier version")
         reader.add_argument("--expect-error", action="store_true", help="its errors are meant: do not report them")
         if arguments := reader.read(line):
             name = arguments.name.removesuffix(".py")
@@ -143,6 +144,7 @@ class SpinbookMagics(Magics):
             parts = arguments.after if arguments.after or arguments.usual_imports else None
             start = NodeStart(tuple(arguments.classes), arguments.main, tuple(arguments.known_as))
             bound = DisplayLimit(arguments.seconds, arguments.until, arguments.expect_error)
+            self.session.replace_node(arguments.replaces)
             if arguments.keep:
                 self.session.keep_node(name, cell, start, parts)
             else:

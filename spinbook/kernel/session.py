@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 import time
@@ -11,7 +12,7 @@ from pathlib import Path
 
 from spinbook.chapter.complete_program import join
 from spinbook.chapter.launch_files import is_package_file
-from spinbook.chapter.python_code import CodeError
+from spinbook.chapter.python_code import CodeError, inspect
 from spinbook.course.course import Package
 from spinbook.kernel import environment
 from spinbook.kernel.cell_output import DisplayLimit, in_short, joins, show_for, show_rest
@@ -71,6 +72,10 @@ class Session:
     """When that was (s since the epoch)."""
     parts: dict[str, str] = field(default_factory=dict)
     """Code that later nodes use, by its name."""
+    earlier: dict[str, str] = field(default_factory=dict)
+    """The earlier version of each node whose newer one has no `main` of its own."""
+    is_newer: bool = False
+    """Whether the node that starts now ran before with other code."""
     starts: dict[str, tuple[Path, NodeStart]] = field(default_factory=dict)
     """The file of each node and how it is started, by the node's name."""
     above: dict[Path, int] = field(default_factory=dict)
@@ -114,6 +119,12 @@ class Session:
         file = self._saved(name, code, start, after)
         self.run_background(name, start.argv(file), self._import_path(file), Path.cwd(), bound)
 
+    def replace_node(self, earlier: str | None) -> None:
+        """Stop the earlier version of a node that is about to start, and say so; None if there is none."""
+        if earlier is not None and self.nodes.get(earlier):
+            print(f"(replaces {earlier}, the earlier version of this node)")
+            self.nodes.stop(earlier)
+
     def keep_node(self, name: str, code: str, start: NodeStart, after: Sequence[str] | None = None) -> None:
         """Write a node's code as a module of its package, for `ros2 run` to start with arguments."""
         known_as = start.known_as or (f"{self.package.name}/{name}",)
@@ -126,9 +137,12 @@ class Session:
         package, executables = self._package_of(start.known_as)
         if package.name == name:
             raise CellFailed(f"A node can't have the package's name, {name}.")
+        if name in (after or ()):
+            self._keep_earlier(name)
+        self.is_newer = self.ran.get(name, code) != code
         self.ran[name] = code
         self.ran_at[name] = time.time()
-        whole = code if after is None else self._whole(code, after)
+        whole = code if after is None else self._whole(name, code, after)
         module = Module(name, whole.rstrip("\n") + "\n", executables)
         file = add_module(self.workspace, package, module)
         self.starts[name] = (file, start)
@@ -165,15 +179,25 @@ class Session:
         executables = tuple(executable for name, _, executable in pairs if name == package)
         return (self.package if package == self.package.name else replace(self.package, name=package)), executables
 
-    def _whole(self, code: str, after: Sequence[str]) -> str:
+    def _keep_earlier(self, name: str) -> None:
+        """Keep the code of a node's earlier version, whose `main` the newer one runs with."""
+        before = self.ran.get(name, "")
+        with contextlib.suppress(CodeError):
+            if before and inspect(before).is_complete:
+                self.earlier[name] = before
+
+    def _whole(self, name: str, code: str, after: Sequence[str]) -> str:
         pieces = []
-        for name in after:
-            piece = self.parts.get(name, self.ran.get(name))
+        for used in after:
+            piece = self.earlier.get(used) if used == name else self.parts.get(used, self.ran.get(used))
             if piece is None:
-                raise CellFailed(f"This node uses what `{name}` defines: run its cell above first.")
+                raise CellFailed(f"This node uses what `{used}` defines: run its cell above first.")
             pieces.append(piece)
         try:
-            return join(code, pieces).whole
+            complete = join(code, pieces)
+            if complete.has_main_above:
+                print("(runs with the `main` of the version above)")
+            return complete.whole
         except CodeError:
             # Python's own message is the clearest.
             return code
@@ -203,7 +227,7 @@ class Session:
         """Start a process that continues in the background, and show its log for a while. Raises CellFailed."""
         if self.nodes.get(name):
             if self.nodes.status(name).running:
-                print(f"(restarting {name})")
+                print(f"(restarting {name}{' with its new version' if self.is_newer else ''})")
             self.nodes.stop(name)
         node = self.nodes.start(name, argv, settings, cwd, expects_error=bound.expects_error)
         self._show(node, bound)

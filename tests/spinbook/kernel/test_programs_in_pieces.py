@@ -43,6 +43,30 @@ def test_two_classes_without_a_main_run_in_one_process_with_the_usual_imports(ke
     assert kernel.run("%stop both").text == "both stopped.\n"
 
 
+def test_a_newer_version_of_a_class_runs_with_the_main_of_the_one_above_again_and_again(kernel: Kernel) -> None:
+    first = CLASS.replace("NAME", "'old'") + MAIN
+    kernel.run(f"%%node speaker --seconds 60 --until I --main --usual-imports\n{first}")
+    newer = "%%node speaker --seconds 60 --until I --main --after speaker\n" + CLASS.replace("NAME", "'new'")
+
+    shown, again = kernel.run(newer), kernel.run(newer)
+
+    started = "(runs with the `main` of the version above)\n(restarting speaker"
+    assert shown.text.startswith(f"{started} with its new version)\n")
+    assert again.text.startswith(f"{started})\n")
+    assert "I am new" in shown.text
+    assert "I am new" in again.text
+
+
+def test_a_newer_version_in_another_file_replaces_the_earlier_one(kernel: Kernel) -> None:
+    code = CLASS.replace("NAME", "'here'") + MAIN
+    kernel.run(f"%%node speaker --seconds 60 --until I --main --usual-imports\n{code}")
+
+    shown = kernel.run(f"%%node louder --seconds 60 --until I --main --usual-imports --replaces speaker\n{code}")
+
+    assert shown.text.startswith("(replaces speaker, the earlier version of this node)\n")
+    assert kernel.run("%nodes").text.split()[0] == "louder"
+
+
 def test_ros2_run_starts_the_node_by_the_name_that_its_package_gives_it(kernel: Kernel) -> None:
     code = CLASS.replace("NAME", "str(sys.argv[1:2])") + MAIN
     options = "--seconds 60 --until I --main --usual-imports --as arm/hand"
