@@ -4,8 +4,8 @@
 #   PYTHON  the Python to use    (default: the environment's own, else python3 or a faster build of its version)
 #   VENV    where to make it     (default: .venv)
 #
-# What an environment was made for is written into $VENV/.spinbook, last of all. Without that, or made for another
-# Python, place or ROS 2, it is made anew; with other pins, it is brought up to date.
+# What an environment was made for is written into $VENV/.spinbook, its pins last of all. Made for another Python, place
+# or ROS 2, it is made anew; with other pins, it is brought up to date; without pins, an interrupted set-up goes on.
 set -eu
 cd "$(dirname "$0")"
 VENV=${VENV:-.venv}
@@ -18,6 +18,20 @@ fail() { say "" "$@"; exit 1; }
 
 # Another environment's wheels mark what they have done to LD_LIBRARY_PATH; each Python here does it for itself.
 unset _ROS_WHEELS_BOOTSTRAP_COMPLETE
+
+refuse_read_only() {
+    if [ -w . ]; then return; fi
+    fail "This checkout can't be written: $(pwd -P)
+Set-up and make write into it (.venv, build, spinbook.egg-info). Copy it to a folder of yours, and run make there."
+}
+
+# An environment runs the checkout that it was made in. Another checkout's may be in use.
+refuse_another_checkouts() {
+    other=$(cat "$VENV/.checkout" 2>/dev/null || true)
+    if [ -z "$other" ] || [ "$other" = "$(pwd -P)" ] || ! [ -e "$other/setup.sh" ]; then return; fi
+    fail "$VENV is the environment of another checkout, $other, so it is left alone.
+Name another place: make VENV=/some/place ..."
+}
 
 refuse_bad_folder() {
     case "$VENV" in /*) place=$VENV ;; *) place=$(pwd -P)/$VENV ;; esac
@@ -54,6 +68,8 @@ choose_python() {
     command -v "$PYTHON" >/dev/null 2>&1 ||
         fail "There is no '$PYTHON' here. Install Python 3.10 to 3.14 (sudo apt-get install python3), or name one:
     make PYTHON=python3.12 ..."
+    [ "$("$PYTHON" -c 'print("Python")' 2>/dev/null)" = Python ] ||
+        fail "'$PYTHON' is not a Python that works. Name another one: make PYTHON=python3.12 ..."
     "$PYTHON" - <<'PY' || exit 1
 import sys
 if not (3, 10) <= sys.version_info[:2] <= (3, 14):
@@ -116,6 +132,13 @@ make_environment() {
     mkdir -p "$VENV"
     : >"$MARK"
     "$PYTHON" -m venv "$VENV" >"$LOG" 2>&1 || give_up "The virtual environment could not be made."
+    begin
+}
+
+# From now on, an interrupted set-up goes on where it was.
+begin() {
+    pwd -P >"$VENV/.checkout"
+    printf '%s\n' "$wanted" >"$MARK"
 }
 
 # pip sees this environment alone: neither what PYTHONPATH names nor what is set for other uses of pip.
@@ -135,13 +158,24 @@ remove_former_packages() {
 install_pins() {
     # First the pinned setuptools: with it empy is built, the only one of them for which PyPI has no wheel.
     awk '/^[^ #]/ { on = /^setuptools==/ } on' constraints.txt >"$VENV/build-tool.txt"
-    # The pins are all that is needed: pip need not look for more, which it would want hashes of.
-    set --
-    for lock in $LOCKS; do set -- "$@" -r "$lock"; done
-    { pip install --require-hashes --only-binary :all: -r "$VENV/build-tool.txt" &&
-        pip install --no-deps --require-hashes --only-binary :all: --no-binary empy --no-build-isolation --use-pep517 "$@"; } ||
+    pip install --require-hashes --only-binary :all: -r "$VENV/build-tool.txt" ||
         give_up "Dependencies could not be installed."
+    # In batches, so that an interrupted set-up has those that were finished.
+    rm -f "$VENV"/pins-*.txt
+    cat $LOCKS | awk -v place="$VENV" '/^[^ #]/ { file = sprintf("%s/pins-%02d.txt", place, count / 50); count += 1 } file { print >file }'
+    for batch in "$VENV"/pins-*.txt; do install_batch "$batch"; done
     pip install --no-deps --no-build-isolation --editable . || give_up "Spinbook itself could not be installed."
+}
+
+# The pins are all that is needed: pip need not look for more, which it would want hashes of. A batch in which pip was
+# killed may have half a package, so it is installed again.
+install_batch() {
+    again=
+    if [ -e "$1.unfinished" ]; then again=--force-reinstall; fi
+    : >"$1.unfinished"
+    pip install $again --no-deps --require-hashes --only-binary :all: --no-binary empy --no-build-isolation --use-pep517 -r "$1" ||
+        give_up "Dependencies could not be installed."
+    rm "$1.unfinished"
 }
 
 # What ended it, from the log: pip's errors, then what to do.
@@ -155,13 +189,14 @@ give_up() {
     elif grep -qi 'no space left' "$LOG"; then
         say "" "The disk is full: about 1 GB is needed in $VENV, and as much for a moment in ${TMPDIR:-/tmp}."
     fi
-    say "" "The whole log: $LOG. Run make again when it is fixed; set-up starts over."
+    say "" "The whole log: $LOG. Run make again when it is fixed; set-up goes on where it was."
     exit 1
 }
 
 # It is ready when rclpy really loads, whichever it is.
 try_ros() {
     "$VENV/bin/python" -c 'import spinbook, std_msgs.msg, rclpy.impl.implementation_singleton' >>"$LOG" 2>&1 && return
+    : >"$MARK"  # what is installed may be damaged, so the next set-up starts over
     case "$ros" in
         wheels) give_up "Everything is installed, but ROS 2's Python library does not load." ;;
         *) give_up "The sourced ROS 2 (${ros#sourced }) does not load in $VENV. Was its setup file sourced in this terminal?" ;;
@@ -221,6 +256,8 @@ compile_interfaces() {
 mark() { printf '%s\npins %s\ninterfaces %s\n' "$wanted" "$pins" "$1"; }
 
 refuse_bad_folder
+refuse_another_checkouts
+refuse_read_only
 wait_for_turn
 remove_former_packages
 choose_python
@@ -235,8 +272,12 @@ if [ "$made" = "$(mark - | sed '/^interfaces /d')" ] && [ -x "$VENV/bin/python" 
     : # Only the interfaces have changed, or are still missing.
 else
     if [ "$(sed '/^pins /d; /^interfaces /d' "$MARK" 2>/dev/null)" = "$wanted" ] && [ -x "$VENV/bin/python" ]; then
-        say "The pinned dependencies have changed: bringing $VENV up to date ..."
-        : >"$MARK"
+        if [ -n "$(made_for pins)" ]; then
+            say "The pinned dependencies have changed: bringing $VENV up to date ..."
+        else
+            say "Going on with the set-up of $VENV that was interrupted ..."
+        fi
+        begin
         : >"$LOG"
     else
         need_venv_module
@@ -254,4 +295,5 @@ fi
 install_wheels
 compile_middleware anew
 compile_interfaces
+pwd -P >"$VENV/.checkout"
 mark "$interfaces" >"$MARK"

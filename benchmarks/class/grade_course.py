@@ -36,16 +36,18 @@ def main() -> int:
     made = course_class(exercises, wanted.count, wanted.seed)
     shutil.rmtree(wanted.out, ignore_errors=True)
     began = time.monotonic()
-    wrong = sum(graded(exercise, handed, wanted.out) for exercise, handed in made.items())
+    wrong = [line for exercise, handed in made.items() for line in graded(exercise, handed, wanted.out)]
     command = [sys.executable, "-m", "spinbook", "gradebook", str(wanted.out / "results")]
     subprocess.run(command, cwd=ROOT, check=True)
     total = sum(len(handed) for handed in made.values())
-    print(f"{total - wrong} of {total} grades are what they must be, in {time.monotonic() - began:.0f} s.")
+    # Last, so that nobody has to look for it among everybody's points.
+    print("".join(f"{line}\n" for line in wrong), end="")
+    print(f"{total - len(wrong)} of {total} grades are what they must be, in {time.monotonic() - began:.0f} s.")
     return 1 if wrong else 0
 
 
-def graded(exercise: str, handed: list[Handed], out: Path) -> int:
-    """Grade one exercise; returns how many grades are wrong, and names them."""
+def graded(exercise: str, handed: list[Handed], out: Path) -> list[str]:
+    """Grade one exercise; return a line for each wrong grade."""
     submissions, results = out / "submissions" / exercise, out / "results" / exercise
     write(handed, submissions)
     kinds = Counter(one.kind for one in handed)
@@ -53,9 +55,7 @@ def graded(exercise: str, handed: list[Handed], out: Path) -> int:
     print(f"\n{exercise}: {len(handed)} students: {described}", flush=True)
     grade(submissions, results, None, exercise=exercise)
     wrong = {one: why for one in handed if (why := wrong_with(one, results))}
-    for one, why in wrong.items():
-        print(f"WRONG {exercise} {one.student} ({one.kind} {one.origin}): {why}")
-    return len(wrong)
+    return [f"WRONG {exercise} {one.student} ({one.kind} {one.origin}): {why}" for one, why in wrong.items()]
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ from functools import cache
 from pathlib import Path
 
 from grader.sandbox.environment import RUNTIME_VARIABLES, for_trusted
-from grader.sandbox.program import Isolation, SandboxUnavailable
+from grader.sandbox.program import IN_DOCKER, Isolation, SandboxUnavailable
 from groundwork.clean_environment import module_command
 from groundwork.files import cached, write_if_changed
 
@@ -63,8 +63,8 @@ def choose(wanted: Isolation | None = None) -> Isolation:
         reasons.append(f"\n  {level}: {reason}")
     raise SandboxUnavailable(
         "No sandbox works on this machine, so students' code will not be run." + "".join(reasons) + "\n"
-        "Allow user namespaces, or use a kernel with Landlock (5.13 or newer). If you trust the code, --isolation none "
-        "runs it without a sandbox."
+        f"Allow user namespaces (in a container: {IN_DOCKER} ...), or use a kernel with Landlock (5.13 or newer). "
+        "If you trust the code, --isolation none runs it without a sandbox."
     )
 
 

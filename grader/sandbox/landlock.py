@@ -60,7 +60,11 @@ def student_user() -> int:
         return os.geteuid()
     for folder in sorted({folder for path in filesystem.interpreter() for folder in path.resolve().parents}):
         if not folder.stat().st_mode & stat.S_IXOTH:
-            raise OSError(f"as root it needs a Python that other users can read, and this one is in {folder}")
+            raise OSError(
+                f"as root it needs a Python that other users can read, and this one is in {folder}. "
+                "Set it up again with another one and elsewhere, as in: "
+                "make PYTHON=/usr/bin/python3 VENV=/opt/spinbook setup"
+            )
     return dedicated_user()
 
 

@@ -12,7 +12,7 @@ from typing import NoReturn
 
 from grader.sandbox import seccomp, syscalls
 from grader.sandbox.filesystem import USER_ID, Mount, dedicated_user, write_file
-from grader.sandbox.program import SUBMISSION
+from grader.sandbox.program import IN_DOCKER, SUBMISSION
 
 
 @dataclass(frozen=True)
@@ -192,8 +192,9 @@ def _mount_processes(target: str) -> None:
     try:
         syscalls.mount("proc", target, "proc", _MOUNT | syscalls.MS_NOEXEC)
     except PermissionError as fault:
-        allow = "docker run --security-opt systempaths=unconfined"
-        raise OSError(f"this container hides parts of its /proc, so none can be mounted ({allow}): {fault}") from fault
+        raise OSError(
+            f"this container hides parts of its /proc, so none can be mounted ({IN_DOCKER}): {fault}"
+        ) from fault
 
 
 def _seal(target: str) -> None:

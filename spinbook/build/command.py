@@ -65,16 +65,19 @@ def build(
     _report_built(console, built)
     for problem in unknown:
         console.print(str(problem), markup=False, style="red")
-    failed = not compiled or bool(unknown) or any(item.failed for item in built)
+    failed = not compiled or bool(unknown)
+    broken = [item.name for item in built if item.failed]
     if run and compiled:
         chosen = [item for item in built if not item.failed and _is_chosen(item, chapters)]
         try:
-            failed = _execute(console, course, chosen, jobs, deadline, again, is_strict) or failed
+            broken += _execute(console, course, chosen, jobs, deadline, again, is_strict)
         except KeyboardInterrupt:
             console.print("Interrupted: the notebooks that were running have been ended; finished ones are kept.")
             sys.exit(130)
     console.print(f"Notebooks: {_shown(course, 'executed' if run else 'notebooks')}", markup=False)
-    sys.exit(1 if failed else 0)
+    if broken:
+        console.print(f"Failed: {', '.join(broken)}. The reasons are above.", markup=False, style="red")
+    sys.exit(1 if failed or broken else 0)
 
 
 def _compile_interfaces(console: Console, course: Course) -> bool:
@@ -140,8 +143,10 @@ def _execute(
     deadline_s: float,
     again: bool,
     is_strict: bool,
-) -> bool:
-    """Run notebooks with a progress bar. Return whether one failed; with `is_strict`, an error of a node counts."""
+) -> list[str]:
+    """Run notebooks with a progress bar. Return the names of those that failed; with `is_strict`, an error of a node
+    counts.
+    """
     jobs = [NotebookJob(item.chapter, item.notebook, course.build_folder, deadline_s) for item in built]
     columns = (
         TextColumn("{task.description}"),
@@ -150,7 +155,7 @@ def _execute(
         TextColumn("cells"),
         TimeElapsedColumn(),
     )
-    failed = False
+    failed = []
     with Bars(*columns, console=console, transient=True) as bars:
         tasks = {job.chapter: bars.add_task(job.name, total=None, start=False, visible=False) for job in jobs}
 
@@ -162,7 +167,8 @@ def _execute(
         for executed in execute(jobs, at_once, on_progress, again=again):
             bars.remove_task(tasks[executed.chapter])
             _report_executed(console, executed)
-            failed = failed or bool(executed.failures) or (is_strict and bool(executed.node_errors))
+            if executed.failures or (is_strict and executed.node_errors):
+                failed.append(executed.file.name.removesuffix(".ipynb"))
     return failed
 
 

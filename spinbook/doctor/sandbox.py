@@ -110,4 +110,6 @@ def _fix() -> str:
     ]
     if turned_off:
         return "\n".join(turned_off)
-    return "In a container, allow them: docker run --security-opt seccomp=unconfined --cap-add SYS_ADMIN ..."
+    from grader.sandbox.program import IN_DOCKER
+
+    return f"In a container, allow them: {IN_DOCKER} ..."

@@ -1,4 +1,4 @@
-"""Set-up makes an environment once, brings it up to date, and starts over if it was interrupted."""
+"""Set-up makes an environment once, brings it up to date, and goes on if it was interrupted."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ import sys
 import time
 from pathlib import Path
 
-from setup_stage import Checkout
+import pytest
+from setup_stage import Checkout, make_checkout
 
 
 def pips(checkout: Checkout) -> list[str]:
@@ -24,7 +25,8 @@ def test_first_installs_the_pins_by_hash_and_then_spinbook_itself(checkout: Chec
     build_tool, pins, itself = pips(checkout)
     assert "--require-hashes" in build_tool
     assert "--no-deps --require-hashes" in pins
-    assert "-r constraints.txt -r constraints-ros.txt" in pins
+    assert "-r .venv/pins-00.txt" in pins
+    assert (checkout.folder / ".venv" / "pins-00.txt").read_text().count("--hash") == 3
     assert "--editable ." in itself
 
 
@@ -60,10 +62,17 @@ def test_changed_pins_are_installed_into_the_same_environment(checkout: Checkout
     assert checkout.set_up() == (0, "")
 
 
-def test_after_an_interruption_the_next_run_starts_over(checkout: Checkout) -> None:
+def test_after_an_interruption_the_next_run_goes_on_and_repeats_what_was_under_way(checkout: Checkout) -> None:
+    with (checkout.folder / "constraints-ros.txt").open("a") as file:
+        file.writelines(f"ros-{number}==7 \\\n    --hash=sha256:2\n" for number in range(60))
     os.mkfifo(checkout.stage / "pip-waits")
     process = checkout.start()
     deadline = time.monotonic() + 60
+    for batch in range(3):
+        while len(pips(checkout)) <= batch:
+            assert time.monotonic() < deadline
+        if batch < 2:
+            (checkout.stage / "pip-waits").write_text("go\n")
     while not pips(checkout):
         assert time.monotonic() < deadline
         assert process.poll() is None
@@ -74,17 +83,62 @@ def test_after_an_interruption_the_next_run_starts_over(checkout: Checkout) -> N
     checkout.forget_calls()
     code, said = checkout.set_up()
     assert code == 0, said
-    assert checkout.calls[0] == "venv .venv"
+    assert "Going on" in said
+    assert not any(call.startswith("venv") for call in checkout.calls)
+    _, first, second, _ = pips(checkout)
+    assert "--force-reinstall" not in first
+    assert "--force-reinstall" in second
     assert checkout.set_up() == (0, "")
 
 
-def test_after_a_failure_the_next_run_starts_over(checkout: Checkout) -> None:
+def test_after_a_failure_the_next_run_goes_on(checkout: Checkout) -> None:
     checkout.tell("pip-fails", "ERROR: something")
     assert checkout.set_up()[0] == 1
     (checkout.stage / "pip-fails").unlink()
     checkout.forget_calls()
     assert checkout.set_up()[0] == 0
+    assert not any(call.startswith("venv") for call in checkout.calls)
+
+
+def test_what_does_not_load_after_set_up_is_made_anew(checkout: Checkout) -> None:
+    checkout.tell("ros-fails", "ImportError: half a library")
+    assert checkout.set_up()[0] == 1
+    (checkout.stage / "ros-fails").unlink()
+    checkout.forget_calls()
+    assert checkout.set_up()[0] == 0
     assert checkout.calls[0] == "venv .venv"
+
+
+def test_a_program_that_is_no_python_leaves_a_working_environment_alone(checkout: Checkout) -> None:
+    checkout.set_up()
+    checkout.forget_calls()
+    for program in ("/bin/true", "/bin/false", "/bin/cat"):
+        code, said = checkout.set_up(PYTHON=program)
+        assert code == 1
+        assert f"'{program}' is not a Python that works" in said
+    assert checkout.calls == []
+    assert checkout.set_up() == (0, "")
+
+
+def test_another_checkouts_environment_is_left_alone(checkout: Checkout, tmp_path: Path) -> None:
+    checkout.set_up()
+    (tmp_path / "second").mkdir()
+    second = make_checkout(tmp_path / "second")
+    code, said = second.set_up(VENV=os.fspath(checkout.folder / ".venv"))
+    assert code == 1
+    assert f"the environment of another checkout, {checkout.folder}" in said
+    assert checkout.set_up() == (0, "")
+
+
+def test_a_checkout_that_can_not_be_written_is_named(checkout: Checkout) -> None:
+    mounted = f"mount --bind {checkout.folder} {checkout.folder} && mount -o remount,bind,ro {checkout.folder} && sh"
+    command = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", f"{mounted} {checkout.folder}/setup.sh"]
+    if subprocess.run([*command[:4], "true"], capture_output=True, check=False).returncode:
+        pytest.skip("no namespaces here")
+    done = subprocess.run(command, env=checkout.environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert done.stderr.strip().startswith(f"This checkout can't be written: {checkout.folder}")
+    assert checkout.calls == []
 
 
 def test_an_environment_without_its_python_is_made_anew(checkout: Checkout) -> None:
