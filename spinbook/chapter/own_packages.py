@@ -22,7 +22,7 @@ _PLAIN_ENTRY = re.compile(r"""^\s*([\w.-]+)\s*=\s*["']?([\w.]+):(\w+)["']?,?\s*$
 _HAS_ENTRIES = re.compile(r"console_scripts|entry_points|\[project\.scripts\]")
 _PACKAGE_NAME = re.compile(r"""\b(?:package_name|name)\s*=\s*["']([a-z][a-z0-9_]*)["']""")
 _FILE_COMMENT = re.compile(r"""^\s*(?:#+|\"\"\"|''')\s*(?:[Ff]ile(?:name)?\s*:?\s*)?`?([\w./~-]+\.py)\b""")
-_PY_FILE = re.compile(r"[\w./~-]*\w\.py\b")
+_PY_FILE = re.compile(r"[\w./~-]*\w\.py\b", re.ASCII)
 _EDITORS = frozenset({"touch", "nano", "vim", "vi", "gedit", "code", "cat"})
 #: Options of `ros2 pkg create` that take one value, and those that take several.
 _ONE = frozenset(

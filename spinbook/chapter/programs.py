@@ -232,7 +232,9 @@ def _goes_on(number: int, used: Mapping[int, Iterable[int]], items: Sequence[Cla
         return False
     for later, pieces in used.items():
         item = items[later]
-        if number in pieces and item.kind is CellKind.NODE and item.code and item.code.is_complete:
+        # A later program that only shares its imports leaves it a node of its own.
+        takes_class = not code.node_classes or any(f"class {name}(" in item.before for name in code.node_classes)
+        if number in pieces and item.kind is CellKind.NODE and item.code and item.code.is_complete and takes_class:
             return True
     return False
 

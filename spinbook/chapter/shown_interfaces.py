@@ -17,7 +17,8 @@ from interface_compiler.grammar import PRIMITIVES, usual_name
 from spinbook.chapter.block import Block, BlockKind, SourceLine, as_fence
 from spinbook.chapter.fence import Fence, is_someone_elses
 
-_FILE = re.compile(r"(?<![\w.:])(?:[\w.~${}-]+/)*[A-Z]\w*\.(?:msg|srv|action)\b(?![\w.(/])")
+#: A path. ASCII, because Chinese text has no spaces around it.
+_FILE = re.compile(r"(?<![\w.:])(?:[\w.~${}-]+/)*[A-Z]\w*\.(?:msg|srv|action)\b(?![\w(/]|\.\w)", re.ASCII)
 _PACKAGE = re.compile(r"[a-z][a-z0-9_]*")
 #: Folders on the way to a package that are not packages.
 _NOT_PACKAGES = frozenset({"src", "msg", "srv", "action", "interfaces", "ros2_ws", "ws"})

@@ -49,9 +49,10 @@ _BESIDE = frozenset(
 _SHELL_SYNTAX = re.compile(r"[|;<>`]|&&|\$\(|(?<!\S)&(?!\S)|&$")
 #: Characters with a special meaning to a shell.
 _QUOTING = re.compile(r"[\"'\\]")
-_WHO = r"(?:\([\w.-]+\)\s*)?(?:\[?[\w.-]+@[\w.-]+[:\s]?[^\s$#%]*\]?\s?[$#%]|[\w.~/-]*\$)"
-#: A prompt that is certainly one: `$`, `~/ros2_ws$`, `user@host:~$`, `[user@host ws]$`, `(venv) $`.
-SHOWN_PROMPT = re.compile(rf"^\s*{_WHO}\s+(?=\S)")
+_ZSH = r"(?:\S*❯|➜\s+\S+(?:\s+git:\(\S+\))?(?:\s+✗)?)"
+_WHO = _ZSH + r"|(?:\([\w.-]+\)\s*)?(?:\[?[\w.-]+@[\w.-]+[:\s]?[^\s$#%]*\]?\s?[$#%]|[\w.~/-]*\$)"
+#: A prompt that is certainly one: `$`, `~/ros2_ws$`, `user@host:~$`, `[user@host ws]$`, `(venv) $`, `❯`, `➜ ~`.
+SHOWN_PROMPT = re.compile(rf"^\s*(?:{_WHO})\s+(?=\S)")
 _PROMPT = re.compile(rf"^\s*(?:{_WHO}|[#>])\s+(?=\S)")
 #: What a reader replaces: `{topic_name}`, `[options]`, `<name>`.
 _PLACEHOLDER = re.compile(r"\{[A-Za-z][\w -]*\}|\[[A-Za-z][\w .|=-]*\]|<[A-Za-z][^<>]*>")

@@ -69,7 +69,7 @@ def read_book(path: Path) -> Book:
 
 def _contents_in(folder: Path) -> Path | None:
     """Return the file that defines the order, in a folder or one below it; None if there is none."""
-    for below in ("", "docs", "website", "book", "doc", "source", "src", "content"):
+    for below in ("", "docs", "website", "book", "doc", "source", "src", "content", "docs/source", "doc/source"):
         for name in _READERS:
             found = sorted(path for path in (folder / below).glob(f"{name}*") if path.is_file())
             if found:

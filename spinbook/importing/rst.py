@@ -16,7 +16,9 @@ from docutils.parsers.rst import Directive, directives, roles
 _DIRECTIVE = re.compile(r"^\s*(?:\|[^|]+\|\s+)?\.\.\s+(?:\|[^|]+\|\s+)?([\w.:+-]+)::", re.MULTILINE)
 _ROLE = re.compile(r":([\w.:+-]+):`")
 #: Directives that have nothing for the reader of one chapter.
-_UNSEEN = frozenset({"toctree", "contents", "index", "highlight", "tabularcolumns", "meta", "default-role", "only"})
+_UNSEEN = frozenset(
+    {"toctree", "contents", "index", "highlight", "tabularcolumns", "meta", "default-role", "only", "redirect-from"}
+)
 _CODE = frozenset({"code-block", "sourcecode", "code"})
 #: Sphinx's directives whose first line is a title, and what they are in MyST.
 _TITLED = {

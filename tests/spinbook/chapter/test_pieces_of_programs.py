@@ -20,6 +20,16 @@ def test_a_main_continues_the_class_above_which_does_not_run_by_itself(tmp_path:
     assert not inspect(node.whole).needs
 
 
+def test_a_class_whose_imports_alone_a_later_program_uses_runs_by_itself(tmp_path: Path) -> None:
+    server = f"from std_srvs.srv import Trigger\n{TALKER}        self.create_service(Trigger, 'a', print)\n"
+    later = "def main():\n    rclpy.init()\n    rclpy.spin(Node('later'))\n    print(Trigger)\n"
+
+    first, second = cells(read(tmp_path, server, later))
+
+    assert (first.kind, first.spin_classes) == (CellKind.NODE, ("Talker",))
+    assert second.kind is CellKind.NODE
+
+
 def test_imports_and_a_constant_in_fences_above_are_taken_along(tmp_path: Path) -> None:
     *_, node = cells(
         read(tmp_path, "import rclpy\nimport numpy as pn\n", "RATE = 2.0\n", TALKER + "X = pn.pi * RATE\n" + MAIN)

@@ -50,6 +50,7 @@ def fence(code: str, info: str = "") -> str:
         fence(SERVICE, 'text filename="src/trig_interfaces/srv/Cosine.srv"'),
         "Create `Cosine.srv`:\n\n" + fence(SERVICE),
         "In the folder, make **srv/Cosine.srv**:\n\n" + fence(SERVICE, "python"),
+        "编辑文件Cosine.srv，内容如下：\n\n" + fence(SERVICE, "srv"),
         "1. A file `~/ws/src/trig_interfaces/srv/Cosine.srv`:\n\n"
         + "".join(f"   {line}\n" for line in fence(SERVICE, "srv").split("\n")),
         "```bash\nnano srv/Cosine.srv\n```\n\n" + fence(SERVICE, "bash"),

@@ -25,7 +25,17 @@ def printed(cells: tuple[ChapterCell, ...]) -> str:
 @pytest.mark.parametrize("language", ["bash", "console", "text", ""])
 @pytest.mark.parametrize(
     "prompt",
-    ["$ ", "~/ros2_ws$ ", "ros2_ws$ ", "eva@desk:~$ ", "(venv) eva@desk:~/ws$ ", "[eva@desk ws]$ ", "root@c1:/# "],
+    [
+        "$ ",
+        "~/ros2_ws$ ",
+        "ros2_ws$ ",
+        "eva@desk:~$ ",
+        "(venv) eva@desk:~/ws$ ",
+        "[eva@desk ws]$ ",
+        "root@c1:/# ",
+        "╰─❯ ",
+        "➜  ws ",
+    ],
 )
 def test_a_prompt_marks_a_command_and_the_rest_was_printed(tmp_path: Path, prompt: str, language: str) -> None:
     chapter = read(tmp_path, f"```{language}\n{prompt}ros2 topic list\n/clock\n/rosout\n```\n")

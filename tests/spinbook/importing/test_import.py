@@ -238,6 +238,17 @@ def test_the_page_shows_the_opening_line_of_a_fence_as_it_is_written(tmp_path: P
     assert "Name its file: <code>```python title=&#34;node.py&#34;</code>" in (root / "build/import.html").read_text()
 
 
+def test_the_page_lists_what_is_broken_in_the_chapters_own_code(tmp_path: Path) -> None:
+    root = tmp_path / "b"
+    root.mkdir()
+    (root / "one.md").write_text("# One\n\n```python\nprint(\n```\n")
+
+    said = spinbook_import(root)
+
+    assert said.returncode == 0, said.stderr
+    assert "one.md:4</code></td><td>not Python: " in (root / "build/import.html").read_text()
+
+
 def test_a_course_is_not_overwritten(tmp_path: Path) -> None:
     root = book(tmp_path / "robots", "a.md")
     (root / "course.toml").write_text("mine")
