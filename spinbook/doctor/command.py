@@ -62,8 +62,9 @@ OF_ROS = ("python", "libraries", "ros", "middleware", "logs", "message", "enviro
 
 @click.command(name="doctor", context_settings=CONTEXT)
 @click.option("-r", "--report", is_flag=True, help="Also print what was found.")
+@click.option("-rf", "--report-failed", is_flag=True, help="Also print what was found, of what failed.")
 @click.option("-iw", "--include-warnings", is_flag=True, help="Count warnings as failures.")
-def ros2_doctor(report: bool, include_warnings: bool) -> None:
+def ros2_doctor(report: bool, report_failed: bool, include_warnings: bool) -> None:
     """Check whether ROS 2 works here: libraries, middleware, a message from one process to another.
 
     \b
@@ -71,8 +72,8 @@ def ros2_doctor(report: bool, include_warnings: bool) -> None:
       ros2 doctor --report
     """
     findings = diagnose([check for check in CHECKS if check.word in OF_ROS], lambda finding: None)
-    if report:
-        for finding in findings:
+    for finding in findings:
+        if report or (report_failed and finding.state is not State.OK):
             click.echo(f"{finding.name:<24}: {finding.found}")
     for finding in findings:
         if finding.state is not State.OK:

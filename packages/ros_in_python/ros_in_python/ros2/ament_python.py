@@ -75,7 +75,7 @@ def package_files(
     setup.py installs every file.
     """
     return {
-        "package.xml": _package_xml(manifest),
+        "package.xml": package_xml(manifest, "ament_python", TEST_DEPENDENCIES),
         "setup.py": _setup_py(manifest, executables, folders),
         "setup.cfg": _setup_cfg(manifest),
         f"resource/{manifest.name}": "",
@@ -84,10 +84,15 @@ def package_files(
     }
 
 
-def _package_xml(manifest: Manifest) -> str:
-    needs = {"exec_depend": manifest.exec_depends, "depend": manifest.depends}
+def package_xml(manifest: Manifest, build_type: str, test_dependencies: Sequence[str], buildtool: str = "") -> str:
+    """Return the text of package.xml for a package of this build type."""
+    needs = {
+        "buildtool_depend": [buildtool] if buildtool else [],
+        "exec_depend": manifest.exec_depends,
+        "depend": manifest.depends,
+    }
     depends = "".join(f"  <{tag}>{name}</{tag}>\n" for tag, names in needs.items() for name in names)
-    tests = "".join(f"  <test_depend>{name}</test_depend>\n" for name in TEST_DEPENDENCIES)
+    tests = "".join(f"  <test_depend>{name}</test_depend>\n" for name in test_dependencies)
     return (
         '<?xml version="1.0"?>\n'
         '<?xml-model href="http://download.ros.org/schema/package_format3.xsd" '
@@ -104,7 +109,7 @@ def _package_xml(manifest: Manifest) -> str:
         f"{tests}"
         "\n"
         "  <export>\n"
-        "    <build_type>ament_python</build_type>\n"
+        f"    <build_type>{build_type}</build_type>\n"
         "  </export>\n"
         "</package>\n"
     )

@@ -20,6 +20,10 @@ NOUNS = {
         "ros_in_python.ros2.interfaces:interface", "Show what messages, services and actions contain."
     ),
     "launch": MenuEntry("ros_in_python.launch.command:launch", "Start the nodes of a launch file."),
+    "lifecycle": MenuEntry(
+        "ros_in_python.ros2.lifecycle:lifecycle", "Look at nodes with a life cycle, change their state."
+    ),
+    "multicast": MenuEntry("ros_in_python.ros2.multicast:multicast", "Try whether multicast gets through."),
     "node": MenuEntry("ros_in_python.ros2.node:node", "List running nodes, show what one offers."),
     "param": MenuEntry("ros_in_python.ros2.param:param", "Read and change parameters of running nodes."),
     "pkg": MenuEntry("ros_in_python.ros2.pkg:pkg", "List packages and their executables, make a package."),

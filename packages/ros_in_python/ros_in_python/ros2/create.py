@@ -1,4 +1,4 @@
-"""`ros2 pkg create`: a new package of Python."""
+"""`ros2 pkg create`: a new package of Python, or of C++."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from ros_in_python.ros2.ament_cmake import cmake_files
 from ros_in_python.ros2.ament_python import Manifest, package_files
 from ros_in_python.ros2.cli import CONTEXT, CommandError
 
@@ -22,25 +23,25 @@ if __name__ == '__main__':
 
 @click.command(
     context_settings={**CONTEXT, "ignore_unknown_options": True},
-    options_metavar="[--build-type ament_python] [--node-name NODE] [--dependencies PACKAGE…]",
+    options_metavar="[--build-type TYPE] [--node-name NODE] [--library-name NAME] [--dependencies PACKAGE…]",
 )
 @click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="PACKAGE_NAME")
 def create(words: tuple[str, ...]) -> None:
-    """Make a new package of Python in this folder.
+    """Make a new package in this folder: ament_cmake (C++, the default) or ament_python.
 
     \b
       ros2 pkg create --build-type ament_python --node-name talker my_package
       ros2 pkg create --build-type ament_python my_package --dependencies rclpy std_msgs
+      ros2 pkg create my_interfaces
 
-    Also: --license, --description, --maintainer-name, --maintainer-email, --destination-directory. A package of C++
-    (ament_cmake, the default of the real command) needs a ROS 2 installation.
+    Also: --license, --description, --maintainer-name, --maintainer-email, --destination-directory. To build a package
+    of C++ takes a ROS 2 installation; one of messages, services and actions alone is compiled without.
     """
     given = _read(words)
-    if given.build_type != "ament_python":
-        raise CommandError(
-            "Only packages of Python can be made without a ROS 2 installation.",
-            f"ros2 pkg create --build-type ament_python {given.package_name}",
-        )
+    if given.build_type not in ("ament_cmake", "ament_python"):
+        raise CommandError(f"There is no build type '{given.build_type}' here: ament_cmake, ament_python.")
+    if given.library_name and given.build_type == "ament_python":
+        raise CommandError("A package of Python has no library: leave out --library-name.")
     name = given.package_name
     # REP 144's rule for package names.
     if not (name[:1].isalpha() and name.isidentifier() and name.islower() and "__" not in name):
@@ -62,6 +63,7 @@ def _read(words: tuple[str, ...]) -> argparse.Namespace:
     reader.add_argument("--package-format", default="3")
     reader.add_argument("--dependencies", nargs="+", default=[])
     reader.add_argument("--node-name", default="")
+    reader.add_argument("--library-name", default="")
     reader.add_argument("--license", default="TODO: License declaration")
     reader.add_argument("--description", default="TODO: Package description")
     reader.add_argument("--maintainer-name", default="TODO")
@@ -80,9 +82,7 @@ def _write_new(folder: Path, given: argparse.Namespace) -> None:
         given.license,
         depends=given.dependencies,
     )
-    files = package_files(manifest, [(given.node_name, given.node_name)] if given.node_name else [])
-    if given.node_name:
-        files[f"{manifest.name}/{given.node_name}.py"] = NODE.format(package=manifest.name)
+    files = _files(manifest, given)
     _say(manifest, given)
     click.echo(f"creating folder {folder}")
     for path, text in files.items():
@@ -90,6 +90,15 @@ def _write_new(folder: Path, given: argparse.Namespace) -> None:
         file = folder / path
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding="utf-8")
+
+
+def _files(manifest: Manifest, given: argparse.Namespace) -> dict[str, str]:
+    if given.build_type == "ament_cmake":
+        return cmake_files(manifest, given.dependencies, given.node_name, given.library_name)
+    files = package_files(manifest, [(given.node_name, given.node_name)] if given.node_name else [])
+    if given.node_name:
+        files[f"{manifest.name}/{given.node_name}.py"] = NODE.format(package=manifest.name)
+    return files
 
 
 def _say(manifest: Manifest, given: argparse.Namespace) -> None:
@@ -106,5 +115,6 @@ def _say(manifest: Manifest, given: argparse.Namespace) -> None:
         ("dependencies", given.dependencies),
     ):
         click.echo(f"{what}: {value}")
-    if given.node_name:
-        click.echo(f"node_name: {given.node_name}")
+    for what, value in (("node_name", given.node_name), ("library_name", given.library_name)):
+        if value:
+            click.echo(f"{what}: {value}")

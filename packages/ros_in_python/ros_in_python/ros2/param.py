@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -148,16 +150,26 @@ _hidden_nodes = click.option("-a", "--include-hidden-nodes", is_flag=True, help=
 @click.command(name="list", context_settings=CONTEXT)
 @click.argument("node_name", required=False)
 @_hidden_nodes
+@click.option("--param-prefixes", "prefixes", multiple=True, metavar="NAME", help="Only those below NAME: NAME.x")
 @click.option("--param-type", is_flag=True, help="Show each parameter's type too.")
+@click.option("--filter", "expression", default="", metavar="REGEX", help="Only those whose names match.")
 @discovery_options
 def list_(
-    node_name: str | None, include_hidden_nodes: bool, param_type: bool, spin_time: float | None, use_sim_time: bool
+    node_name: str | None,
+    include_hidden_nodes: bool,
+    prefixes: tuple[str, ...],
+    param_type: bool,
+    expression: str,
+    spin_time: float | None,
+    use_sim_time: bool,
 ) -> None:
     """The parameters of one node or of all.
 
     \b
       ros2 param list /joint_state_monitor
+      ros2 param list /arm --param-prefixes left --filter "left.k.*"
     """
+    matches = _matcher(expression)
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
         if node_name is None:
             graph.settle()
@@ -167,7 +179,8 @@ def list_(
         for name in names:
             try:
                 client = client_of(graph, name)
-                params = sorted(answer(graph, name, client.list_parameters()).result.names)
+                listed = answer(graph, name, client.list_parameters(prefixes=list(prefixes) or None)).result.names
+                params = sorted(filter(matches, listed))
                 types = _described(graph, name, client, params) if param_type else {}
             except CommandError as refusal:
                 if node_name is not None:
@@ -358,6 +371,13 @@ def load(
             refused.append(line)
     if refused:
         raise CommandError(*refused)
+
+
+def _matcher(expression: str) -> Callable[[str], Any]:
+    try:
+        return re.compile(expression).match
+    except re.error as error:
+        raise CommandError(f"'{expression}' is not a valid regular expression: {error}") from None
 
 
 def _parameters_of(graph: GraphView, name: str, client: Any) -> str:

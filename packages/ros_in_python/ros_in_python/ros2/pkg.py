@@ -14,7 +14,7 @@ from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry
 pkg = Menu(
     name="pkg",
     entries={
-        "create": MenuEntry("ros_in_python.ros2.create:create", "Make a new package of Python."),
+        "create": MenuEntry("ros_in_python.ros2.create:create", "Make a new package."),
         "executables": MenuEntry("ros_in_python.ros2.pkg:executables", "What `ros2 run` can start."),
         "list": MenuEntry("ros_in_python.ros2.pkg:list_", "All packages."),
         "prefix": MenuEntry("ros_in_python.ros2.pkg:prefix", "Where a package is installed."),
@@ -66,16 +66,19 @@ def executables(package_name: str | None, full_path: bool) -> None:
 
 @click.command(context_settings=CONTEXT)
 @click.argument("package_name")
-def prefix(package_name: str) -> None:
+@click.option("--share", is_flag=True, help="The package's share folder in it.")
+def prefix(package_name: str, share: bool) -> None:
     """Where a package is installed.
 
     \b
       ros2 pkg prefix std_msgs
+      ros2 pkg prefix --share std_msgs
     """
     packages = search.everywhere(Path.cwd())
     if package_name not in packages and package_name not in search.BUILT_IN:
         raise CommandError("Package not found", "`ros2 pkg list` shows those that are there.")
-    click.echo(str(packages.get(package_name, sys.prefix)))
+    found = Path(packages.get(package_name, sys.prefix))
+    click.echo(str(found / "share" / package_name if share else found))
 
 
 @click.command(context_settings=CONTEXT)

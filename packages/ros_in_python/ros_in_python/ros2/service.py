@@ -1,4 +1,4 @@
-"""`ros2 service`: list, type, find, info and call."""
+"""`ros2 service`: list, type, find, info, call and echo."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import click
 from ros_in_python.ros2 import interfaces
 from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry, discovery_options
 from ros_in_python.ros2.opening import open_graph
+from ros_in_python.ros2.topic.selection import reading_options
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView, TypedName
@@ -20,6 +21,7 @@ service = Menu(
     name="service",
     entries={
         "call": MenuEntry("ros_in_python.ros2.service:call", "Call a service and print its answer."),
+        "echo": MenuEntry("ros_in_python.ros2.service:echo", "Print the requests and answers of a service."),
         "find": MenuEntry("ros_in_python.ros2.service:find", "The services of a type."),
         "info": MenuEntry("ros_in_python.ros2.service:info", "How many clients and servers a service has."),
         "list": MenuEntry("ros_in_python.ros2.service:list_", "All services."),
@@ -204,3 +206,32 @@ def _wanted(graph: GraphView, service_name: str) -> TypedName:
     raise CommandError(
         f"Unknown service '{service_name}'", seen("Services", (found.name for found in _visible(graph, False)))
     )
+
+
+@click.command(context_settings=CONTEXT)
+@click.argument("service_name")
+@click.argument("service_type", required=False)
+@reading_options
+@discovery_options
+def echo(service_name: str, service_type: str | None, **options: Any) -> None:
+    """Print the requests and answers of a service, whose node has to publish them: configure_introspection().
+
+    \b
+      ros2 service echo /stand_up
+    """
+    with open_graph(spin_time=options.pop("spin_time"), use_sim_time=options.pop("use_sim_time")) as graph:
+        from rclpy.qos import qos_profile_services_default
+
+        from ros_in_python.ros2.graph import absolute
+        from ros_in_python.ros2.topic.echo import listen
+
+        name = absolute(service_name, "service")
+        if service_type is None:
+            service_type = _wanted(graph, service_name).types[0]
+        topic, kind = f"{name}/_service_event", interfaces.service_class(service_type)
+        graph.settle(lambda: bool(graph.publishers(topic)))
+        if not graph.publishers(topic):
+            click.echo(
+                f"No node publishes the calls of {name} yet: see Node.configure_introspection in rclpy.", err=True
+            )
+        listen(graph, topic, kind.Event, (), qos_profile_services_default, options)

@@ -13,8 +13,16 @@ from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_action_status_default
+from rclpy.qos import (
+    DurabilityPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_profile_action_status_default,
+    qos_profile_system_default,
+)
+from rclpy.service_introspection import ServiceIntrospectionState
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Int32, String
 from std_srvs.srv import SetBool
@@ -79,6 +87,29 @@ def service() -> Node:
 
     node.create_service(SetBool, "/stand_up", stand_up)
     return node
+
+
+def introspected() -> Node:
+    """Run `/lie_down`, which publishes its calls, and call it twenty times a second."""
+    node = Node("watched")
+    server = node.create_service(SetBool, "/lie_down", lambda request, response: response)
+    server.configure_introspection(node.get_clock(), qos_profile_system_default, ServiceIntrospectionState.CONTENTS)
+    client = node.create_client(SetBool, "/lie_down")
+    node.create_timer(0.05, lambda: client.call_async(SetBool.Request(data=True)))
+    return node
+
+
+def lifecycle() -> Node:
+    """Run `/camera`, whose activation fails."""
+
+    class Camera(LifecycleNode):
+        def on_configure(self, state: Any) -> TransitionCallbackReturn:
+            return TransitionCallbackReturn.SUCCESS
+
+        def on_activate(self, state: Any) -> TransitionCallbackReturn:
+            return TransitionCallbackReturn.FAILURE
+
+    return Camera("camera")
 
 
 def action() -> Node:

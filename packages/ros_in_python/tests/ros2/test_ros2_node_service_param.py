@@ -141,3 +141,22 @@ def test_param_refusals(standing: Robot, terminal: Terminal) -> None:
     assert (wrong.code, wrong.err.split(":")[0]) == (0, "Setting parameter failed")
     nobody = terminal.ros2("param", "get", "/nobody", "rate")
     assert (nobody.code, nobody.err.splitlines()[0]) == (1, "Node not found")
+
+
+def test_param_list_by_prefix_and_by_expression(standing: Robot, terminal: Terminal) -> None:
+    standing("publisher")
+    listed = terminal.ros2("param", "list", "joint_publisher", "--param-prefixes", "gains")
+    assert listed.out == "  gains.left\n"
+    assert terminal.ros2("param", "list", "joint_publisher", "--filter", "ra|use").out == "  rate\n  use_sim_time\n"
+    wrong = terminal.ros2("param", "list", "joint_publisher", "--filter", "(")
+    assert wrong.err.startswith("'(' is not a valid regular expression")
+
+
+def test_service_echo_prints_the_calls_of_a_service_that_publishes_them(robot: Robot, terminal: Terminal) -> None:
+    robot("introspected")
+    running = terminal.start("service", "echo", "/lie_down", "--flow-style")
+    lines: list[str] = []
+    while "request: [{data: true}]" not in lines:
+        lines += running.lines(1)
+    assert "info:" in lines
+    assert running.stop().code == 2

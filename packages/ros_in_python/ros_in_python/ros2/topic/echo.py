@@ -14,12 +14,10 @@ from ros_in_python.field_path import Step
 from ros_in_python.ros2 import interfaces, qos
 from ros_in_python.ros2.cli import CONTEXT, discovery_options
 from ros_in_python.ros2.opening import open_graph
-from ros_in_python.ros2.topic.selection import check_path, field, field_path, filter_option
+from ros_in_python.ros2.topic.selection import check_path, field, field_path, filter_option, reading_options
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
-
-LENGTH = 128
 
 
 @click.command(context_settings=CONTEXT)
@@ -28,19 +26,7 @@ LENGTH = 128
 @click.option("--once", is_flag=True, help="Print the first message and exit.")
 @click.option("--timeout", type=click.FloatRange(min=0, min_open=True), metavar="N", help="Exit after N seconds.")
 @click.option("--field", metavar="FIELD", help="Only this field, as in header.stamp or position[0]")
-@click.option("--csv", is_flag=True, help="One line per message, values separated by commas.")
-@click.option("--flow-style", is_flag=True, help="Arrays on one line.")
-@click.option("--no-arr", is_flag=True, help="Print only the type and length of arrays.")
-@click.option("--no-str", is_flag=True, help="Print only the length of strings.")
-@click.option("-f", "--full-length", is_flag=True, help="Print arrays and strings whole.")
-@click.option(
-    "-l",
-    "--truncate-length",
-    type=click.IntRange(min=0),
-    default=LENGTH,
-    show_default=True,
-    help="Elements or characters to show before '...'.",
-)
+@reading_options
 @filter_option
 @click.option("-i", "--include-message-info", is_flag=True, help="Time stamps and numbers of each message.")
 @click.option("--raw", is_flag=True, help="The bytes as they arrived.")
@@ -72,15 +58,17 @@ def echo(topic_name: str, message_type: str | None, **options: Any) -> None:
             message = type_or_refusal(graph, name)
         if not options["raw"]:
             check_path(message, path)
-        _listen(graph, name, message, path, qos.suiting(graph, name, asked), options)
+        listen(graph, name, message, path, qos.suiting(graph, name, asked), options)
 
 
-def _listen(
+def listen(
     graph: GraphView, topic: str, message: Any, path: Sequence[Step], profile: Any, options: dict[str, Any]
 ) -> None:
+    """Print what arrives on a topic, as the options say, until it is enough or a signal comes."""
     from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
 
     printed = 0
+    options = {"once": False, "timeout": None, "raw": False, "filter_expression": None, **options}
     text = _printer(options)
     wanted = options["filter_expression"]
     start = time.monotonic()
@@ -102,7 +90,7 @@ def _listen(
         graph.node.create_subscription(message, topic, callback, profile, event_callbacks=events, raw=options["raw"])
 
     try:
-        subscribe(SubscriptionEventCallbacks(message_lost=None if options["no_lost_messages"] else _lost))
+        subscribe(SubscriptionEventCallbacks(message_lost=None if options.get("no_lost_messages") else _lost))
     except UnsupportedEventTypeError:
         subscribe(None)
 
@@ -118,7 +106,7 @@ def _printer(options: dict[str, Any]) -> Any:
 
     length = None if options["full_length"] else options["truncate_length"]
     brevity = Brevity(length, options["no_arr"], options["no_str"])
-    with_info = options["include_message_info"]
+    with_info = options.get("include_message_info", False)
 
     def text(part: Any, info: dict[str, Any]) -> str:
         if not is_message(part):

@@ -50,6 +50,31 @@ filter_option: Callable[[F], F] = click.option(
 )
 
 
+#: The number of elements or characters that are shown, unless a person asks for more.
+LENGTH = 128
+
+
+def reading_options(command: F) -> F:
+    """Add the options that say how messages are printed."""
+    for option in (
+        click.option(
+            "-l",
+            "--truncate-length",
+            type=click.IntRange(min=0),
+            default=LENGTH,
+            show_default=True,
+            help="Elements or characters to show before '...'.",
+        ),
+        click.option("-f", "--full-length", is_flag=True, help="Print arrays and strings whole."),
+        click.option("--no-str", is_flag=True, help="Print only the length of strings."),
+        click.option("--no-arr", is_flag=True, help="Print only the type and length of arrays."),
+        click.option("--flow-style", is_flag=True, help="Arrays on one line."),
+        click.option("--csv", is_flag=True, help="One line per message, values separated by commas."),
+    ):
+        command = option(command)
+    return command
+
+
 def field_path(text: str | None) -> tuple[Step, ...]:
     """Return the steps of `--field pose.position`. Raises `CommandError` if it has no name in it."""
     if text is None:
