@@ -89,6 +89,14 @@ def created_package(words: Sequence[str]) -> tuple[str, str]:
     return name, build_type
 
 
+def created_node(words: Sequence[str]) -> str:
+    """Return the node that `ros2 pkg create --node-name NODE …` makes, which says hello; "" if it makes none."""
+    for word, after in itertools.pairwise([*words, ""]):
+        if word == "--node-name" or word.startswith("--node-name="):
+            return word.partition("=")[2] or after
+    return ""
+
+
 def _created(code: str) -> Iterator[tuple[str, str]]:
     for words in programs_of(code):
         if words[:3] == ("ros2", "pkg", "create"):

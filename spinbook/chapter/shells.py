@@ -16,7 +16,7 @@ from ros_in_python.ros2 import executables
 from spinbook.chapter.classify import CellKind, ClassifiedFence
 from spinbook.chapter.imports import interfaces_of, own_names, remedy, ros_packages
 from spinbook.chapter.launch_files import LaunchedNode, NotSupportedError, launched_nodes
-from spinbook.chapter.own_packages import OwnPackages, created_package
+from spinbook.chapter.own_packages import OwnPackages, created_node, created_package
 from spinbook.chapter.program_names import ProgramNames
 from spinbook.chapter.terminal import Command, CommandKind
 
@@ -80,6 +80,8 @@ class Shells:
     interfaces: frozenset[str] = frozenset()
     problems: list[Problem] = field(default_factory=list)
     _created: set[str] = field(default_factory=set)
+    _hello: set[tuple[str, str]] = field(default_factory=set)
+    """The programs that `ros2 pkg create --node-name` makes: (package, executable)."""
     _files: set[str] = field(default_factory=set)
     """Launch and parameter files that cells above have put into the package, by name."""
     _launch_files: dict[str, str] = field(default_factory=dict)
@@ -113,6 +115,8 @@ class Shells:
         item = replace(item, commands=tuple(part for command in commands for part in self._launched(command)))
         if all(command.kind is CommandKind.NOTE for command in item.commands):
             return replace(item, kind=CellKind.STATIC, why="it makes a package of interfaces, which is compiled here")
+        if len(item.commands) > 1:
+            item = self._without_keys(item)
         for command in item.commands:
             line = item.fence.first_code_line + command.line - 1
             reason = self._refused(command, out, line)
@@ -123,6 +127,21 @@ class Shells:
             self.problems.append(Problem(self.file, line, problem, reason.fix, Severity.NOT_RUN, group=reason.group))
             return replace(item, kind=CellKind.STATIC, why=reason.why, sign=f"{reason.why}.")
         return item
+
+    def _without_keys(self, item: ClassifiedFence) -> ClassifiedFence:
+        """Make comments of programs that read keys, so that the other commands of their fence run."""
+        needs_keys = [command.runs in _READ_KEYS for command in item.commands]
+        if all(
+            needs or command.kind is CommandKind.NOTE for needs, command in zip(needs_keys, item.commands, strict=True)
+        ):
+            return item
+        commands = [
+            Command(CommandKind.NOTE, f"# {command.text} (reads keys: run it in a terminal)", (), command.line)
+            if needs
+            else command
+            for needs, command in zip(needs_keys, item.commands, strict=True)
+        ]
+        return replace(item, commands=tuple(commands))
 
     def _refused(self, command: Command, out: list[ClassifiedFence], line: int) -> _Reason | None:
         if command.kind is CommandKind.COLCON:
@@ -151,6 +170,8 @@ class Shells:
             if number is not None:
                 known = dict.fromkeys([*out[number].executables, (package, executable)])
                 out[number] = replace(out[number], executables=tuple(known))
+                return None
+            if (package, executable) in self._hello:
                 return None
             if package in self.own.names and (close := names.close(executable)):
                 fix = f"Did you mean `{close}`? Otherwise show its program in a fence above."
@@ -277,6 +298,7 @@ class Shells:
         if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
             return _Reason("it does not name a package", "Write: ros2 pkg create --build-type ament_python NAME", "")
         self._created.add(name)
+        self._hello.add((name, created_node(command.words)))
         return None
 
     def _colcon(self, command: Command) -> _Reason | None:

@@ -9,12 +9,21 @@ from dataclasses import replace
 from pathlib import Path
 
 from interface_compiler import toolchain
-from spinbook.chapter.own_packages import created_package
+from spinbook.chapter.own_packages import created_node, created_package
 from spinbook.kernel.cell_output import DisplayLimit
 from spinbook.kernel.process import CellFailed
 from spinbook.kernel.session import Session
 from spinbook.package.workspace import write_package, written_definitions
 
+#: The program that `ros2 pkg create --node-name` makes.
+_HELLO = """\
+def main():
+    print("Hi from {package}.")
+
+
+if __name__ == "__main__":
+    main()
+"""
 #: How long a build may take (s).
 COLCON_SECONDS = 120.0
 
@@ -83,6 +92,8 @@ def _create_package(session: Session, words: list[str]) -> None:
         print(f"The package {name} already exists.")
         return
     folder = write_package(session.workspace, replace(session.package, name=name), [])
+    if node := created_node(["ros2", *words]):
+        session.save_program(node, _HELLO.format(package=name), f"{name}/{node}")
     print(f"Created the package {name} in {folder.relative_to(Path.cwd())}")
 
 

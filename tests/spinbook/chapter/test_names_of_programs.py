@@ -100,6 +100,26 @@ def test_otherwise_nothing_is_started_and_the_name_that_was_meant_is_suggested(
     assert f"Did you mean `{meant}`?" in result.problems[-1].fix
 
 
+def test_the_node_that_pkg_create_makes_can_be_run(tmp_path: Path) -> None:
+    create = CREATE.replace("ros2 pkg create", "ros2 pkg create --node-name greeter")
+
+    assert [cell.kind for cell in cells(read(tmp_path, create, shell("ros2 run bench greeter")))] == [
+        CellKind.SHELL
+    ] * 2
+
+
+def test_a_program_that_reads_keys_does_not_keep_its_neighbours_from_running(tmp_path: Path) -> None:
+    both = shell("ros2 run turtlesim turtlesim_node\n# Terminal 2\nros2 run turtlesim turtle_teleop_key")
+
+    (cell,) = cells(read(tmp_path, both))
+
+    assert [command.text for command in cell.commands] == [
+        "ros2 run turtlesim turtlesim_node",
+        "# Terminal 2",
+        "# ros2 run turtlesim turtle_teleop_key (reads keys: run it in a terminal)",
+    ]
+
+
 def launch(body: str, imports: str = "") -> str:
     return (
         "```python\nfrom launch import LaunchDescription\nfrom launch_ros.actions import Node\n"

@@ -70,7 +70,9 @@ def test_a_newer_version_in_another_file_replaces_the_earlier_one(kernel: Kernel
 def test_ros2_run_starts_the_node_by_the_name_that_its_package_gives_it(kernel: Kernel) -> None:
     code = CLASS.replace("NAME", "str(sys.argv[1:2])") + MAIN
     options = "--seconds 60 --until I --main --usual-imports --as arm/hand"
-    assert kernel.run("%ros2 pkg create --build-type ament_python arm").text.startswith("Created the package arm")
+    create = "%ros2 pkg create --build-type ament_python --node-name wave arm"
+    assert kernel.run(create).text.startswith("Created the package arm")
+    assert "Hi from arm." in kernel.run("%ros2 run arm wave").text
     kernel.run(f"%%node gripper {options}\n{code}")
 
     shown = kernel.run("%ros2 --seconds 60 --until left run arm hand left")
