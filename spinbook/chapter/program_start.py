@@ -87,12 +87,12 @@ def loops_forever(statement: ast.stmt) -> bool:
     return isinstance(value, ast.Call) and last_name(value.func) in {"serve_forever", "run_forever", "mainloop"}
 
 
-def wants_ros(tree: ast.Module) -> bool:
-    """Return whether code outside classes makes a node, spins one or shuts ROS down, and so needs `rclpy.init` before
-    it."""
+def wants_ros(tree: ast.Module) -> int:
+    """Return the first line on which code outside classes makes a node, spins one or shuts ROS down, and so needs
+    `rclpy.init` before it; 0 if there is none."""
     outside = (item for item in tree.body if not isinstance(item, ast.ClassDef))
     calls = (item for statement in outside for item in ast.walk(statement) if isinstance(item, ast.Call))
-    return any(_is_ros(call.func) for call in calls)
+    return min((call.lineno for call in calls if _is_ros(call.func)), default=0)
 
 
 def spins(tree: ast.Module) -> bool:

@@ -14,6 +14,7 @@ from spinbook.chapter.imports import MissingPackage, missing_imports
 from spinbook.chapter.node_classes import needs_arguments, snake_case
 from spinbook.chapter.node_versions import NodeVersions
 from spinbook.chapter.python_code import PythonCode, inspect
+from spinbook.chapter.wrong_fields import wrong_fields
 
 
 @dataclass
@@ -64,7 +65,7 @@ class Programs:
         if code.never_initialized:
             return self._uninitialized(item, code)
         if code.wants_ros and not _facts(joined, code).initializes:
-            return _static(item, "nothing calls `rclpy.init` before it")
+            return self._without_init(item, code)
         if reason := _why_fragment(item, code, joined):
             return _static(item, f"it is a fragment: {reason}")
         if code.lacking and code.is_complete and not joined.amends:
@@ -75,6 +76,7 @@ class Programs:
         return self._missing(item, missing, joined) if missing else None
 
     def _made(self, number: int, item: ClassifiedFence, joined: CompleteProgram) -> ClassifiedFence:
+        self._check_fields(item, joined.before)
         if joined.used:
             self._used[number] = tuple(self._pieces[i] for i in joined.used)
         return replace(self._name(item, joined), before=joined.before, has_main_above=joined.has_main_above)
@@ -107,6 +109,7 @@ class Programs:
         if absent := missing_imports(code, self.own, self.interfaces):
             return self._missing(item, absent, CompleteProgram(item.fence.code, item.before))
         self._defined |= code.defines
+        self._check_fields(item, item.before)
         return item
 
     def _undefined(self, item: ClassifiedFence, code: PythonCode, missing: Mapping[str, int]) -> ClassifiedFence:
@@ -118,6 +121,27 @@ class Programs:
             line = item.fence.first_code_line + min(missing.values()) - 1
             self.problems.append(Problem(self.file, line, problem, fix, Severity.NOT_RUN))
         return _static(item, f"it uses {names}, which nothing above defines")
+
+    def _without_init(self, item: ClassifiedFence, code: PythonCode) -> ClassifiedFence:
+        """Return a program that never calls `rclpy.init` as a static fence; for a whole one, this is a mistake."""
+        if code.is_complete and code.imports:
+            problem = "nothing calls `rclpy.init` before this, so the program would fail."
+            fix = (
+                "Call `rclpy.init()` first, or write `static` after the language if this is only a piece of a program."
+            )
+            at = item.fence.first_code_line + code.wants_ros - 1
+            self.problems.append(Problem(self.file, at, problem, fix, Severity.NOT_RUN))
+        return _static(item, "nothing calls `rclpy.init` before it")
+
+    def _check_fields(self, item: ClassifiedFence, before: str) -> None:
+        """Report fields that messages do not have, in the fence itself, unless its failing is meant."""
+        if item.fence.has("raises") or item.fence.has("expect-error"):
+            return
+        above = before.count("\n")
+        for wrong in wrong_fields(before + item.fence.code):
+            if wrong.line > above:
+                at = item.fence.first_code_line + wrong.line - above - 1
+                self.problems.append(Problem(self.file, at, wrong.problem, wrong.fix, Severity.WARNING))
 
     def _uninitialized(self, item: ClassifiedFence, code: PythonCode) -> ClassifiedFence:
         name, line = next(iter(code.never_initialized.items()))

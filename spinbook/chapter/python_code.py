@@ -106,8 +106,8 @@ class PythonCode:
     """The first of those that `__init__` uses itself."""
     never_initialized: Mapping[str, int] = field(default_factory=dict)
     """Node classes whose `__init__` does not call Node's -> line."""
-    wants_ros: bool = False
-    """Whether `rclpy.init` has to be called before it, or by it."""
+    wants_ros: int = 0
+    """The first line that needs `rclpy.init` to be called before it; 0 if there is none."""
     initializes: bool = False
     """Whether it calls `rclpy.init`, however it is imported."""
     leaves: str = ""

@@ -19,6 +19,7 @@ from spinbook.chapter.launch_files import LaunchedNode, NotSupportedError, launc
 from spinbook.chapter.own_packages import OwnPackages, created_node, created_package
 from spinbook.chapter.program_names import ProgramNames
 from spinbook.chapter.terminal import Command, CommandKind
+from spinbook.chapter.values_in_commands import wrong_values
 
 #: Commands that fail if the name they are given does not exist: noun -> verbs.
 _ASKING = {
@@ -157,6 +158,7 @@ class Shells:
             return self._launch(command)
         if command.words[1:3] == ("pkg", "create"):
             return self._create(command)
+        self._check_values(command, line)
         return self._types(command) or self._named(command)
 
     def _run(self, package: str, executable: str, out: list[ClassifiedFence], line: int) -> _Reason | None:
@@ -325,6 +327,12 @@ class Shells:
             return None
         fix = "Show what makes it in a fence above."
         return _Reason(f"nothing above makes `{words[0]}`", fix, "names that nothing makes")
+
+    def _check_values(self, command: Command, line: int) -> None:
+        """Report fields that the type of a message, request or goal on a command line does not have."""
+        for wrong in wrong_values(command):
+            problem = f"{wrong.problem[:-1]} (`{command.text}`)."
+            self.problems.append(Problem(self.file, line, problem, wrong.fix, Severity.WARNING))
 
     def _types(self, command: Command) -> _Reason | None:
         """Return a reason if a command names an interface type that does not exist."""

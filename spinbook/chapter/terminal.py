@@ -6,9 +6,10 @@ notebook does not, so they become comments. Anything else is shown but not run.
 
 from __future__ import annotations
 
+import difflib
 import re
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 
@@ -240,15 +241,18 @@ def _without_comment(text: str) -> str:
     return text
 
 
+def _meant(word: str, known: Iterable[str]) -> str:
+    close = difflib.get_close_matches(word, known, n=1, cutoff=0.7)
+    return f"did you mean `{close[0]}`?" if close else f"there are: {', '.join(sorted(known))}"
+
+
 def _ros2(text: str, words: tuple[str, ...], line: int) -> Command | UnsupportedCommand:
     noun = words[1] if len(words) > 1 else ""
     if noun not in ROS2:
-        return UnsupportedCommand(text, line, f"there is no `ros2 {noun}` here; there are: {', '.join(ROS2)}")
+        return UnsupportedCommand(text, line, f"there is no `ros2 {noun}` here; {_meant(noun, ROS2)}")
     if noun == "run" and words[2:3] == words[3:4] and words[2:3] and words[2] in _WINDOWS:
         return _window(text.partition(words[2])[2].strip(), words[3:], line)
     verb = words[2] if len(words) > 2 else ""
     if ROS2[noun] and verb not in ROS2[noun] and not verb.startswith("-"):
-        return UnsupportedCommand(
-            text, line, f"there is no `ros2 {noun} {verb}` here; there are: {', '.join(sorted(ROS2[noun]))}"
-        )
+        return UnsupportedCommand(text, line, f"there is no `ros2 {noun} {verb}` here; {_meant(verb, ROS2[noun])}")
     return Command(CommandKind.ROS2, text, words, line)

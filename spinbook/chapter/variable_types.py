@@ -1,0 +1,317 @@
+"""Which variables of a program hold messages, services and actions, as far as its text says for sure."""
+
+from __future__ import annotations
+
+import ast
+import functools
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from spinbook.chapter.interface_fields import PARTS, InterfaceFields, fields_of
+from spinbook.chapter.node_classes import last_name
+
+_MODULE = re.compile(r"(\w+)\.(msg|srv|action)")
+_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
+
+
+@dataclass(frozen=True)
+class TypedValue:
+    """What an expression is: a `class`, a `value` of it, a `list` of values, or what rclpy makes of an action.
+
+    `interface` is such as `std_msgs/msg/String`, `part` such as `Request`.
+    """
+
+    role: str
+    interface: str
+    part: str = ""
+
+    @property
+    def fields(self) -> InterfaceFields | None:
+        """The fields of a message, or of a part of a service or action; None for anything else."""
+        is_message = self.role in {"class", "value"} and (bool(self.part) or "/msg/" in self.interface)
+        return fields_of(self.interface, self.part) if is_message else None
+
+
+@dataclass(eq=False)
+class Function:
+    """A function, a lambda or the module itself, with what its names are bound to: None if that is not known."""
+
+    node: ast.AST
+    owner: ast.ClassDef | None = None
+    parameters: dict[str, TypedValue | None] = field(default_factory=dict)
+    bound: dict[str, list[ast.expr | None]] = field(default_factory=dict)
+
+    def own_nodes(self) -> Iterator[ast.AST]:
+        """Yield the nodes of its body, without those of functions inside it."""
+        todo = list(ast.iter_child_nodes(self.node))
+        while todo:
+            item = todo.pop()
+            yield item
+            if not isinstance(item, _FUNCTIONS):
+                todo += ast.iter_child_nodes(item)
+
+    @property
+    def arguments(self) -> list[str]:
+        """The names of its positional parameters, without `self`."""
+        assert isinstance(self.node, _FUNCTIONS)
+        names = [argument.arg for argument in self.node.args.args]
+        return names[1:] if self.owner is not None and names[:1] == ["self"] else names
+
+
+class ProgramTypes:
+    """The types in one program."""
+
+    def __init__(self, tree: ast.Module) -> None:
+        self.functions: list[Function] = []
+        self._tree = tree
+        self._busy: set[tuple[int, str]] = set()
+        self._module = self._add(tree, None)
+        self._imported = _imported(tree)
+        self._attributes = _attributes(tree)
+        self._callbacks()
+
+    def value_of(self, expression: ast.expr, function: Function) -> TypedValue | None:
+        """Return the message that an expression is; None if it is something else, or not known."""
+        kind = self._type(expression, function)
+        return kind if kind is not None and kind.role == "value" else None
+
+    def class_of(self, expression: ast.expr, function: Function) -> TypedValue | None:
+        """Return the class that an expression is; None if it is something else, or not known."""
+        kind = self._type(expression, function)
+        return kind if kind is not None and kind.role == "class" else None
+
+    def _add(self, node: ast.AST, owner: ast.ClassDef | None) -> Function:
+        function = Function(node, owner)
+        function.bound = _bindings(function)
+        self.functions.append(function)
+        for inner in function.own_nodes():
+            if isinstance(inner, ast.ClassDef):
+                for method in inner.body:
+                    if isinstance(method, _FUNCTIONS):
+                        self._add(method, inner)
+            elif isinstance(inner, _FUNCTIONS) and not self._known(inner):
+                self._add(inner, owner)
+        return function
+
+    def _known(self, node: ast.AST) -> bool:
+        return any(function.node is node for function in self.functions)
+
+    def _type(self, expression: ast.expr, function: Function) -> TypedValue | None:
+        if isinstance(expression, ast.Name):
+            return self._name(expression.id, function)
+        if isinstance(expression, ast.Attribute):
+            return self._attribute(expression, function)
+        if isinstance(expression, ast.Call):
+            return self._call(expression, function)
+        if isinstance(expression, ast.Subscript) and not isinstance(expression.slice, ast.Slice):
+            of = self._type(expression.value, function)
+            return replace(of, role="value") if of is not None and of.role == "list" else None
+        return None
+
+    def _name(self, name: str, function: Function) -> TypedValue | None:
+        if name in function.parameters and name not in function.bound:
+            return function.parameters[name]
+        if name in function.parameters or (function is not self._module and _is_parameter(name, function)):
+            return None
+        if name in function.bound:
+            return self._same(function.bound[name], function, (id(function), name))
+        if isinstance(function.node, ast.Lambda) or function is self._module or not self._is_local_elsewhere(name):
+            known = self._module.bound.get(name)
+            return self._imported.get(name) if known is None else None
+        return None
+
+    def _is_local_elsewhere(self, name: str) -> bool:
+        """Return whether another function binds the name: the one meant may be around this one."""
+        return any(name in item.bound or _is_parameter(name, item) for item in self.functions)
+
+    def _same(self, values: Sequence[ast.expr | None], function: Function, key: tuple[int, str]) -> TypedValue | None:
+        """Return the type that all these values have; None if they differ or are not known."""
+        if key in self._busy:
+            return None
+        self._busy.add(key)
+        kinds = {self._type(value, function) if value is not None else None for value in values}
+        self._busy.discard(key)
+        return kinds.pop() if len(kinds) == 1 else None
+
+    def _attribute(self, item: ast.Attribute, function: Function) -> TypedValue | None:
+        dotted = ast.unparse(item)
+        if (known := self._imported.get(dotted)) is not None:
+            return known
+        if isinstance(item.value, ast.Name) and item.value.id == "self" and function.owner is not None:
+            places = self._attributes.get((function.owner.name, item.attr))
+            makers = [(value, self._method_of(node)) for value, node in places or ()]
+            kinds = {self._type(value, maker) if value and maker else None for value, maker in makers}
+            return kinds.pop() if len(kinds) == 1 else None
+        base = self._type(item.value, function)
+        return _part_of(base, item.attr) if base else None
+
+    def _method_of(self, node: ast.AST) -> Function | None:
+        return next((function for function in self.functions if function.node is node), None)
+
+    def _call(self, call: ast.Call, function: Function) -> TypedValue | None:
+        made = {"ActionClient": ("action_client", 1), "create_client": ("client", 0)}.get(last_name(call.func))
+        if made and len(call.args) > made[1]:
+            of = self.class_of(call.args[made[1]], function)
+            return replace(of, role=made[0]) if of else None
+        of = self.class_of(call.func, function)
+        return replace(of, role="value") if of and (of.part or "/msg/" in of.interface) else None
+
+    # --- callbacks
+
+    def _callbacks(self) -> None:
+        """Give the parameters of functions their annotations' types, or those that rclpy calls them with."""
+        given: dict[int, list[list[TypedValue | None]]] = {}
+        for function in list(self.functions):
+            for call in (item for item in function.own_nodes() if isinstance(item, ast.Call)):
+                for callback, types in _registered(call, functools.partial(self._type, function=function)):
+                    target = self._function_of(callback, function)
+                    if target is not None:
+                        given.setdefault(id(target), []).append(types)
+        for function in self.functions:
+            if isinstance(function.node, _FUNCTIONS):
+                self._annotate(function, given.get(id(function), []))
+
+    def _annotate(self, function: Function, calls: list[list[TypedValue | None]]) -> None:
+        assert isinstance(function.node, _FUNCTIONS)
+        decorated = bool(getattr(function.node, "decorator_list", []))
+        same = len({tuple(types) for types in calls}) == 1 and not decorated and not self._is_called(function)
+        types = dict(zip(function.arguments, calls[0], strict=False)) if same else {}
+        for argument in function.node.args.args:
+            annotation = argument.annotation
+            of = self.class_of(annotation, function) if isinstance(annotation, ast.Name | ast.Attribute) else None
+            annotated = replace(of, role="value") if of and (of.part or "/msg/" in of.interface) else None
+            function.parameters[argument.arg] = annotated or types.get(argument.arg)
+
+    def _is_called(self, function: Function) -> bool:
+        """Return whether the program calls a callback itself: maybe with something else."""
+        name = getattr(function.node, "name", "")
+        calls = (item for item in ast.walk(self._tree) if isinstance(item, ast.Call))
+        return bool(name) and any(last_name(call.func) == name for call in calls)
+
+    def _function_of(self, callback: ast.expr, function: Function) -> Function | None:
+        """Return the function that an expression names: `self.on_message`, `on_message`, or a lambda."""
+        for item in self.functions:
+            if item.node is callback:
+                return item
+            name = getattr(item.node, "name", "")
+            if isinstance(callback, ast.Name) and item.owner is None and name == callback.id:
+                return item
+            is_own = isinstance(callback, ast.Attribute) and ast.unparse(callback.value) == "self"
+            if is_own and item.owner is not None and item.owner is function.owner and name == last_name(callback):
+                return item
+        return None
+
+
+def _is_parameter(name: str, function: Function) -> bool:
+    node = function.node
+    if not isinstance(node, _FUNCTIONS):
+        return False
+    arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs, node.args.vararg, node.args.kwarg]
+    return any(argument is not None and argument.arg == name for argument in arguments)
+
+
+def _part_of(base: TypedValue, name: str) -> TypedValue | None:
+    """Return what an attribute of a known thing is."""
+    if base.role == "class" and name in PARTS[base.interface.split("/")[1]] and not base.part:
+        return replace(base, part=name)
+    if (base.role, name) in {("goal_handle", "request"), ("feedback", "feedback")}:
+        return TypedValue("value", base.interface, "Goal" if name == "request" else "Feedback")
+    known = base.fields if base.role == "value" else None
+    kind = known.fields.get(name) if known else None
+    if kind is None or not kind.is_message:
+        return None
+    return TypedValue("list" if kind.is_list else "value", kind.base)
+
+
+def _registered(
+    call: ast.Call, type_of: Callable[[ast.expr], TypedValue | None]
+) -> Iterator[tuple[ast.expr, list[TypedValue | None]]]:
+    """Yield each callback that a call hands over, with the types of its parameters."""
+    named = {keyword.arg: keyword.value for keyword in call.keywords}
+    place = {"create_subscription": 0, "create_service": 0, "ActionServer": 1}.get(last_name(call.func))
+    if last_name(call.func) == "send_goal_async" and isinstance(call.func, ast.Attribute):
+        client = type_of(call.func.value)
+        callback = named.get("feedback_callback", call.args[1] if len(call.args) > 1 else None)
+        if client and client.role == "action_client" and callback:
+            yield callback, [TypedValue("feedback", client.interface)]
+    if place is None or len(call.args) <= place:
+        return
+    of = type_of(call.args[place])
+    callback = named.get("callback", named.get("execute_callback"))
+    callback = callback or (call.args[place + 2] if len(call.args) > place + 2 else None)
+    if of is None or of.role != "class":
+        # A callback of this and of a known type gets neither.
+        yield from [(callback, [])] if callback is not None else []
+        return
+    handle = TypedValue("goal_handle", of.interface)
+    types: list[TypedValue | None] = [handle] if place else [replace(of, role="value")]
+    if last_name(call.func) == "create_service":
+        types = [replace(of, role="value", part=part) for part in ("Request", "Response")]
+    if callback is not None:
+        yield callback, types
+    others = {"goal_callback": replace(of, role="value", part="Goal"), "cancel_callback": handle}
+    for name, kind in {**others, "handle_accepted_callback": handle}.items():
+        if place and name in named:
+            yield named[name], [kind]
+
+
+def _imported(tree: ast.Module) -> Mapping[str, TypedValue]:
+    """Map names, also dotted ones, to the interfaces that a program imports; not those that it binds otherwise."""
+    known: dict[str, TypedValue] = {}
+    for item in ast.walk(tree):
+        if isinstance(item, ast.ImportFrom) and item.module and (module := _MODULE.fullmatch(item.module)):
+            for alias in item.names:
+                interface = f"{module[1]}/{module[2]}/{alias.name}"
+                known[alias.asname or alias.name] = TypedValue("class", interface)
+    modules = {alias.name for item in ast.walk(tree) if isinstance(item, ast.Import) for alias in item.names}
+    for item in ast.walk(tree):
+        dotted = ast.unparse(item) if isinstance(item, ast.Attribute) else ""
+        package, _, rest = dotted.partition(".")
+        kind, _, name = rest.partition(".")
+        if {package, f"{package}.{kind}"} & modules and kind in PARTS and name.isidentifier():
+            known[dotted] = TypedValue("class", f"{package}/{kind}/{name}")
+    defined = {i.name for i in ast.walk(tree) if isinstance(i, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)}
+    return {name: kind for name, kind in known.items() if name not in defined}
+
+
+def _bindings(function: Function) -> dict[str, list[ast.expr | None]]:
+    """Map each name that a function binds to the values that it gets; None for one that is not a plain value."""
+    bound: dict[str, list[ast.expr | None]] = {}
+    plain: set[int] = set()
+    for item in function.own_nodes():
+        targets: list[ast.expr] = item.targets if isinstance(item, ast.Assign) else []
+        targets = [item.target] if isinstance(item, ast.AnnAssign) and item.value is not None else targets
+        for target in (target for target in targets if isinstance(target, ast.Name)):
+            assert isinstance(item, ast.Assign | ast.AnnAssign)
+            plain.add(id(target))
+            bound.setdefault(target.id, []).append(item.value)
+    for item in function.own_nodes():
+        if isinstance(item, ast.Name) and not isinstance(item.ctx, ast.Load) and id(item) not in plain:
+            bound.setdefault(item.id, []).append(None)
+        elif isinstance(item, ast.Global | ast.Nonlocal):
+            for name in item.names:
+                bound.setdefault(name, []).append(None)
+        elif isinstance(item, ast.ExceptHandler | ast.MatchAs) and item.name:
+            bound.setdefault(item.name, []).append(None)
+    return bound
+
+
+def _attributes(tree: ast.Module) -> dict[tuple[str, str], list[tuple[ast.expr | None, ast.AST]]]:
+    """Map (class, attribute of `self`) to the values that it gets, each with its method.
+
+    An attribute that the program also sets on something else than `self` is not in it.
+    """
+    values: dict[tuple[str, str], list[tuple[ast.expr | None, ast.AST]]] = {}
+    plain: set[int] = set()
+    for owner in (item for item in ast.walk(tree) if isinstance(item, ast.ClassDef)):
+        for method in (item for item in owner.body if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef)):
+            for item in ast.walk(method):
+                targets = item.targets if isinstance(item, ast.Assign) else []
+                for target in targets:
+                    if isinstance(target, ast.Attribute) and ast.unparse(target.value) == "self":
+                        plain.add(id(target))
+                        values.setdefault((owner.name, target.attr), []).append((item.value, method))  # type: ignore[attr-defined]
+    stored = (i for i in ast.walk(tree) if isinstance(i, ast.Attribute) and isinstance(i.ctx, ast.Store | ast.Del))
+    unsure = {item.attr for item in stored if id(item) not in plain}
+    return {key: given for key, given in values.items() if key[1] not in unsure}

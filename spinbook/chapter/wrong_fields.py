@@ -1,0 +1,126 @@
+"""Finds fields that messages do not have, and values that fields can't hold, without running a program.
+
+It only judges what it is sure of: variables that always hold the same type, parameters with annotations, and parameters
+of callbacks.
+"""
+
+from __future__ import annotations
+
+import ast
+import difflib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from spinbook.chapter.interface_fields import FieldType, InterfaceFields
+from spinbook.chapter.variable_types import Function, ProgramTypes, TypedValue
+
+#: What every message has besides its fields.
+_ALWAYS = frozenset(dir(object)) | {"get_fields_and_field_types", "SLOT_TYPES"}
+_IN_WORDS = {bool: "a bool", int: "an integer", float: "a float", str: "a string", bytes: "bytes"}
+_WHOLE = ("int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64")
+
+
+@dataclass(frozen=True)
+class WrongField:
+    """A field that does not exist, or a value of another type. `line` counts from 1 within the program."""
+
+    line: int
+    problem: str
+    fix: str
+
+
+def wrong_fields(program: str) -> list[WrongField]:
+    """Return what is wrong with the messages that a program makes and reads; none if it is not Python."""
+    try:
+        tree = ast.parse(program)
+    except (SyntaxError, ValueError, RecursionError):
+        return []
+    if "_msgs" not in program and "_srvs" not in program and "_interfaces" not in program and ".msg" not in program:
+        return []
+    if any(isinstance(i, ast.ExceptHandler) and "AttributeError" in ast.dump(i) for i in ast.walk(tree)):
+        return []
+    types = ProgramTypes(tree)
+    wrong = {item for function in types.functions for item in _in_function(function, types)}
+    return sorted(wrong, key=lambda item: (item.line, item.problem))
+
+
+def _in_function(function: Function, types: ProgramTypes) -> Iterator[WrongField]:
+    for item in function.own_nodes():
+        if isinstance(item, ast.Attribute):
+            yield from _attribute(item, types.value_of(item.value, function))
+        elif isinstance(item, ast.Call):
+            yield from _constructor(item, types.class_of(item.func, function))
+        elif isinstance(item, ast.Assign):
+            for target in (target for target in item.targets if isinstance(target, ast.Attribute)):
+                yield from _assignment(target, item.value, types.value_of(target.value, function))
+
+
+def _attribute(item: ast.Attribute, value: TypedValue | None) -> Iterator[WrongField]:
+    known = value.fields if value else None
+    if known is None or item.attr in _ALWAYS or item.attr.startswith("_"):
+        return
+    if item.attr not in known.fields and item.attr not in known.constants:
+        yield missing_field(item.attr, known, item.end_lineno or item.lineno)
+
+
+def _constructor(call: ast.Call, made: TypedValue | None) -> Iterator[WrongField]:
+    known = made.fields if made else None
+    if known is None or any(keyword.arg == "check_fields" for keyword in call.keywords):
+        return
+    if call.args and not isinstance(call.args[0], ast.Starred):
+        first = next(iter(known.fields), "field")
+        fix = f"Name the field: {known.name.split('.')[-1]}({first}={ast.unparse(call.args[0])})"
+        yield WrongField(call.lineno, f"`{known.name}` takes its fields by name only.", fix)
+    for keyword in call.keywords:
+        line = keyword.value.lineno
+        if keyword.arg is not None and keyword.arg not in known.fields:
+            yield missing_field(keyword.arg, known, line)
+        elif keyword.arg is not None:
+            yield from _value(keyword.arg, known.fields[keyword.arg], keyword.value, known.name, line)
+
+
+def _assignment(target: ast.Attribute, value: ast.expr, of: TypedValue | None) -> Iterator[WrongField]:
+    known = of.fields if of else None
+    if known is not None and target.attr in known.fields:
+        yield from _value(target.attr, known.fields[target.attr], value, known.name, target.lineno)
+
+
+def missing_field(name: str, known: InterfaceFields, line: int) -> WrongField:
+    """Return that a field does not exist, with the one that is probably meant."""
+    names = {each.lower(): each for each in (*known.constants, *known.fields)}
+    close = difflib.get_close_matches(name.lower(), names, n=1, cutoff=0.5) or list(names) * (len(names) == 1)
+    there = ", ".join(f"`{field}`" for field in known.fields) or "none"
+    fix = f"Did you mean `{names[close[0]]}`? " if close else ""
+    return WrongField(line, f"`{known.name}` has no field `{name}`.", f"{fix}Its fields: {there}.")
+
+
+def _value(name: str, kind: FieldType, value: ast.expr, owner: str, line: int) -> Iterator[WrongField]:
+    """Check a literal value: rclpy does not, and sends another number for an integer in a float field."""
+    try:
+        literal = ast.literal_eval(value)
+    except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
+        return
+    yield from wrong_literal(name, kind, literal, owner, line)
+
+
+def wrong_literal(name: str, kind: FieldType, value: object, owner: str, line: int) -> Iterator[WrongField]:
+    """Yield that a field can't hold a value, if so."""
+    if kind.is_list or kind.is_message or value is None or type(value) in _allowed(kind.base):
+        return
+    if type(value) not in _IN_WORDS:
+        return
+    problem = f"`{name}` of `{owner}` is {_article(kind.base)}, and this is {_IN_WORDS[type(value)]}, `{value!r}`."
+    is_whole = type(value) is int and kind.base.startswith("float")
+    fix = f"Write `{value}.0`: a whole number arrives as another one." if is_whole else f"Write {_article(kind.base)}."
+    yield WrongField(line, problem, fix)
+
+
+def _allowed(base: str) -> tuple[type, ...]:
+    kinds: Mapping[str, tuple[type, ...]] = {"string": (str,), "wstring": (str,), "bool": (bool,)}
+    if base in _WHOLE:
+        return (int, bool)
+    return kinds.get(base, (float,) if base.startswith("float") else (int, bool, bytes, str, float))
+
+
+def _article(base: str) -> str:
+    return f"an {base}" if base.startswith("int") else f"a {base}"

@@ -1,0 +1,159 @@
+"""Fields that do not exist, and values of other types, are reported before anything runs; nothing else is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from fences import IMPORTS, MAIN, TALKER, reading
+
+from spinbook.chapter.wrong_fields import wrong_fields
+
+MSGS = "from std_msgs.msg import Float64, String\nfrom geometry_msgs.msg import PoseArray, Twist\n"
+SRV = "from example_interfaces.srv import AddTwoInts\n"
+ACTION = "from example_interfaces.action import Fibonacci\nfrom rclpy.action import ActionClient, ActionServer\n"
+
+
+def node(setup: str, method: str) -> str:
+    """Return a class with a statement in its constructor and a method."""
+    return f"class A(Node):\n    def __init__(self):\n        super().__init__('a')\n        {setup}\n    {method}\n"
+
+
+@pytest.mark.parametrize(
+    ("code", "problem", "fix"),
+    [
+        (f"{MSGS}Float64(dat=1.0)", "`Float64` has no field `dat`.", "Did you mean `data`?"),
+        (f"{MSGS}Float64('a')", "`Float64` takes its fields by name only.", "Name the field: Float64(data='a')"),
+        (f"{MSGS}Float64(data=-2)", "`data` of `Float64` is a float64, and this is an integer, `-2`.", "Write `-2.0`"),
+        (f"{MSGS}m = String()\nm.data = 5", "`data` of `String` is a string, and this is an integer, `5`.", "Write a"),
+        (f"{MSGS}m = Twist()\nm.linear.X = 1.0", "`Vector3` has no field `X`.", "Did you mean `x`?"),
+        (f"{MSGS}m = PoseArray()\nm.poses[0].position.w", "`Point` has no field `w`.", "Its fields: `x`, `y`, `z`."),
+        (f"{MSGS}def f(m: String):\n    return m.text", "`String` has no field `text`.", "Did you mean `data`?"),
+        ("import std_msgs.msg\nm = std_msgs.msg.String()\nm.dat", "`String` has no field `dat`.", "Did you mean"),
+        (
+            MSGS + node("self.create_subscription(String, 'x', self.on, 10)", "def on(self, m):\n        m.dta"),
+            "`String` has no field `dta`.",
+            "Did you mean `data`?",
+        ),
+        (
+            f"{MSGS}n.create_subscription(String, 'x', lambda m: print(m.dta), 10)",
+            "`String` has no field `dta`.",
+            "Did you mean `data`?",
+        ),
+        (
+            SRV
+            + node("self.create_service(AddTwoInts, 'x', self.on)", "def on(self, q, a):\n        a.sum = q.a + q.c"),
+            "`AddTwoInts.Request` has no field `c`.",
+            "Its fields: `a`, `b`.",
+        ),
+        (
+            ACTION + node("ActionServer(self, Fibonacci, 'x', self.go)", "def go(self, h):\n        h.request.ordr"),
+            "`Fibonacci.Goal` has no field `ordr`.",
+            "Did you mean `order`?",
+        ),
+        (
+            f"{ACTION}f = Fibonacci.Feedback()\nf.numbers = [1]",
+            "`Fibonacci.Feedback` has no field `numbers`.",
+            "Did you",
+        ),
+        (
+            ACTION
+            + node(
+                "self.c = ActionClient(self, Fibonacci, 'x'); self.c.send_goal_async(g, feedback_callback=self.on)",
+                "def on(self, m):\n        m.feedback.part",
+            ),
+            "`Fibonacci.Feedback` has no field `part`.",
+            "Did you mean `sequence`?",
+        ),
+    ],
+)
+def test_a_wrong_field_is_found_with_the_right_one(code: str, problem: str, fix: str) -> None:
+    (wrong,) = wrong_fields(code)
+
+    assert wrong.problem == problem
+    assert wrong.fix.startswith(fix) or fix in wrong.fix
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        f"{MSGS}m = String()\nm = other()\nm.text",
+        f"{MSGS}def f(m):\n    m.text\nf(String())",
+        f"{MSGS}m = String(data='x')\nm.data.upper()\nm.get_fields_and_field_types()\nm.__slots__",
+        f"{MSGS}m = String()\nfor m in things:\n    m.text",
+        f"{MSGS}def f():\n    m = String()\n    def g(m):\n        return m.text\n    return g",
+        f"{MSGS}m = String()\ndef f():\n    m = other()\n    return m.text",
+        f"{MSGS}Float64(data='text', check_fields=True)",
+        f"{MSGS}try:\n    String().text\nexcept AttributeError:\n    pass",
+        f"{MSGS}class String:\n    text = 1\nString().text",
+        "from unknown_msgs.msg import Zip\nz = Zip()\nz.anything = 1",
+        "from sensor_msgs.msg import BatteryState as B\nb = B()\nb.power_supply_status = B.POWER_SUPPLY_STATUS_FULL",
+        f"{SRV}f = client.call_async(AddTwoInts.Request(a=1, b=2))\nf.result().anything",
+        MSGS
+        + node(
+            "self.create_subscription(String, 'x', self.on, 10); self.create_subscription(Other, 'y', self.on, 10)",
+            "def on(self, m):\n        m.text",
+        ),
+        MSGS + node("self.last = None", "def on(self, m):\n        self.last = String()\n        self.last.text"),
+    ],
+)
+def test_what_is_not_sure_is_not_reported(code: str) -> None:
+    assert wrong_fields(code) == []
+
+
+def test_a_chapter_says_the_line_unless_failing_is_meant(tmp_path: Path) -> None:
+    code = IMPORTS + TALKER + "        self.message = String()\n        self.message.dat = 'x'\n" + MAIN
+    titled = f'```python title="talker.py" WORD\n{code}```\n'
+
+    (problem,) = reading(tmp_path, titled.replace("WORD", "")).problems
+    assert (problem.line, problem.problem) == (11, "`String` has no field `dat`.")
+    assert reading(tmp_path, titled.replace("WORD", "raises")).problems == ()
+    assert reading(tmp_path, titled.replace("WORD", "expect-error")).problems == ()
+
+
+def test_a_program_that_never_calls_init_is_reported(tmp_path: Path) -> None:
+    (problem,) = reading(
+        tmp_path, '```python title="a.py"\n' + IMPORTS + TALKER + MAIN.replace("init", "ok") + "```"
+    ).problems
+
+    assert (problem.line, problem.problem) == (12, "nothing calls `rclpy.init` before this, so the program would fail.")
+
+
+@pytest.mark.parametrize(
+    ("command", "problem"),
+    [
+        ("topic pub /x std_msgs/msg/String '{dat: hi}'", "`String` has no field `dat`"),
+        ("topic pub --once -r 2 /x geometry_msgs/msg/Twist '{linear: {q: 1.0}}'", "`Vector3` has no field `q`"),
+        (
+            "topic pub /x std_msgs/msg/Int32 '{data: many}'",
+            "`data` of `Int32` is an int32, and this is a string, `'many'`",
+        ),
+        ("service call /x std_srvs/srv/SetBool '{dta: true}'", "`SetBool.Request` has no field `dta`"),
+        ("action send_goal /x example_interfaces/action/Fibonacci '{ordr: 3}'", "`Fibonacci.Goal` has no field `ordr`"),
+    ],
+)
+def test_a_wrong_field_in_a_command_is_found(tmp_path: Path, command: str, problem: str) -> None:
+    problems = reading(tmp_path, f"```bash\n# first\nros2 {command}\n```\n").problems
+
+    assert [(item.line, item.problem) for item in problems if "makes" not in item.problem] == [
+        (5, f"{problem} (`ros2 {command}`).")
+    ]
+
+
+def test_right_values_in_commands_are_left_alone(tmp_path: Path) -> None:
+    commands = [
+        "topic pub /x std_msgs/msg/Float64 '{data: 1}'",
+        "topic pub /x geometry_msgs/msg/TwistStamped '{header: auto, twist: {linear: {x: 1}}}'",
+        "topic pub -1 /x std_msgs/msg/String 'data: hi'",
+        "topic pub /x std_msgs/msg/Empty",
+    ]
+
+    assert reading(tmp_path, "```bash\n" + "".join(f"ros2 {each}\n" for each in commands) + "```\n").problems == ()
+
+
+def test_a_misspelt_command_is_corrected(tmp_path: Path) -> None:
+    (verb,) = reading(tmp_path, "```bash\nros2 topic ech /x\n```\n").problems
+    (noun,) = reading(tmp_path, "```bash\nros2 tpic list\n```\n").problems
+
+    assert "there is no `ros2 topic ech` here; did you mean `echo`?" in verb.problem
+    assert "there is no `ros2 tpic` here; did you mean `topic`?" in noun.problem
