@@ -24,8 +24,8 @@ compile() {
 # lark is the newer lark-parser, in the same place, and warns of nothing on a new Python.
 printf '%s\n' lark-parser lark >"$new/sourced.in"
 echo "Pinning what Spinbook needs ..." >&2
-compile pyproject.toml "$new/sourced.in" --extra colcon --extra bag --extra site --extra audit --extra cluster \
-    --extra lab --extra dev --output-file "$new/constraints.txt"
+compile pyproject.toml "$new/sourced.in" --extra notebooks --extra colcon --extra bag --extra site --extra audit \
+    --extra cluster --extra lab --extra dev --output-file "$new/constraints.txt"
 echo "Pinning ROS 2 ..." >&2
 compile pyproject.toml --extra ros --constraints "$new/constraints.txt" --output-file "$new/everything.txt"
 

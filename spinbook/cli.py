@@ -97,6 +97,7 @@ EXTRAS = {
     "distributed": "cluster",
     "rosbags": "bag",
     "rclpy": "ros",
+    **dict.fromkeys(("IPython", "ipykernel", "jupytext", "nbclient", "nbformat"), "notebooks"),
     **dict.fromkeys(("sphinx", "myst_nb", "myst_parser", "latex2mathml", "livereload", "sphinx_book_theme"), "site"),
 }
 

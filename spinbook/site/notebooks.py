@@ -142,7 +142,7 @@ _NAMED = re.compile(r"^spinbook(?:\[[\w,]*\])?\s*@\s*(\S+)", re.MULTILINE)
 
 def requirement(repository: Repository) -> str:
     """Return pip's requirement to run a notebook: Spinbook with ROS 2 and colcon, from the course's own source."""
-    return f"spinbook[ros,colcon] @ {_origin(repository)}"
+    return f"spinbook[ros,colcon,notebooks] @ {_origin(repository)}"
 
 
 def _origin(repository: Repository) -> str:

@@ -95,4 +95,7 @@ def test_the_dev_container_is_the_image() -> None:
 def test_a_courses_requirements_that_are_no_utf8_name_no_other_place_for_spinbook(tmp_path: Path) -> None:
     (tmp_path / "requirements.txt").write_bytes("numpy\n".encode("utf-16"))
 
-    assert requirement(Repository(tmp_path, "")) == "spinbook[ros,colcon] @ git+https://github.com/spinbook/spinbook"
+    assert (
+        requirement(Repository(tmp_path, ""))
+        == "spinbook[ros,colcon,notebooks] @ git+https://github.com/spinbook/spinbook"
+    )

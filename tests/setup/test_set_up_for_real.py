@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from no_compiler import without_compilers
 from sourced_ros import sourcing
 
 from ros_in_python.ros2.executables import without_bootstrap
@@ -133,3 +134,27 @@ def test_a_sourced_ros_is_used_alone_and_an_environment_with_wheels_makes_way_fo
         check=False,
     )
     assert tried.returncode == 0, tried.stdout[-3000:]
+
+
+def test_a_handout_needs_no_compiler_for_services_actions_and_the_courses_own_interfaces(tmp_path: Path) -> None:
+    course = checkout(tmp_path / "course")
+    subprocess.run([sys.executable, "-m", "spinbook", "handout"], cwd=course, check=True)
+    [archive] = (course / "build" / "handout").glob("*.zip")
+    shutil.unpack_archive(archive, tmp_path / "student")
+    [folder] = (tmp_path / "student").iterdir()
+    environment = {**clean_environment(), "PATH": without_compilers(tmp_path / "programs"), "HOME": str(tmp_path)}
+    python = getattr(sys, "_base_executable", sys.executable)
+
+    def run(*command: str) -> str:
+        done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout + done.stderr
+
+    run(python, "-m", "venv", ".venv")
+    run(".venv/bin/pip", "install", "--quiet", "-r", "requirements.txt")
+    for exercise in ("calibration", "joint_mover"):
+        shutil.copy(ROOT / "solutions" / exercise / "solution.py", folder / f"{exercise}.py")
+        said = run(".venv/bin/spinbook", "check", exercise, f"{exercise}.py")
+        assert "7 of 7 public checks" in said
+        assert "ompiling" not in said
+    assert "rmw_lockstep_prebuilt" in run(".venv/bin/spinbook", "doctor", "lockstep")

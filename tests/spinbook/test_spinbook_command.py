@@ -94,3 +94,14 @@ def test_ros2_run_without_ros_says_how_to_install_it(monkeypatch: pytest.MonkeyP
 
     assert done.exit_code == 1
     assert "pip install 'ros-jazzy-rclpy[fastrtps]'" in done.output
+
+
+def test_grading_and_checking_need_nothing_of_what_notebooks_need() -> None:
+    absent = ["IPython", "ipykernel", "jupytext", "nbclient", "nbformat"]
+    modules = ["grader.gradescope.run", "grader.classroom50.run", "grader.workers.worker", "spinbook.submit.program"]
+    modules += [verb.command.partition(":")[0] for verb in (*cli.INSTRUCTORS.values(), *cli.STUDENTS.values())]
+    code = f"import sys; sys.modules.update(dict.fromkeys({absent}))\nimport {', '.join(modules)}"
+
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+
+    assert done.returncode == 0, done.stderr

@@ -145,12 +145,13 @@ def test_the_means_to_install_are_there_and_can_be_read(real: HandedOut) -> None
         [file] = (real.folder / "wheels").glob(f"{compiled}-*.whl")
         line = f'./wheels/{file.name} ; platform_machine == "{platform.machine()}"'
         assert line in (real.folder / "requirements.txt").read_text().splitlines()
-    assert f"./wheels/{wheel.name}[ros,colcon,lab]" in (real.folder / "requirements.txt").read_text().splitlines()
+    installed = f"./wheels/{wheel.name}[ros,colcon,notebooks,lab]"
+    assert installed in (real.folder / "requirements.txt").read_text().splitlines()
     conda = yaml.safe_load((real.folder / "environment.yml").read_text())
     assert conda["channels"] == ["robostack-jazzy", "conda-forge"]
-    assert {"pip": [f"./wheels/{wheel.name}"]} in conda["dependencies"]
+    assert {"pip": [f"./wheels/{wheel.name}[notebooks]"]} in conda["dependencies"]
     container = json.loads((real.folder / ".devcontainer" / "devcontainer.json").read_text())
-    assert f"./wheels/{wheel.name}[colcon,lab]" in container["postCreateCommand"]
+    assert f"./wheels/{wheel.name}[colcon,notebooks,lab]" in container["postCreateCommand"]
 
 
 def test_the_wheel_holds_every_package_of_ours_that_its_modules_import() -> None:

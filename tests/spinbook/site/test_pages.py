@@ -122,7 +122,7 @@ def test_notebooks_to_download_begin_by_installing_what_is_missing(built: SmallC
         notebook = nbformat.read(file, as_version=4)
         nbformat.validate(notebook)
         first = next(cell for cell in notebook.cells if cell.cell_type == "code")
-        assert "spinbook[ros,colcon] @ git+https://github.com/spinbook/spinbook" in first.source
+        assert "spinbook[ros,colcon,notebooks] @ git+https://github.com/spinbook/spinbook" in first.source
         assert "pip" in first.source
 
 
