@@ -1,7 +1,8 @@
-"""`ros2 bag`: record, play and info, over bags in MCAP, which Foxglove and PlotJuggler open."""
+"""`ros2 bag`: record, play and info, over bags in MCAP, which Foxglove and PlotJuggler open, and in sqlite3."""
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable
 from contextlib import contextmanager
@@ -47,7 +48,7 @@ bag = Menu(
 @click.argument("topics", nargs=-1)
 @click.option("-a", "--all", "all_topics", is_flag=True, help="Record every topic.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The bag's folder.  [default: rosbag2_DATE]")
-@click.option("-s", "--storage", type=click.Choice(["mcap"]), default="mcap", help="How it is stored: always as MCAP.")
+@click.option("-s", "--storage", type=click.Choice(["mcap", "sqlite3"]), default="mcap", help="How it is stored.")
 @click.option("--use-sim-time", is_flag=True, help="Take the time from /clock.")
 def record(topics: tuple[str, ...], all_topics: bool, output: Path | None, storage: str, use_sim_time: bool) -> None:
     """Write messages into a bag until Ctrl-C.
@@ -61,7 +62,7 @@ def record(topics: tuple[str, ...], all_topics: bool, output: Path | None, stora
     folder = output or Path(datetime.now().strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     if folder.exists():
         raise CommandError(f"[ERROR] [ros2bag]: Output folder '{folder}' already exists.", "Name another one: -o NAME")
-    with open_graph(use_sim_time=use_sim_time) as graph, _writer(folder) as writer:
+    with open_graph(use_sim_time=use_sim_time) as graph, _writer(folder, storage) as writer:
         from ros_in_python.ros2.graph import absolute
 
         recording = _Recording(graph, writer, {absolute(topic) for topic in topics})
@@ -93,11 +94,12 @@ class _Recording:
                 self._subscribe(topic.name, topic.types[0])
 
     def _subscribe(self, topic: str, kind: str) -> None:
-        from ros_in_python.ros2 import qos
+        from ros_in_python.ros2 import bag_qos, qos
 
         message = interfaces.message_class(kind)
         _know(self._types, kind)
-        connection = self._writer.add_connection(topic, kind, typestore=self._types)
+        offered = [bag_qos.of_profile(end.qos_profile) for end in self._graph.publishers(topic)]
+        connection = self._writer.add_connection(topic, kind, typestore=self._types, offered_qos_profiles=offered)
         profile = qos.suiting(self._graph, topic, qos.QosOptions("sensor_data"))
 
         def arrived(data: bytes) -> None:
@@ -121,9 +123,13 @@ def play(bag_path: Path, rate: float, loop: bool, topics: tuple[str, ...]) -> No
       ros2 bag play swing --rate 2 --loop
     """
     with _reader(bag_path) as reader, open_graph() as graph:
+        from ros_in_python.ros2 import bag_qos
+
         connections = [one for one in reader.connections if not topics or one.topic in topics]
         publishers = {
-            one.topic: graph.node.create_publisher(interfaces.message_class(one.msgtype), one.topic, 10)
+            one.topic: graph.node.create_publisher(
+                interfaces.message_class(one.msgtype), one.topic, bag_qos.to_profile(one.ext.offered_qos_profiles)
+            )
             for one in connections
         }
         graph.settle(lambda: any(publisher.get_subscription_count() for publisher in publishers.values()))
@@ -146,14 +152,14 @@ def info(bag_path: Path) -> None:
       ros2 bag info swing
     """
     with _reader(bag_path) as reader:
-        files = sorted(bag_path.glob("*.mcap")) if bag_path.is_dir() else [bag_path]
+        storage, files = _stored(bag_path)
         size = sum(file.stat().st_size for file in files)
         start, end = reader.start_time, reader.start_time + reader.duration
         rows = [
             ("Files", " ".join(file.name for file in files)),
             ("Bag size", f"{size / 1024:.1f} KiB"),
-            ("Storage id", "mcap"),
-            ("ROS Distro", reader.ros_distro if hasattr(reader, "ros_distro") else "jazzy"),
+            ("Storage id", storage),
+            ("ROS Distro", reader.ros_distro or "unknown"),
             ("Duration", f"{reader.duration / SECOND:.9f}s"),
             ("Start", _moment(start)),
             ("End", _moment(end)),
@@ -169,20 +175,39 @@ def info(bag_path: Path) -> None:
             title = " " * len(title)
 
 
+def _stored(bag: Path) -> tuple[str, list[Path]]:
+    """Return how a bag is stored, and its files."""
+    storages = {".mcap": "mcap", ".db3": "sqlite3"}
+    files = [file for file in sorted(bag.iterdir()) if file.suffix in storages] if bag.is_dir() else [bag]
+    return (storages.get(files[0].suffix, "unknown") if files else "unknown"), files
+
+
 def _moment(at: int) -> str:
     return f"{datetime.fromtimestamp(at / SECOND).strftime('%b %d %Y %H:%M:%S')}.{at % SECOND:09d} ({at / SECOND:.9f})"
 
 
 @contextmanager
-def _writer(folder: Path) -> Iterator[Any]:
+def _writer(folder: Path, storage: str) -> Iterator[Any]:
     rosbag2 = _library()
-    writer = rosbag2.Writer(folder, version=9, storage_plugin=rosbag2.StoragePlugin.MCAP)
+    writer = rosbag2.Writer(folder, version=9, storage_plugin=rosbag2.StoragePlugin[storage.upper()])
     writer.open()
     try:
         yield writer
     finally:
         # The library's own context manager leaves a bag unfinished after Ctrl-C.
         writer.close()
+        _number(folder)
+
+
+def _number(folder: Path) -> None:
+    """Name a bag's file as ROS 2 does, which begins a new one when it is large: NAME_0.mcap."""
+    metadata = folder / "metadata.yaml"
+    text = metadata.read_text(encoding="utf-8")
+    for file in _stored(folder)[1]:
+        numbered = file.with_name(f"{file.stem}_0{file.suffix}")
+        text = re.sub(rf"\b{re.escape(file.name)}$", numbered.name, text, flags=re.MULTILINE)
+        file.rename(numbered)
+    metadata.write_text(text, encoding="utf-8")
 
 
 @contextmanager
