@@ -6,13 +6,10 @@ recording depends on the program alone.
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 import time
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 from grader.recording.recording import Ending, Endpoint, ReceivedMessage, Recording
@@ -56,29 +53,24 @@ def run(
 ) -> Recording:
     """Start the student's program and run it through the scenario; every fault of the program is in the recording.
 
-    `start` gets the socket of the hub, to which each of the program's processes has to connect before it runs any of
-    the student's code. A submission of several programs has `programs` instead, by their files; `companions` are the
-    author's own.
+    `start` gets the socket that the program inherits, through which each of its processes has to connect to the hub
+    before it runs any of the student's code. A submission of several programs has `programs` instead, by their files;
+    `companions` are the author's own.
 
     Raises `ExerciseError` if the author has something to fix; any other exception is a fault of the machine or of
     ours.
     """
     began = time.monotonic()
-    # The path of a socket has to be short, so the caller's folder is not used: see WorkerPool.
-    folder = Path(tempfile.mkdtemp(prefix="spinbook-hub-"))
-    try:
-        with Hub(folder, limits) as hub:
-            student: RunningProgram
-            if programs or companions:
-                student = Team(hub, folder, task.scenario, programs or {task.file_name: start}, companions)
-            else:
-                student = start(hub.path)
-            try:
-                return ScenarioRun(task, student, hub).run(began)
-            finally:
-                student.kill()
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
+    with Hub(limits=limits) as hub:
+        student: RunningProgram
+        if programs or companions:
+            student = Team(hub, task.scenario, programs or {task.file_name: start}, companions)
+        else:
+            student = start(hub.add_program())
+        try:
+            return ScenarioRun(task, student, hub).run(began)
+        finally:
+            student.kill()
 
 
 class ScenarioRun:

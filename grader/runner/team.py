@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from grader.recording.events import ProgramExit
 from grader.runner.program import ExitStatus, PrintedOutput, RunningProgram
 from grader.scenario.scenario import Scenario
 from rmw_lockstep.hub import Hub
 
-#: Starts a program, which has to connect to the hub at this socket.
-Start = Callable[[Path], RunningProgram]
+#: Starts a program, which has to connect to the hub through this inherited socket.
+Start = Callable[[int], RunningProgram]
 
 
 @dataclass(frozen=True)
@@ -26,12 +25,12 @@ class ProgramsTogether:
 class Team:
     """All programs of a run, as one program. It ends when one of the student's programs ends by itself."""
 
-    def __init__(self, hub: Hub, folder: Path, scenario: Scenario, programs: Mapping[str, Start],
-                 companions: Sequence[Start]) -> None:  # fmt: skip
+    def __init__(
+        self, hub: Hub, scenario: Scenario, programs: Mapping[str, Start], companions: Sequence[Start]
+    ) -> None:
         """Start the companions, and those programs that run from the beginning."""
         self._hub, self._programs = hub, programs
-        # The first one connects to the hub's own socket.
-        self._paths = {name: _socket(hub, folder, number) for number, name in enumerate(programs)}
+        self._sockets = {name: hub.add_program() for name in programs}
         self._listeners = {name: number for number, name in enumerate(programs)}
         self._running: dict[str, RunningProgram] = {}
         self._stopped: list[RunningProgram] = []
@@ -40,9 +39,7 @@ class Team:
         """The program that ended by itself."""
         self.exits: list[ProgramExit] = []
         later = {one.file for one in scenario.programs if one.starts > 0}
-        self._companions = [
-            start(_socket(hub, folder, len(programs) + number)) for number, start in enumerate(companions)
-        ]
+        self._companions = [start(hub.add_program()) for start in companions]
         for name in programs:
             if name not in later:
                 self.start(name)
@@ -51,7 +48,7 @@ class Team:
     def start(self, name: str) -> None:
         """Start a program of the submission, unless it runs."""
         if name not in self._running:
-            self._running[name] = self._programs[name](self._paths[name])
+            self._running[name] = self._programs[name](self._sockets[name])
             self._see()
 
     def stop(self, name: str, now: int) -> None:
@@ -129,11 +126,3 @@ class Team:
         if self.ended in exits:
             return exits[self.ended]
         return next(iter(exits.values()), None) or self._stopped[0].kill()
-
-
-def _socket(hub: Hub, folder: Path, number: int) -> Path:
-    if not number:
-        return hub.path
-    own = folder / str(number)
-    own.mkdir(exist_ok=True)
-    return hub.add_listener(own)

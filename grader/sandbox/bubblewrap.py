@@ -104,7 +104,6 @@ def _start(command: list[str], passed: Mapping[int, int]) -> Builder:
     return Builder(pid, input_to, output_at, errors_at)
 
 
-# Most steps are the same for every program; only the hub's socket is at another path in each run.
 @lru_cache(maxsize=1024)
 def _encoded(step: Mount) -> bytes:
     return b"".join(os.fsencode(option) + b"\0" for option in _options(step))

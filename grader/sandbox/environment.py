@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 
-from grader.sandbox.program import Paths, ProgramSpec
+from grader.sandbox.program import HUB, Paths, ProgramSpec
 from groundwork.clean_environment import GUARD, without_foreign
 
 #: What Python and ROS 2 themselves need. Nothing else from this process's environment reaches a sandbox.
@@ -44,7 +44,7 @@ def for_trusted(names: tuple[str, ...] = (*RUNTIME_VARIABLES, *WORKER_VARIABLES)
 def for_program(program: ProgramSpec, paths: Paths) -> dict[str, str]:
     """Return a program's whole environment: the variables of Python, of ROS 2 and of its folders, and its own."""
     needed = {name: os.environ[name] for name in (*RUNTIME_VARIABLES, "LD_PRELOAD") if name in os.environ}
-    hub = {"RMW_LOCKSTEP_SOCKET": paths.hub} if paths.hub else {}
+    hub = {"RMW_LOCKSTEP_SOCKET": f"fd:{HUB}"} if program.hub is not None else {}
     return {
         **needed,
         **hub,

@@ -15,7 +15,7 @@ import groundwork
 import rmw_lockstep
 import ros_in_python
 from grader.sandbox.middleware import library_folder
-from grader.sandbox.program import HUB, SUBMISSION
+from grader.sandbox.program import SUBMISSION
 from interface_compiler import activation
 
 HOME = "/home/student"
@@ -106,14 +106,6 @@ def mounts(readonly: tuple[Path, ...], hidden: tuple[Path, ...], scratch_bytes: 
             plan.add("seal", str(mask))
     plan.add("seal", "/")
     return tuple(plan.steps)
-
-
-def with_hub(plan: tuple[Mount, ...], hub: Path) -> tuple[Mount, ...]:
-    """Return the steps that also show the hub's socket, always at the same path inside."""
-    made = {"/", *(step.path for step in plan)}
-    folders = (Mount("folder", str(folder)) for folder in reversed(Path(HUB).parents) if str(folder) not in made)
-    *others, seal = plan
-    return (*others, *folders, Mount("bind", HUB, str(hub)), seal)
 
 
 class _MountPlan:

@@ -10,9 +10,10 @@ import signal
 import socket
 import subprocess
 from collections.abc import Sequence
+from dataclasses import replace
 from types import TracebackType
 
-from grader.sandbox import bubblewrap, filesystem, namespaces
+from grader.sandbox import bubblewrap, filesystem, landlock, namespaces
 from grader.sandbox.confine import StartRequest
 from grader.sandbox.environment import RUNTIME_VARIABLES, for_trusted
 from grader.sandbox.isolation import forget
@@ -179,20 +180,21 @@ class ForkServer:
             SandboxError: if the sandbox could not be made: our fault or the machine's, never the student's.
         """
         limits = limits or Limits()
-        start = StartRequest(program, isolation, limits, core, *_root(program, isolation, limits))
-        passed = [_memory_file(pickle.dumps(start))]
-        if isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
-            passed.append(os.dup(namespaces.user_namespace_of_this_process()))
+        # Where the author's files are stays here: a program could search its memory for it.
+        shown = replace(program, hidden=())
+        start = StartRequest(shown, isolation, limits, core, *_root(program, isolation, limits))
         ours, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         output, output_end = os.pipe2(os.O_CLOEXEC)
-        passed[1:1] = [os.dup(control.fileno()), output_end]
-        control.close()
+        passed = [_memory_file(pickle.dumps(start)), control.detach(), output_end]
+        if program.hub is not None:
+            passed.append(os.dup(program.hub))
         try:
+            passed += _confinement(program, isolation)
             self._zygote.request(passed)
         except OSError as fault:
             os.close(output)
             ours.close()
-            raise SandboxError(f"the process that starts students is gone: {fault}") from fault
+            raise SandboxError(f"the process that starts students is gone, or can't confine them: {fault}") from fault
         finally:
             for number in passed:
                 os.close(number)
@@ -234,6 +236,7 @@ class _Zygote:
             command,
             pass_fds=[theirs.fileno()],
             env=environment,
+            cwd="/",
             stdin=subprocess.DEVNULL,
             start_new_session=True,
         )
@@ -262,9 +265,14 @@ def _root(program: ProgramSpec, isolation: Isolation, limits: Limits) -> tuple[t
     if isolation not in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
         return (), b""
     plan = filesystem.mounts(program.readonly, program.hidden, limits.file_bytes)
-    if program.hub:
-        plan = filesystem.with_hub(plan, program.hub)
     return ((), bubblewrap.options(plan)) if isolation is Isolation.BUBBLEWRAP else (plan, b"")
+
+
+def _confinement(program: ProgramSpec, isolation: Isolation) -> list[int]:
+    """Return the descriptor that confines a program: of a user namespace or of Landlock rules."""
+    if isolation is Isolation.LANDLOCK:
+        return [landlock.rules(program.readonly, program.hidden)]
+    return [] if isolation is Isolation.NONE else [os.dup(namespaces.user_namespace_of_this_process())]
 
 
 def _memory_file(content: bytes) -> int:

@@ -1,8 +1,7 @@
 """On a machine without user namespaces: Landlock keeps a student's program away from the files of this machine.
 
-Weaker than the namespaces: the program sees the ids and command lines of other processes, and can connect to Unix
-sockets that its user may write to. It can neither read the memory of others nor, from Linux 6.12 on, signal them
-(before that, a seccomp filter refuses it every signal).
+Weaker than the namespaces: the program sees the ids and command lines of other processes. It can neither read the
+memory of others nor, from Linux 6.12 on, signal them (before that, a seccomp filter refuses it every signal).
 
 Source: landlock(7) and Documentation/userspace-api/landlock.rst of the Linux kernel.
 """
@@ -68,41 +67,56 @@ def student_user() -> int:
     return dedicated_user()
 
 
-def restrict(paths: Paths, readonly: Sequence[Path], hidden: Sequence[Path]) -> None:
-    """Confine this process, and everything it starts, to reading Python and ROS 2 and writing its own folders.
+def rules(readonly: Sequence[Path], hidden: Sequence[Path]) -> int:
+    """Return a descriptor of the rules that all programs have: they may read Python, ROS 2 and /proc.
 
-    Needs no_new_privs. It may also read /proc, in which its processes check whether they are idle. It then sees others'
-    command lines; Landlock itself keeps their memory, environment and files closed.
+    In /proc a program's processes check whether they are idle. It then sees others' command lines; Landlock itself
+    keeps their memory, environment and files closed. The runner makes the rules, so that no program's process has ever
+    had the hidden paths in its memory.
 
     Args:
-        paths: its own folders.
         readonly: what else it may read.
         hidden: what it may not read, although it is inside something that it may; the names remain visible.
 
     Raises:
         OSError: if the kernel has no Landlock.
     """
+    ruleset = _new_ruleset()
+    for path in (*filesystem.system(), *filesystem.interpreter(), *readonly):
+        _allow_reading(ruleset, path, [path.resolve() for path in (*filesystem.own_packages(), *hidden)])
+    _allow(ruleset, Path("/proc"), _READ_FILE | _READ_FOLDER)
+    for path in map(Path, ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")):
+        _allow(ruleset, path, (_READ_FILE | _WRITE_FILE) & _file_rights())
+    return ruleset
+
+
+def restrict(ruleset: int, paths: Paths) -> None:
+    """Confine this process, and everything it starts, to the rules, and to its own folders. Needs no_new_privs."""
+    _allow(ruleset, Path(paths.folder), _READ)
+    for path in (Path(paths.home), Path(paths.temporary)):
+        _allow(ruleset, path, _file_rights())
+    syscalls.system_call(_RESTRICT_SELF, ctypes.c_int(ruleset), ctypes.c_uint32(0), what="landlock_restrict_self")
+    os.close(ruleset)
+
+
+@cache
+def _file_rights() -> int:
     files = _FILES_FROM_VERSION_1
     for since, right in ((2, _REFER), (3, _TRUNCATE), (5, _DEVICE_CONTROL)):
         files |= right if version() >= since else 0
+    return files
+
+
+def _new_ruleset() -> int:
     handled = (ctypes.c_uint64 * 3)(
-        files,
+        _file_rights(),
         _TCP_BIND_AND_CONNECT if version() >= 4 else 0,
         _ABSTRACT_SOCKETS_AND_SIGNALS if version() >= 6 else 0,
     )
     size = 24 if version() >= 6 else 16 if version() >= 4 else 8
-    ruleset = syscalls.system_call(
+    return syscalls.system_call(
         _CREATE_RULESET, handled, ctypes.c_size_t(size), ctypes.c_uint32(0), what="landlock_create_ruleset"
     )
-    for path in (*filesystem.system(), *filesystem.interpreter(), *readonly, Path(paths.folder)):
-        _allow_reading(ruleset, path, [path.resolve() for path in hidden])
-    _allow(ruleset, Path("/proc"), _READ_FILE | _READ_FOLDER)
-    for path in map(Path, ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")):
-        _allow(ruleset, path, (_READ_FILE | _WRITE_FILE) & files)
-    for path in (Path(paths.home), Path(paths.temporary)):
-        _allow(ruleset, path, files)
-    syscalls.system_call(_RESTRICT_SELF, ctypes.c_int(ruleset), ctypes.c_uint32(0), what="landlock_restrict_self")
-    os.close(ruleset)
 
 
 def _allow_reading(ruleset: int, path: Path, hidden: Sequence[Path]) -> None:

@@ -136,13 +136,12 @@ class ProcessTree:
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
-def make_paths(files: Mapping[str, bytes], owner: int | None, hub: Path | None) -> Paths:
+def make_paths(files: Mapping[str, bytes], owner: int | None) -> Paths:
     """Make a folder in the machine's temporary folder, with the submission's files and a home.
 
     Args:
         files: name to content.
         owner: the user that the home is given to; None for the current one.
-        hub: the hub's socket, which the program sees at its real path.
     """
     top = Path(tempfile.mkdtemp(prefix="spinbook-student-"))
     top.chmod(0o755)
@@ -153,4 +152,4 @@ def make_paths(files: Mapping[str, bytes], owner: int | None, hub: Path | None) 
             os.chown(folder, owner, owner)
     for name, content in files.items():
         write_file(submission, name, content)
-    return Paths(str(submission), str(home), str(temporary), str(hub) if hub else None)
+    return Paths(str(submission), str(home), str(temporary))

@@ -11,7 +11,9 @@ from enum import Enum
 from pathlib import Path, PurePosixPath
 
 SUBMISSION = "/submission"
-HUB = "/run/lockstep/hub"
+
+#: The descriptor of every program through which its processes connect to the hub.
+HUB = 1000
 
 #: The message to the fork server that requests a supervisor. Any other message is the name of a module to import.
 START_REQUEST = b" start"
@@ -61,8 +63,8 @@ class ProgramSpec:
         environment: variables beyond those that Python and ROS 2 need; nothing of the caller's own is passed on.
         readonly: files and folders of this machine that the program sees, read-only, at the same path.
         hidden: files and folders of this machine that it never sees, even inside one that it does.
-        hub: the socket of the hub that each of its processes connects to; alone in a folder that belongs to the caller.
-            None: it runs in the computer's time, and reaches no other program.
+        hub: the descriptor, in the caller's process, of the socket through which each of its processes connects to the
+            hub. None: it runs in the computer's time, and reaches no other program.
         preloaded: run in a fork of the fork server, in which rclpy has been imported already. Otherwise in a new Python
         process.
     """
@@ -74,7 +76,7 @@ class ProgramSpec:
     readonly: tuple[Path, ...] = ()
     hidden: tuple[Path, ...] = ()
     preloaded: bool = True
-    hub: Path | None = None
+    hub: int | None = None
 
     def __post_init__(self) -> None:
         """Check that all paths are inside the submission's folder and that the main file exists.
@@ -94,12 +96,11 @@ class ProgramSpec:
 
 @dataclass(frozen=True)
 class Paths:
-    """The folders of a student's program, as it sees them: its files, its home, for temporary files; and its hub."""
+    """The folders of a student's program, as it sees them: its files, its home, for temporary files."""
 
     folder: str
     home: str
     temporary: str
-    hub: str | None = None
 
 
 _MIB = 1024 * 1024

@@ -1,8 +1,9 @@
 """The system calls that no student's node needs and that would weaken the sandbox: refused by a seccomp filter.
 
 Denied are: inspecting other processes, changing mounts or namespaces, keys, kernel interfaces with a history of
-holes, and memory that no limit counts (System V shared memory, memfd). The filter lists what is refused, and not what
-is allowed, so it never breaks a correct node. The confinement comes from namespaces and from dropping all capabilities.
+holes, memory that no limit counts (System V shared memory, memfd), and all sockets except connected pairs. The filter
+lists what is refused, and not what is allowed, so it never breaks a correct node. The confinement comes from namespaces
+and from dropping all capabilities.
 
 Source: seccomp(2), bpf(4), and the kernel's tables of system calls for x86-64 and arm64.
 """
@@ -31,6 +32,7 @@ _MODE_FILTER = 2
 _LOAD = 0x20  # BPF_LD | BPF_W | BPF_ABS
 _EQUAL = 0x15  # BPF_JMP | BPF_JEQ | BPF_K
 _ANY_BIT = 0x45  # BPF_JMP | BPF_JSET | BPF_K
+_AND = 0x54  # BPF_ALU | BPF_AND | BPF_K
 _RETURN = 0x06  # BPF_RET | BPF_K
 
 _NUMBER_AT, _ARCHITECTURE_AT, _ARGUMENT_AT = 0, 4, 16  # offsets in struct seccomp_data, little-endian
@@ -98,6 +100,7 @@ _FORBIDDEN: dict[str, tuple[int | None, int | None]] = {
     "msgget": (68, 186),
     "mq_open": (240, 180),
     "memfd_secret": (447, 447),
+    "connect": (42, 203),
 }
 # Reported as absent: callers then fall back to a call that is allowed.
 _ABSENT: dict[str, tuple[int, int]] = {"memfd_create": (319, 279), "clone3": (435, 435)}
@@ -110,8 +113,13 @@ _SIGNALS: dict[str, tuple[int, int]] = {
     "rt_sigqueueinfo": (129, 138),
     "pidfd_send_signal": (424, 424),
 }
+# No family of sockets exists. A program's processes get their connections to the hub by an inherited socket.
+_NO_FAMILY: dict[str, tuple[int, int]] = {"socket": (41, 198)}
 _CLONE = (56, 220)
-_SOCKET = (41, 198)
+_SOCKETPAIR = (53, 199)
+# The types that are connected for good. A datagram socket of a pair can still send to any address.
+_PAIRS = (socket.SOCK_STREAM, socket.SOCK_SEQPACKET)
+_TYPE_BITS = 0xF  # the rest are flags (SOCK_TYPE_MASK in the kernel's net.h)
 
 Instruction = tuple[int, int, int, int]
 
@@ -123,7 +131,7 @@ def supported() -> bool:
 
 @cache
 def program(*, no_signals: bool = False) -> bytes:
-    """Return the filter in the kernel's format (an array of struct sock_filter): of sockets, Unix sockets only.
+    """Return the filter in the kernel's format (an array of struct sock_filter).
 
     Args:
         no_signals: also refuse every signal to another process, if neither a pid namespace nor Landlock does.
@@ -148,16 +156,19 @@ def program(*, no_signals: bool = False) -> bytes:
     lines += _when([number for number in forbidden.values() if number is not None], errno.EPERM)
     lines += _when([pair[column] for pair in _ABSENT.values()], errno.ENOSYS)
     lines += _when([pair[column] for pair in _IGNORED.values()], 0)
+    lines += _when([pair[column] for pair in _NO_FAMILY.values()], errno.EAFNOSUPPORT)
     lines += [
         (_EQUAL, 0, 4, _CLONE[column]),
         (_LOAD, 0, 0, _ARGUMENT_AT),
         (_ANY_BIT, 0, 1, _NEW_NAMESPACES),
         _refuse(errno.EPERM),
         (_RETURN, 0, 0, _ALLOW),
-        (_EQUAL, 0, 3, _SOCKET[column]),
-        (_LOAD, 0, 0, _ARGUMENT_AT),
-        (_EQUAL, 1, 0, int(socket.AF_UNIX)),
-        _refuse(errno.EAFNOSUPPORT),
+        (_EQUAL, 0, 5, _SOCKETPAIR[column]),
+        (_LOAD, 0, 0, _ARGUMENT_AT + 8),
+        (_AND, 0, 0, _TYPE_BITS),
+        (_EQUAL, 2, 0, int(_PAIRS[0])),
+        (_EQUAL, 1, 0, int(_PAIRS[1])),
+        _refuse(errno.EPERM),
         (_RETURN, 0, 0, _ALLOW),
     ]
     return b"".join(struct.pack("=HBBI", *line) for line in lines)

@@ -13,8 +13,8 @@ from typing import NoReturn
 
 from grader.sandbox import bubblewrap, filesystem, landlock, namespaces, processes, syscalls
 from grader.sandbox import program as limits
-from grader.sandbox.confine import StartRequest, confine
-from grader.sandbox.program import HUB, SUBMISSION, Isolation, Paths, ProgramSpec
+from grader.sandbox.confine import PassedDescriptors, StartRequest, confine
+from grader.sandbox.program import SUBMISSION, Isolation, Paths, ProgramSpec
 
 
 @dataclass(frozen=True)
@@ -25,28 +25,24 @@ class StudentToRun:
     paths: Paths
 
 
-def supervise(start: StartRequest, control: int, output: int, users: int = -1) -> StudentToRun:
+def supervise(start: StartRequest, passed: PassedDescriptors) -> StudentToRun:
     """Start a student's program and watch it until it is dead. Return only in the student; the supervisor exits.
 
     Args:
         start: what to start.
-        control: the socket to the runner.
-        output: where the student's standard output and error go.
-        users: the user namespace that the runner made for its students, at the levels with namespaces.
+        passed: the descriptors that came with it.
     """
-    reported = False
+    control, reported = passed.control, False
     try:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         syscalls.prctl(syscalls.PR_SET_CHILD_SUBREAPER, 1)  # orphans of the student or bubblewrap are reaped here
         os.chdir("/")
         other_tasks = _other_tasks(start)
-        if start.program.hub:
-            _admit_student_alone(start.program.hub, _owner(start.isolation))
-        sandbox, paths = _build(start, users)
-        child = _fork_student(start, paths, sandbox, other_tasks, output)
+        sandbox, paths = _build(start, passed)
+        child = _fork_student(start, paths, sandbox, other_tasks, passed)
         if isinstance(child, StudentToRun):
             return child
-        os.close(output)
+        os.close(passed.output)
         started = {"event": "started", "pid": child, "folder": paths.folder}
         _report(control, started | {"init": sandbox.init, "own_processes": sorted(sandbox.own_processes)})
         reported = True
@@ -65,30 +61,20 @@ def refuse(control: int, reason: str) -> NoReturn:
     os._exit(0)
 
 
-def _build(start: StartRequest, users: int) -> tuple[namespaces.Namespaces | processes.ProcessTree, Paths]:
+def _build(
+    start: StartRequest, passed: PassedDescriptors
+) -> tuple[namespaces.Namespaces | processes.ProcessTree, Paths]:
     program = start.program
     if start.isolation in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES):
+        assert passed.confinement is not None
         if start.isolation is Isolation.BUBBLEWRAP:
-            sandbox = bubblewrap.build(start.options, users)
+            sandbox = bubblewrap.build(start.options, passed.confinement)
         else:
-            sandbox = namespaces.build(start.plan, users)
+            sandbox = namespaces.build(start.plan, passed.confinement)
         namespaces.write_files(program.files)
-        return sandbox, Paths(SUBMISSION, filesystem.HOME, "/tmp", HUB if program.hub else None)
-    owner = _owner(start.isolation)
-    paths = processes.make_paths(program.files, owner, program.hub)
+        return sandbox, Paths(SUBMISSION, filesystem.HOME, "/tmp")
+    paths = processes.make_paths(program.files, _owner(start.isolation))
     return processes.ProcessTree(Path(paths.folder).parent), paths
-
-
-def _admit_student_alone(hub: Path, owner: int | None) -> None:
-    """Let the student, and no other user of this machine, use the hub's socket.
-
-    With namespaces it gets the socket alone, without the folder. Without them, and as root, it is another user.
-    """
-    other_user = owner is not None and owner != os.geteuid()
-    hub.parent.chmod(0o711 if other_user else 0o700)
-    hub.chmod(0o600 if other_user else 0o666)
-    if other_user:
-        os.chown(hub, owner or 0, -1)
 
 
 def _fork_student(
@@ -96,7 +82,7 @@ def _fork_student(
     paths: Paths,
     sandbox: namespaces.Namespaces | processes.ProcessTree,
     other_tasks: int,
-    output: int,
+    passed: PassedDescriptors,
 ) -> int | StudentToRun:
     """Fork the student. Return its pid in the parent and, once it is confined, what to run in the child."""
     fault_at, fault_to = os.pipe()
@@ -105,7 +91,7 @@ def _fork_student(
         try:
             if isinstance(sandbox, namespaces.Namespaces):
                 sandbox.forget()
-            confine(start, paths, other_tasks, output, keep_open=fault_to)
+            confine(start, paths, other_tasks, passed, keep_open=fault_to)
         except BaseException as fault:
             os.write(fault_to, str(fault).encode() or repr(fault).encode())
             os._exit(1)

@@ -22,6 +22,7 @@ from pathlib import Path
 from grader import preloaded
 from grader.sandbox import callers, filesystem, heap, middleware, seccomp, syscalls, uncaught
 from grader.sandbox import middleware as type_support
+from grader.sandbox.confine import PassedDescriptors
 from grader.sandbox.environment import for_program
 from grader.sandbox.middleware import choosable
 from grader.sandbox.program import START_REQUEST, Paths, ProgramSpec
@@ -52,8 +53,8 @@ def run_program(program: ProgramSpec, paths: Paths) -> None:
             os.environ[name] = value
     if not program.preloaded:
         os.execv(sys.executable, [sys.executable, path, *program.arguments])
-    if paths.hub:
-        middleware.connect(paths.hub)
+    if program.hub is not None:
+        middleware.connect(variables["RMW_LOCKSTEP_SOCKET"])
     module = _prepare_main(path, program.arguments)
     os.sched_getaffinity = lambda pid: set(range(CORES_SHOWN))
     try:
@@ -178,12 +179,12 @@ def serve(requests: int, fault: str | None) -> StudentToRun | None:
             os.close(requests)
             for number in passed:  # no program may inherit the received descriptors
                 os.set_inheritable(number, False)
-            request, control, output, *users = passed
-            with os.fdopen(request, "rb") as stream:
+            with os.fdopen(passed[0], "rb") as stream:
                 start = pickle.load(stream)
+            descriptors = PassedDescriptors.of(start, passed[1:])
             if fault:
-                refuse(control, fault)
-            return supervise(start, control, output, *users)
+                refuse(descriptors.control, fault)
+            return supervise(start, descriptors)
         for number in passed:
             os.close(number)
 

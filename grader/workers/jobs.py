@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from grader.exercise.exercise import Exercise
@@ -63,7 +62,7 @@ class RunJob:
         from grader.runner.run import run
         from rmw_lockstep.hub import HubLimits
 
-        def start(program: ProgramSpec, hub: Path) -> SandboxedProgram:
+        def start(program: ProgramSpec, hub: int) -> SandboxedProgram:
             return fork_server.start(replace(program, hub=hub), self.isolation, self.limits, self.core)
 
         ready()

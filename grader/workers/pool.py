@@ -132,16 +132,6 @@ def leave_cpus_to_workers() -> None:
     os.environ.setdefault(_THREADS_OF_NUMPY, "1")
 
 
-#: The path of a socket has at most 107 bytes (unix(7)); the pool's folder and the hub's folder in it need the rest.
-_LONGEST_PLACE = 60
-
-
-def _place_for_sockets() -> str:
-    """Return the folder for temporary files, or /tmp if its path is too long for a socket, as on some clusters."""
-    place = tempfile.gettempdir()
-    return place if len(os.fsencode(place)) <= _LONGEST_PLACE else "/tmp"
-
-
 PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE, JUDGE = b"p", b"t", b"j", b"s", b"c"
 
 
@@ -158,10 +148,8 @@ class WorkerPool:
             MiddlewareUnavailable: if the grader's middleware is not available on this machine.
         """
         require_middleware()
-        # A cancelled job ends at once; its files, such as its hub's folder, are removed with the pool. A student who is
-        # another user has to pass through this folder to the hub.
-        self._temporary = Path(tempfile.mkdtemp(prefix="spinbook-", dir=_place_for_sockets()))
-        self._temporary.chmod(0o711)
+        # A cancelled job ends at once; its files are removed with the pool.
+        self._temporary = Path(tempfile.mkdtemp(prefix="spinbook-"))
         self._lock = threading.Lock()
         self._closed = False
         self._shared = SharedObjects()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import array
+import contextlib
 import os
 import socket
 import struct
@@ -309,3 +310,33 @@ def test_a_connection_that_is_closed_takes_what_it_had_along(hub: Hub, raw: Raw)
         hub.pause()
     assert not hub.graph.nodes
     assert not hub.graph.endpoints
+
+
+def test_what_is_no_socket_is_refused_at_an_inherited_socket_and_counted(tmp_path: Path) -> None:
+    with Hub(limits=HubLimits(all_connections=10)) as hub, socket.socket(fileno=os.dup(hub.add_program())) as inherited:
+        (tmp_path / "file").touch()
+        with (tmp_path / "file").open() as file:
+            for _ in range(5):
+                socket.send_fds(inherited, [b"+"], [file.fileno()])
+                inherited.send(b"+")
+        hub.pause()
+        assert not hub.links
+        inherited.send(b"+")
+        assert reason(hub) == ("connections", "11 processes; the limit is 10")
+
+
+def test_an_inherited_socket_gives_a_connection_to_each_process_that_asks() -> None:
+    with Hub() as hub, contextlib.ExitStack() as connections:
+        descriptor = hub.add_program()
+        for number in (1, 2):
+            asking, sent = socket.socketpair()
+            with asking, sent, socket.socket(fileno=os.dup(descriptor)) as inherited:
+                socket.send_fds(inherited, [b"+"], [sent.fileno()])
+                while len(hub.links) < number:
+                    hub.pause()
+                _, (given,), _, _ = socket.recv_fds(asking, 1, 1)
+            connection = connections.enter_context(socket.socket(fileno=given))
+            connection.sendall(hello(number))
+            while not hub.links[-1].hello:
+                hub.pause()
+        assert [(link.pid, link.pid_inside) for link in hub.links] == [(os.getpid(), 1), (os.getpid(), 2)]

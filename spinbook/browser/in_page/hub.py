@@ -82,8 +82,8 @@ class PageConnection(ProcessLink):
         super().__init__(None, PROGRAM, use)  # type: ignore[arg-type]
         self.hello = HelloFrame(1, PROGRAM, 0, True)
 
-    def _peer(self) -> tuple[int, int]:
-        return 0, 0  # no process of this machine has the number 0
+    def _peer(self) -> int:
+        return 0  # no process of this machine has the number 0
 
     def queue(self, frame: bytes) -> None:
         """Put a frame into the program's queue."""

@@ -77,7 +77,13 @@ def grade_of(grading: Grading, name: str, source: str) -> Grade:
     return grading.grade(of_source(f"{name}.py", source.encode(), grading.runner.exercise))
 
 
-@pytest.mark.parametrize("name", ON_THE_GRADER)
+#: They reach a limit of computing time, which takes longer.
+SLOW = {"never_confirmed", "wakes_each_nanosecond", "names_like_the_topic", "words_without_end"}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.soak] * (name in SLOW)) for name in ON_THE_GRADER]
+)
 def test_an_attack_on_the_grader_is_over_within_its_limits(grading: Grading, name: str) -> None:
     program = ON_THE_GRADER[name]
     with GraderProcesses() as processes:

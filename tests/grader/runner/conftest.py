@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from runner_programs import EXERCISE, RunProgram, numbers
@@ -30,7 +29,7 @@ def run_program(fork_server: ForkServer) -> RunProgram:
     level = choose(None)
 
     def run_it(source: str, scenario: Scenario | None = None, limits: HubLimits | None = None) -> Recording:
-        def start(hub: Path) -> SandboxedProgram:
+        def start(hub: int) -> SandboxedProgram:
             program = ProgramSpec("node.py", {"node.py": source.encode()}, ARGUMENTS, STUDENT_ENVIRONMENT, hub=hub)
             return fork_server.start(program, level, Limits())
 

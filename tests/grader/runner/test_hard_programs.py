@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import tempfile
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -160,8 +159,8 @@ def test_on_ctrl_c_it_has_two_seconds(run_program: RunProgram) -> None:
 
 def test_a_program_has_been_sent_ctrl_c_when_the_call_returns(fork_server: ForkServer) -> None:
     block = "import signal\nsignal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])\nprint('blocked', flush=True)\n"
-    with tempfile.TemporaryDirectory(prefix="hub-") as folder, Hub(Path(folder)) as hub:
-        program = ProgramSpec("node.py", {"node.py": f"{block}signal.pause()".encode()}, hub=hub.path)
+    with Hub() as hub:
+        program = ProgramSpec("node.py", {"node.py": f"{block}signal.pause()".encode()}, hub=hub.add_program())
         with fork_server.start(program, choose(None), Limits()) as student:
             deadline = time.monotonic() + 60
             while "blocked" not in student.output().text:

@@ -50,7 +50,7 @@ def together(fork_server: ForkServer) -> Together:
         exercise = EXERCISE if companion else PAIR
         complete = resolved(exercise, scenario)
 
-        def start(name: str, hub: Path) -> SandboxedProgram:
+        def start(name: str, hub: int) -> SandboxedProgram:
             given = Sandboxed(name, files, arguments(complete), STUDENT_ENVIRONMENT, hub=hub)
             return fork_server.start(given, level, Limits())
 

@@ -65,7 +65,7 @@ def recorded(fork_server: ForkServer, name: str) -> Recording:
     body, scenario = CASES[name]
     source, complete, level = program(body, threads=4), ready(scenario), choose(None)
 
-    def start(hub: Path) -> SandboxedProgram:
+    def start(hub: int) -> SandboxedProgram:
         given = ProgramSpec("node.py", {"node.py": source.encode()}, arguments(complete), STUDENT_ENVIRONMENT, hub=hub)
         return fork_server.start(given, level, Limits())
 

@@ -67,7 +67,7 @@ def scripted(fork_server: ForkServer) -> Scripted:
     def run_it(source: str, scenario: Scenario, outcome: str = "completed") -> Recording:
         complete = ready(scenario)
 
-        def start(hub: Path) -> SandboxedProgram:
+        def start(hub: int) -> SandboxedProgram:
             given = ProgramSpec(
                 "node.py", {"node.py": source.encode()}, arguments(complete), STUDENT_ENVIRONMENT, hub=hub
             )

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 import time
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 from sandbox_runner import Runner
 
@@ -41,22 +38,18 @@ def in_the_runner(
     fork_server: ForkServer, level: Isolation, program: ProgramSpec, limits: Limits | None, timeout_s: float
 ) -> HubRun:
     """Do the same, in the runner's process."""
-    folder = Path(tempfile.mkdtemp(prefix="spinbook-hub-"))
     deadline = time.monotonic() + timeout_s
-    try:
-        with Hub(folder) as hub, fork_server.start(replace(program, hub=hub.path), level, limits) as student:
+    with Hub() as hub, fork_server.start(replace(program, hub=hub.add_program()), level, limits) as student:
 
-            def look() -> None:
-                if student.poll() is not None or time.monotonic() > deadline:
-                    raise _Over
+        def look() -> None:
+            if student.poll() is not None or time.monotonic() > deadline:
+                raise _Over
 
-            hub.main, hub.on_tick = student.pid, look
-            try:
-                while True:
-                    hub.wait_until_idle()
-                    look()
-                    hub.advance(hub.now + SECOND)
-            except _Over:
-                return HubRun(student.poll(), student.output().text)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        hub.main, hub.on_tick = student.pid, look
+        try:
+            while True:
+                hub.wait_until_idle()
+                look()
+                hub.advance(hub.now + SECOND)
+        except _Over:
+            return HubRun(student.poll(), student.output().text)

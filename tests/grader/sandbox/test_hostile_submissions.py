@@ -72,7 +72,7 @@ def spin(fork_server: ForkServer, level: Isolation, source: bytes) -> Spun:
     scenario = declared(exercise, 1)[0]
     file = exercise.file_name
 
-    def start(hub: Path) -> RunningProgram:
+    def start(hub: int) -> RunningProgram:
         program = ProgramSpec(file, {file: source}, arguments(scenario), STUDENT_ENVIRONMENT, hub=hub)
         return fork_server.start(program, level, LIMITS, core=0)
 

@@ -144,7 +144,7 @@ def test_a_level_that_did_not_work_is_tried_each_time(
 def test_a_sandbox_that_could_not_be_made_has_its_level_tried_again(tried: list[Isolation], tmp_path: Path) -> None:
     choose()
 
-    program = ProgramSpec("node.py", {"node.py": b"print('never')"}, hub=tmp_path / "no such hub")
+    program = ProgramSpec("node.py", {"node.py": b"print('never')", "node.py/in_a_file.py": b""})
     with ForkServer(preload=()) as fork_server, pytest.raises(SandboxError):
         fork_server.start(program, Isolation.NONE)
 

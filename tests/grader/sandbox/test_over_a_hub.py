@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import socket
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ NAME_IT = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
 
 def answer(runner: Runner, code: str) -> Any:
     """Return what a program prints as JSON."""
-    run = run_over_hub(runner, "import json, os, socket, subprocess, sys\n" + code)
+    run = run_over_hub(runner, "import asyncio, json, os, socket, subprocess, sys\n" + code)
     try:
         return json.loads(run.text)
     except ValueError:
@@ -50,7 +51,7 @@ def test_a_program_that_it_starts_itself_lives_in_the_time_of_the_hub_too(confin
     assert run_over_hub(confined_runner, code).text == "rmw_lockstep_cpp\n60.0\n"
 
 
-def test_it_has_unix_sockets_and_no_others(confined_runner: Runner) -> None:
+def test_it_can_make_no_socket(confined_runner: Runner) -> None:
     code = """
 made = set()
 for family in range(1, 64):
@@ -62,7 +63,50 @@ for family in range(1, 64):
             pass
 print(json.dumps(sorted(made)))"""
 
-    assert answer(confined_runner, code) == [socket.AF_UNIX]
+    assert answer(confined_runner, code) == []
+
+
+def test_it_can_make_pairs_of_sockets_but_none_that_send_elsewhere(confined_runner: Runner) -> None:
+    code = """
+made = []
+for kind in (socket.SOCK_STREAM, socket.SOCK_DGRAM, socket.SOCK_RAW, socket.SOCK_SEQPACKET):
+    try:
+        socket.socketpair(socket.AF_UNIX, kind)
+        made.append(kind)
+    except OSError:
+        pass
+asyncio.run(asyncio.sleep(0))
+print(json.dumps(made))"""
+
+    assert answer(confined_runner, code) == [socket.SOCK_STREAM, socket.SOCK_SEQPACKET]
+
+
+@pytest.mark.parametrize("abstract", [False, True], ids=["with a path", "abstract"])
+def test_a_unix_socket_of_the_machine_is_not_reached(any_runner: Runner, abstract: bool) -> None:
+    with tempfile.TemporaryDirectory(prefix="served-") as folder, socket.socket(socket.AF_UNIX) as server:
+        Path(folder).chmod(0o755)
+        name = f"\0spinbook-test-{os.getpid()}" if abstract else f"{folder}/socket"
+        server.bind(name)
+        server.listen()
+        if not abstract:
+            Path(name).chmod(0o777)
+        code = f"""
+done = []
+def reach(connect):
+    try:
+        connect({name!r})
+        done.append('connected')
+    except OSError as error:
+        done.append('refused')
+reach(lambda name: socket.socket(socket.AF_UNIX).connect(name))
+reach(socket.socketpair()[0].connect)
+reach(lambda name: socket.socketpair(type=socket.SOCK_DGRAM)[0].connect(name))
+print(json.dumps(done))"""
+
+        found = answer(any_runner, code)
+
+    connected = any_runner.level is Isolation.NONE
+    assert found == ["connected" if connected else "refused", "refused", "refused"]
 
 
 def test_a_program_that_it_starts_itself_has_no_others_either(confined_runner: Runner) -> None:
@@ -81,60 +125,20 @@ def test_its_network_has_not_even_loopback(apart_runner: Runner) -> None:
     assert addresses == ""
 
 
-def test_a_socket_without_a_path_is_not_reached(apart_runner: Runner) -> None:
-    name = f"\0spinbook-test-{os.getpid()}"
-    with socket.socket(socket.AF_UNIX) as server:
-        server.bind(name)
-        server.listen()
-        code = f"""
-try:
-    socket.socket(socket.AF_UNIX).connect({name!r})
-    print(json.dumps('connected'))
-except OSError as error:
-    print(json.dumps('refused'))"""
+def test_of_the_hub_it_has_one_inherited_socket_and_no_path(confined_runner: Runner) -> None:
+    code = "print(json.dumps([os.environ['RMW_LOCKSTEP_SOCKET'], os.path.exists('/run/lockstep')]))"
 
-        assert answer(apart_runner, code) == "refused"
+    assert answer(confined_runner, code) == ["fd:1000", False]
 
 
-def test_of_the_hub_it_sees_the_socket_alone_always_in_the_same_place(apart_runner: Runner) -> None:
-    code = "print(json.dumps([os.environ['RMW_LOCKSTEP_SOCKET'], os.listdir('/run'), os.listdir('/run/lockstep')]))"
-
-    assert answer(apart_runner, code) == ["/run/lockstep/hub", ["lockstep"], ["hub"]]
-
-
-def test_it_can_neither_replace_nor_remove_the_socket(confined_runner: Runner) -> None:
+def test_programs_that_it_starts_are_connected_even_if_it_closed_that_socket(confined_runner: Runner) -> None:
     code = """
-hub, done = os.environ['RMW_LOCKSTEP_SOCKET'], []
-for attempt in (os.unlink, lambda path: os.chmod(path, 0), lambda path: os.rename(path, path + '2')):
-    try:
-        attempt(hub)
-        done.append(True)
-    except OSError:
-        pass
-print(json.dumps(done))"""
+os.close(1000)
+os.closerange(900, 1100)
+child = [sys.executable, '-c', "import time; before = time.time(); time.sleep(60); print(time.time() - before)"]
+print(json.dumps(subprocess.run(child, capture_output=True, text=True).stdout))"""
 
-    # With Landlock and without root the program has its user's rights to change a mode.
-    assert answer(confined_runner, code) == ([True] if confined_runner.level is Isolation.LANDLOCK else [])
-
-
-def test_no_other_user_of_the_machine_reaches_the_hub(any_runner: Runner) -> None:
-    folder, hub = any_runner.do(modes_while_it_runs)
-
-    other_user = any_runner.level is Isolation.LANDLOCK and not any_runner.rootless and os.geteuid() == 0
-    assert folder == (0o711 if other_user else 0o700)
-    assert hub == (0o600 if other_user else 0o666)
-
-
-def modes_while_it_runs(rig_fork_server: ForkServer, level: Isolation) -> tuple[int, int]:
-    """Return the modes of the hub's folder and of its socket."""
-    import tempfile
-
-    from rmw_lockstep.hub import Hub
-
-    with tempfile.TemporaryDirectory() as folder, Hub(Path(folder)) as hub:
-        program = ProgramSpec("student.py", {"student.py": b""}, hub=hub.path)
-        with rig_fork_server.start(program, level):
-            return hub.path.parent.stat().st_mode & 0o777, hub.path.stat().st_mode & 0o777
+    assert answer(confined_runner, code) == "60.0\n"
 
 
 def test_the_middleware_is_hidden_from_it(strongest_runner: Runner) -> None:
@@ -160,7 +164,7 @@ def start_with_the_wrong_middleware(rig_fork_server: ForkServer, level: Isolatio
     fork_server.variables = lambda of: {"RMW_IMPLEMENTATION": "rmw_lockstep_cpp"}  # type: ignore[assignment]
     try:
         with ForkServer() as wrong:
-            wrong.start(ProgramSpec("student.py", {"student.py": b""}, hub=Path("/nowhere/hub")), level)
+            wrong.start(ProgramSpec("student.py", {"student.py": b""}, hub=0), level)
     except SandboxError as fault:
         return str(fault)
     finally:

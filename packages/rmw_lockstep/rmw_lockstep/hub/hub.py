@@ -6,7 +6,6 @@ It never waits for a process indefinitely: `on_tick` is called every 20 ms while
 
 from __future__ import annotations
 
-import contextlib
 import select
 import socket
 import time
@@ -19,6 +18,7 @@ from rmw_lockstep.hub.endpoints import HubNode, PendingRequest
 from rmw_lockstep.hub.graph import HubGraph
 from rmw_lockstep.hub.limits import HubLimits, HubUsage, Violation
 from rmw_lockstep.hub.link import ProcessLink
+from rmw_lockstep.hub.listeners import InheritedSocket, Listener
 from rmw_lockstep.hub.router import Router
 
 SECOND = 1_000_000_000
@@ -28,9 +28,6 @@ BEGIN, EPOCH = 1_000 * SECOND, 1_767_225_600 * SECOND
 
 #: The name of the socket in its folder.
 SOCKET = "hub"
-
-#: The path of a Unix socket may not be longer (sun_path of unix(7), without its NUL).
-LONGEST_PATH = 107
 
 #: How often `on_tick` is called while the hub waits (s).
 TICK_S = 0.02
@@ -49,6 +46,9 @@ def _do_nothing() -> None:
 class Hub:
     """Use it as a context manager, from one thread.
 
+    Programs connect by the socket at `path`, in a folder. Those that may make no connections inherit a socket instead:
+    see `add_program`.
+
     `main` is the id of the program's first process, as this process sees it. Set it as soon as it is known: the program
     is never idle while that process is not connected. `mains` has those of further programs. `before_end` is called
     before the endpoints of a process are removed from the graph.
@@ -56,21 +56,18 @@ class Hub:
 
     def __init__(
         self,
-        folder: Path,
+        folder: Path | None = None,
         limits: HubLimits | None = None,
         on_tick: Callable[[], None] = _do_nothing,
         begin: int = BEGIN,
         epoch: int = EPOCH,
     ) -> None:
-        """Listen in `folder`, which other users of this machine may enter but not list.
+        """Listen in `folder`, which other users of this machine may enter but not list; without one, nowhere yet.
 
         Raises:
             ValueError: if the path is too long for a socket.
             OSError: if no socket can be made.
         """
-        self.path = folder / SOCKET
-        if len(str(self.path).encode()) > LONGEST_PATH:
-            raise ValueError(f"{self.path} is too long for a socket: at most {LONGEST_PATH} bytes")
         self.main: int | None = None
         self.mains: set[int] = set()
         self.before_end: Callable[[], None] = _do_nothing
@@ -86,28 +83,26 @@ class Hub:
         self._router = Router(self._use, lambda: self._epoch + self._until, epoch)
         self._poll = select.poll()
         self._new = select.poll()
-        self._listeners = [self._listen(folder)]
+        self._listeners: list[Listener | InheritedSocket] = []
+        if folder:
+            self.path = folder / SOCKET
+            self._add(Listener(self.path, self._use.limits.connections))
 
-    def _listen(self, folder: Path) -> socket.socket:
-        listener, path = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM), folder / SOCKET
-        listener.setblocking(False)
-        listener.bind(str(path))
-        path.chmod(0o666)
-        folder.chmod(0o711)
-        listener.listen(self._use.limits.connections)
+    def _add(self, listener: Listener | InheritedSocket) -> None:
+        self._listeners.append(listener)
         for poll in (self._poll, self._new):
-            poll.register(listener, select.POLLIN)
-        return listener
+            poll.register(listener.socket, select.POLLIN)
 
     # --- for the owner of the hub
 
-    def add_listener(self, folder: Path) -> Path:
-        """Also listen in another folder, for another program, and return the socket's path.
+    def add_program(self) -> int:
+        """Return a descriptor for one more program to inherit: its processes connect through it, and by nothing else.
 
-        `ProcessLink.listener` counts these from 1.
+        `ProcessLink.listener` counts these, after the folder's socket if there is one.
         """
-        self._listeners.append(self._listen(folder))
-        return folder / SOCKET
+        listener = InheritedSocket()
+        self._add(listener)
+        return listener.inherited
 
     def node(self, name: str, namespace: str = "/") -> HubNode:
         """Return a new node of the hub's own."""
@@ -208,10 +203,7 @@ class Hub:
             link.close()
         self.links.clear()
         for listener in self._listeners:
-            path = Path(listener.getsockname())
             listener.close()
-            with contextlib.suppress(FileNotFoundError):
-                path.unlink()
 
     def __enter__(self) -> Hub:
         return self
@@ -324,20 +316,23 @@ class Hub:
         accepted = [self._accept_from(number, listener) for number, listener in enumerate(self._listeners)]
         return any(accepted)
 
-    def _accept_from(self, number: int, listener: socket.socket) -> bool:
+    def _accept_from(self, number: int, listener: Listener | InheritedSocket) -> bool:
         found = False
         while True:
             try:
-                connection, _ = listener.accept()
+                connection, pid = listener.accept()
             except BlockingIOError:
                 return found
+            except OSError:  # somebody sent what is no connection
+                self._use.connection(len(self.links))
+                continue
             found = True
             try:
                 self._use.connection(len(self.links))
             except Violation:
                 connection.close()
                 raise
-            link = ProcessLink(connection, self._use.connections, self._use, number)
+            link = ProcessLink(connection, self._use.connections, self._use, number, pid)
             link.wait_at_most(TICK_S)
             self.links.append(link)
             self._poll.register(connection, select.POLLIN)

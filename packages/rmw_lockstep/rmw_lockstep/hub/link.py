@@ -24,15 +24,24 @@ _CREDENTIALS = struct.Struct("iII")
 _WAIT = struct.Struct("ll")
 
 
+def peer(connection: socket.socket) -> int:
+    """Return the id of the process at the other end of a Unix socket (SO_PEERCRED, unix(7))."""
+    credentials = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
+    return int(_CREDENTIALS.unpack(credentials)[0])
+
+
 class ProcessLink:
     """One process. Its identities begin with `number`; `pid` is its process id as the hub sees it.
 
-    `listener` is the number of the listening socket that it connected to, and so identifies its program.
+    `listener` is the number of the hub's socket that it connected to, and so identifies its program. `pid` is by
+    default that of the other end.
     """
 
-    def __init__(self, sock: socket.socket, number: int, use: HubUsage, listener: int = 0) -> None:
+    def __init__(
+        self, sock: socket.socket, number: int, use: HubUsage, listener: int = 0, pid: int | None = None
+    ) -> None:
         self.socket, self.number, self.listener = sock, number, listener
-        self.pid, self.uid = self._peer()
+        self.pid = self._peer() if pid is None else pid
         self.hello: HelloFrame | None = None
         self.began = self.joined = False
         self.sent = 0
@@ -58,10 +67,8 @@ class ProcessLink:
         self.now = self.granted = now
         self._first_mark = published
 
-    def _peer(self) -> tuple[int, int]:
-        credentials = self.socket.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
-        pid, uid, _ = _CREDENTIALS.unpack(credentials)
-        return pid, uid
+    def _peer(self) -> int:
+        return peer(self.socket)
 
     @property
     def pid_inside(self) -> int:

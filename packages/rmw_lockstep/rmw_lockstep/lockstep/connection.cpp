@@ -12,6 +12,7 @@
 
 #include "bytes.hpp"
 #include "core.hpp"
+#include "inherited.hpp"
 #include "real.hpp"
 #include "signals.hpp"
 
@@ -25,6 +26,10 @@ constexpr uint32_t VERSION = 3;
 constexpr int64_t FIRST_LOOK = 500'000, LONGEST_LOOK = 2'000'000;
 
 int open_socket(const std::string & path) {
+  if (const int inherited = inherited_number(path); inherited >= 0) {
+    keep_open(inherited);
+    return connection_through(inherited);
+  }
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.size() >= sizeof address.sun_path) { errno = ENAMETOOLONG; return -1; }
