@@ -163,7 +163,8 @@ def must_match_feedback(
         number, (expected, got) = numbered
         if expected is None or got is None:
             text = f"expected {expected_count} feedback messages, got {count}."
-            never = UNKNOWN if count else _NO_FEEDBACK
+            stuck = _ended_at(student) is None and _does_nothing_after(run, student)
+            never = UNKNOWN if count else _STUCK if stuck else _NO_FEEDBACK
             run.wrong_at(student.at, text, _part(student), f"{expected_count} messages", count, never)
         part = f"{_part(student)}, feedback {number}"
         run.compare_at(got.at, part, field, got.fields, expected.fields, tolerance, student.action, messages)

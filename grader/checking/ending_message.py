@@ -29,7 +29,10 @@ ADVICE = (
     (re.compile(r"NameError"), "Is the name spelled as in its definition, and defined before this line?"),
     (re.compile(r"ZeroDivisionError"), "When is the number that this line divides by zero?"),
     (re.compile(r"KeyError|IndexError"), "When is this key or index missing?"),
-    (re.compile(r"AttributeError: 'NoneType'"), "What is its value before the first message has arrived?"),
+    (
+        re.compile(r"AttributeError: 'NoneType'"),
+        "Something in this line is None: what fills it, and has that happened by now?",
+    ),
 )
 
 

@@ -179,7 +179,7 @@ _CALLS = {
 
 def lacking(kind: Kind) -> Cause:
     """Return the hints for a node that lacks an endpoint of this kind, or has it under another name."""
-    return Cause("", *hints("lacking", kind=kind, call=_CALLS[kind]))
+    return Cause("", *hints("lacking", kind="service" if kind == "server" else kind, call=_CALLS[kind]))
 
 
 _TYPE = Cause("", *hints("type"))

@@ -52,7 +52,7 @@ def judge_when_collected(
     runs: dict[str, Run | None] = dict.fromkeys(scenarios)
     checks = Checks(before_the_first=lambda: runs.update(given()))
     run_pytest(exercise, runs, checks)
-    topics = [topic.name for topic in exercise.topics]
+    topics = [topic.name for topic in exercise.topics] + [endpoint.name for endpoint in exercise.endpoints]
     node = f"/{exercise.node_name}"
     return tuple(with_spelling(verdict, topics, node) for verdict in checks.verdicts.values())
 
@@ -159,6 +159,10 @@ def with_spelling(verdict: Verdict, topics: Collection[str], node: str) -> Verdi
 def _suggest(finding: Finding, topics: Collection[str], node: str) -> Finding:
     for name in dict.fromkeys(TOPIC.findall(finding.text)):
         meant = [] if name in (*topics, node) else difflib.get_close_matches(name, topics, n=1, cutoff=ALIKE)
+        if not meant and name not in (*topics, node):
+            meant = [topic for topic in topics if topic.rpartition("/")[2] == name.rpartition("/")[2]]
+            if meant:
+                return replace(finding, text=f"{finding.text} {name} is not {meant[0]}: the whole name counts.")
         if meant:
             return replace(finding, text=f"{finding.text} Is {name} a misspelling of {meant[0]}?")
     return finding

@@ -18,7 +18,7 @@ _TINY = 64 * 5e-324
 
 def observed(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
     """Return the first cause that the run shows, in this order: an exception, messages that are never sent because a
-    lifecycle node is not active, ints in float fields, values without names, only zeros.
+    lifecycle node is not active, ints in float fields, values without names, only zeros, only false.
     """
     seers: tuple[Callable[[Exercise, Recording, Recording], Cause], ...] = (
         _exception,
@@ -26,6 +26,7 @@ def observed(exercise: Exercise, recording: Recording, reference: Recording) -> 
         _int_as_float,
         _without_names,
         _only_zeros,
+        _only_false,
     )
     return next((cause for seer in seers if (cause := seer(exercise, recording, reference))), UNKNOWN)
 
@@ -128,3 +129,24 @@ def _values(recording: Recording, topic: Topic, field: str) -> list[float]:
                 return []
             values += value if isinstance(value, list) else [value]
     return values
+
+
+def _only_false(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    mine, its = _bools(recording), _bools(reference)
+    for (name, field), values in its.items():
+        got = mine.get((name, field), [])
+        if any(values) and len(got) > 1 and not any(got):
+            return Cause(f"{field} on {name} is false in all {len(got)} messages.", *hints("only_false", field=field))
+    return UNKNOWN
+
+
+def _bools(recording: Recording) -> dict[tuple[str, str], list[bool]]:
+    """Return the bools that the program published and answered, by topic or service and field."""
+    sent = [(message.topic, message.fields) for message in recording.received]
+    sent += [(call.service, call.response or {}) for call in recording.calls if call.by == "grader"]
+    found: dict[tuple[str, str], list[bool]] = {}
+    for name, fields in sent:
+        for field, value in fields.items():
+            if isinstance(value, bool):
+                found.setdefault((name, field), []).append(value)
+    return found

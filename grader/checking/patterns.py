@@ -16,6 +16,9 @@ COMPUTER_CLOCK = 0.8
 #: A value this close to 0 says nothing about a ratio.
 SMALLEST = 1e-3
 
+#: A text with more characters is not one of a few that a task gives.
+LONGEST_WORDS = 40
+
 #: A finding about all values needs at least this many values.
 FEWEST = 3
 
@@ -117,3 +120,14 @@ def shift(expected: Sequence[Any], got: Sequence[Any], tolerance: float) -> Caus
 
 #: For values that are right and come one message too late or too early.
 ORDER = hints("order")
+
+
+def other_text(got: Any, expected: Any, task: str) -> Cause:
+    """Explain that a short text is not the one that was expected, and none that the task has as code either."""
+    if not isinstance(got, str) or not isinstance(expected, str) or not got or len(expected) > LONGEST_WORDS:
+        return UNKNOWN
+    if f"`{got}`" in task or f"`{expected}`" not in task:
+        return UNKNOWN
+    if "".join(filter(str.isalnum, got.lower())) == "".join(filter(str.isalnum, expected.lower())):
+        return Cause("Only capital letters, spaces or punctuation differ.", *hints("other_text"))
+    return Cause("The task has no such text.", *hints("other_text"))

@@ -14,7 +14,7 @@ from grader.checking.comparator import difference, shown
 from grader.checking.hint_texts import hints
 from grader.checking.message import Exchange, Message, exchanges
 from grader.checking.observed import observed
-from grader.checking.patterns import COMPUTER_CLOCK, common
+from grader.checking.patterns import COMPUTER_CLOCK, common, other_text
 from grader.checking.verdict import Finding, Wrong
 from grader.exercise.exercise import Exercise, Role, ServiceOrAction, Topic
 from grader.recording.recording import Ending, ReceivedMessage, Recording
@@ -151,7 +151,9 @@ class RecordedRun:
         expected_text, got_text = shown(differing.expected, unit), shown(differing.got, unit)
         numbers = [(_number(e, differing.path), _number(g, differing.path)) for e, g in pairs]
         known = [(e, g) for e, g in numbers if e is not None and g is not None]
-        general = common(known, differing.path, unit)
+        general = common(known, differing.path, unit) or other_text(
+            differing.got, differing.expected, self.exercise.task
+        )
         self.wrong_at(
             at,
             f"expected {differing.path} {expected_text}, got {got_text}.",

@@ -246,7 +246,11 @@ def _of_stamps(stamps: Sequence[int], messages: Sequence[ReceivedMessage]) -> Ca
     if not any(stamps):
         if all(message.at <= START for message in messages):
             return Cause("The node's clock had not started when it published them.", *_STAMP)
-        return Cause("Every stamp is 0: your node never fills it in.", *_STAMP)
+        return Cause(
+            "Every stamp is 0: your node does not fill it in, or it takes the time before its clock runs, in __init__ "
+            "or before rclpy.spin(node).",
+            *_STAMP,
+        )
     if all(stamp > COMPUTER_STAMP * SECOND for stamp in stamps):
         text = "Every stamp is the computer's time. Take the time from the node's clock: self.get_clock().now()."
         return Cause(text, *_STAMP)

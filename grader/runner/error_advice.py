@@ -44,10 +44,19 @@ _BY_TEXT = (
         "canceled() is only for a goal with a request to cancel; call abort() to give up any other.",
     ),
     (r"no display|Cannot load backend|could not connect to display|No module named '_?tkinter'", _NO_SCREEN),
+    (r"'Time' object has no attribute '(?:nano)?sec'", "A Time is not yet a stamp: its to_msg() is one."),
+    (r"returned a result with an exception set", "A field has a value of another type: an integer field takes an int."),
     (
-        r"takes \d+ positional arguments? but \d+ (?:was|were) given|missing \d+ required positional argument",
-        "The arguments of a callback: self, and then the message for a subscription, nothing for a timer, the request "
-        "and the response for a service.",
+        r"operand type\(s\) for .*'Parameter'",
+        "get_parameter() returns a Parameter, and its value is get_parameter(…).value.",
+    ),
+    (
+        r"'(?:float|int|bool)' object is not iterable",
+        "One value is where a list belongs: write [value], for a list field of a message, too.",
+    ),
+    (
+        r"'([A-Z]\w*)' object is not iterable",
+        r"A \1 is not a list. If one of its fields is, loop over that field.",
     ),
     (
         r"dictionary changed size during iteration|list modified during iteration",
@@ -90,20 +99,37 @@ def _of_newer_ros(last: LastError, sources: Mapping[str, str]) -> str:
 def _of_a_callback(last: LastError, sources: Mapping[str, str]) -> str:
     """Explain an error that rclpy raises far from the line which caused it."""
     error, block = last.error, last.traceback
+    if last.raised_there:
+        return _OWN_ERROR if "await_or_execute(srv.callback" in block else ""
+    if re.search(r"takes \d+ positional argument|missing \d+ required positional", error):
+        return _ARGUMENTS
+    if "'NoneType' object is not callable" in error:
+        return (
+            "A callback is None. Give the method itself, such as self.on_timer: with parentheses, it is called at once."
+        )
     if error.startswith("TypeError") and ", in send_response" in block:
         return "A service's callback has to return the response: end each way through it with `return response`."
-    if not last.raised_there and ", in publish_feedback" in block:
+    if ", in publish_feedback" in block:
         return f"publish_feedback() takes a whole message: {_action(sources)}.Feedback(…), with the value in its field."
-    if not last.raised_there and (", in _execute_goal" in block or ", in _send_result_response" in block):
+    if ", in send_goal" in block:
+        return f"A goal is a whole message: {_action(sources)}.Goal(…), with the value in its field."
+    if ", in call_async" in block or ", in call\n" in block:
+        return "A request is a whole message of the service's type: Type.Request(…), with the values in its fields."
+    if ", in _execute_goal" in block or ", in _send_result_response" in block:
         return "" if ", in await_or_execute" in block else result_advice(_action(sources))
-    if "await_or_execute(srv.callback" in block:
-        return "An exception in a callback ends the whole node: say in the response what is wrong, and return it."
     return ""
+
+
+_OWN_ERROR = "An exception in a callback ends the whole node: say in the response what is wrong, and return it."
+_ARGUMENTS = (
+    "The arguments of a callback: self, and then the message for a subscription, nothing for a timer, the request and "
+    "the response for a service."
+)
 
 
 def _action(sources: Mapping[str, str]) -> str:
     """Return the name of the action's class in the student's files."""
-    match = re.search(r"ActionServer\(\s*self,\s*(\w+)", "\n".join(sources.values()))
+    match = re.search(r"Action(?:Server|Client)\(\s*self,\s*(\w+)", "\n".join(sources.values()))
     return match[1] if match else "Fibonacci"
 
 
@@ -112,12 +138,17 @@ def _of_an_attribute(last: LastError, sources: Mapping[str, str]) -> str:
     match = re.search(r"AttributeError: '(\w+)' object has no attribute '(\w+)'", last.error)
     if not match:
         return ""
+    if match[1] in ("float", "int", "str", "list") and "publish(" in last.text:
+        return f"A field of the message holds a {match[1]}, but is a message of its own: set its field {match[2]}."
     fields = _fields(match[1], sources)
     if fields:
         return f"The fields of a {match[1]} are: {', '.join(fields)}."
+    if "Did you mean" in last.error:
+        return ""
     if not re.search(rf"^\s*class {match[1]}\b", sources.get(last.file, ""), re.MULTILINE):
         return ""
-    assigned = sorted(set(re.findall(r"\bself\.(\w+)\s*(?::[^=\n]+)?=(?!=)", sources[last.file])))
+    names = re.findall(r"\bself\.(\w+)\s*(?::[^=\n]+)?=(?!=)|^\s*def (\w+)\(self", sources[last.file], re.MULTILINE)
+    assigned = sorted({name for pair in names for name in pair if name})
     if match[2] in assigned:
         return f"self.{match[2]} is set only later: set it in __init__, before anything can use it."
     close = difflib.get_close_matches(match[2], assigned, n=1, cutoff=0.7)

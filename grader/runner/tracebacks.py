@@ -22,6 +22,9 @@ _DEEPEST = 20
 #: The beginning of the traceback of an uncaught exception in the main thread: it starts in the module itself.
 _OF_THE_PROGRAM = re.compile(re.escape(HEADER) + r'\n[ \t]*File "[^"]+", line \d{1,9}, in <module>\n')
 
+#: Where an object is in memory, which is another place in each run.
+_ADDRESS = re.compile(r" at 0x[0-9a-f]{4,16}\b")
+
 #: The text of a SyntaxError has no header.
 _OF_A_SYNTAX_ERROR = '  File "'
 
@@ -113,6 +116,7 @@ def _traceback(text: str) -> Iterator[str]:
 
 
 def _shortened(error: str) -> str:
+    error = _ADDRESS.sub("", error)
     return error if len(error) <= _LONGEST_ERROR else f"{error[:_LONGEST_ERROR]}…"
 
 

@@ -257,7 +257,12 @@ def raised(line: int, error: str, *frames: str) -> str:
             "A node that is graded has no screen.",
         ),
         (
-            raised(12, "TypeError: on_push() takes 1 positional argument but 2 were given"),
+            raised(
+                12,
+                "TypeError: on_push() takes 1 positional argument but 2 were given",
+                'File "rclpy/executors.py", line 111, in await_or_execute',
+                "  return callback(*args)",
+            ),
             NODE,
             "The arguments of a callback: self, and then the message for a subscription",
         ),
@@ -265,6 +270,29 @@ def raised(line: int, error: str, *frames: str) -> str:
 )
 def test_advice_names_what_the_student_can_change(log: str, source: str, advice: str) -> None:
     assert advice in of_exit(ProcessExit(1, None, None), log, {"turnstile.py": source})[0]
+
+
+@pytest.mark.parametrize(
+    ("error", "advice"),
+    [
+        ("TypeError: 'NoneType' object is not callable", "Give the method itself, such as self.on_timer"),
+        ("AttributeError: 'Time' object has no attribute 'sec'", "its to_msg() is one"),
+        (
+            "SystemError: <function x at 0x7fdf61b63380> returned a result with an exception set",
+            "takes an int",
+        ),
+        ("TypeError: unsupported operand type(s) for *: 'Parameter' and 'float'", "and its value is get_parameter(…).value"),
+        ("TypeError: 'float' object is not iterable", "write [value]"),
+        ("TypeError: 'Twist' object is not iterable", "A Twist is not a list."),
+    ],
+)
+def test_advice_on_errors_that_beginners_meet_in_rclpy(error: str, advice: str) -> None:
+    log = raised(12, error, 'File "rclpy/executors.py", line 111, in await_or_execute', "  return callback(*args)")
+
+    text, _ = of_exit(ProcessExit(1, None, None), log, {"turnstile.py": NODE})
+
+    assert advice in text
+    assert " at 0x" not in text, "it is another one in each run"
 
 
 def test_a_value_of_another_type_that_aborts_the_program_is_named() -> None:
