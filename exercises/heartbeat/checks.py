@@ -46,7 +46,12 @@ def must_have_the_frame(run: Run) -> None:
 
 @check(
     points=5,
-    hint="Create the publisher and the timer in __init__, and call publish() in beat(). Fill in stamp and frame_id.",
+    hint="Which fields of the message does beat() fill in before it calls publish()?",
+    todo="beat() is called once for each beat. It makes a new Header, fills in both fields, and publishes it. "
+    "stamp is the time of the node's clock at this moment, as a message: the Time that now() returns has "
+    "to_msg() for that. frame_id is a text: the name of the frame in the task, in the same letters. Look at "
+    "one beat with `ros2 topic echo /heartbeat`: is the stamp another one in each beat, and is the frame the "
+    "right one?",
     rule="topic",
 )
 def test_publishes_beats(start: Run) -> None:
@@ -74,7 +79,12 @@ def test_four_beats_a_second(start: Run) -> None:
 
 @check(
     points=5,
-    hint="Let a timer do it, and nothing else.",
+    hint="What decides when the next beat comes? Only a timer with the right period keeps time.",
+    todo="create_timer(period, method) in __init__ calls the method again and again, by the node's clock, and "
+    "rclpy.spin() keeps it running. The period is the time from one call to the next, in seconds: one divided "
+    "by the rate. Do not publish anywhere else, do not create the timer again in beat(), and do not wait in "
+    "beat(): a beat that waits delays the next one. `ros2 topic hz /heartbeat` shows the rate of a node that "
+    "runs.",
     depends=[test_publishes_beats],
     rule=("rate", "clock"),
 )

@@ -8,7 +8,10 @@ from __future__ import annotations
 from grader.checking import Run, check, fail
 
 
-@check(points=8, hint="Create the ActionServer in __init__. goal_callback returns GoalResponse.ACCEPT.")
+@check(
+    points=8,
+    hint="What does the goal callback return for this goal? It must be GoalResponse.ACCEPT or GoalResponse.REJECT.",
+)
 def test_accepts_a_goal(up: Run) -> None:
     """It has the action /move_joint, and accepts a goal within the limits."""
     up.must_have_interface()
@@ -17,7 +20,7 @@ def test_accepts_a_goal(up: Run) -> None:
 
 @check(
     points=10,
-    hint="At the goal, mark the goal handle as succeeded.",
+    hint="When does the loop in execute end, and what does it call on the goal handle then?",
     depends=[test_accepts_a_goal],
     misconception="forgets succeed()",
 )
@@ -28,7 +31,12 @@ def test_succeeds(up: Run) -> None:
 
 @check(
     points=12,
-    hint="After each step: goal_handle.publish_feedback(MoveJoint.Feedback(position=…)).",
+    hint="In which order does execute wait, step and publish feedback, and how long is the last step?",
+    todo="Go through the loop for the first two steps, with pen and paper. execute waits 0.1 s by the node's "
+    "clock, moves the position by one step, and then publishes feedback with the new position. So the first "
+    "feedback comes 0.1 s after the goal was accepted, and it is not the old position. The last step is only "
+    "as long as what is left, up or down: min() and max() with the goal keep the joint from going beyond it. "
+    "The goal itself is the last feedback.",
     depends=[test_accepts_a_goal],
 )
 def test_feedback_after_each_step(up: Run) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from grader.checking import Run, check
 
 
-@check(points=3, hint="Create the subscription and the publisher in __init__, and call publish() in the callback.")
+@check(points=3, hint="Is publish() called in the callback of the subscription, with a JointState?")
 def test_publishes_velocities(chapter: Run) -> None:
     """It subscribes to /joint_commands and publishes JointState messages on /joint_velocities."""
     chapter.must_have_interface()
@@ -17,7 +17,7 @@ def test_publishes_velocities(chapter: Run) -> None:
 
 @check(
     points=2,
-    hint="Compute the velocity again for each message: zeros and constants are not velocities.",
+    hint="Which numbers does velocity come from, and do they change from message to message?",
     depends=[test_publishes_velocities],
     misconception="publishes zeros or a constant",
 )
@@ -26,7 +26,11 @@ def test_velocities_follow_the_joints(chapter: Run) -> None:
     chapter.must_vary("velocity", per="name")
 
 
-@check(points=4, hint="One callback, one publish().", depends=[test_velocities_follow_the_joints])
+@check(
+    points=4,
+    hint="Which messages does the callback not answer, or answer twice? Is publish() in a loop, or behind a condition?",
+    depends=[test_velocities_follow_the_joints],
+)
 def test_answers_each_message_once(chapter: Run) -> None:
     """It publishes one message for each message after the first."""
     chapter.must_answer()
@@ -56,7 +60,12 @@ def test_says_nothing_to_the_first_message(chapter: Run) -> None:
 
 @check(
     points=8,
-    hint="(position now - position before) / (stamp now - stamp before), for each joint, in rad/s.",
+    hint="Compute one joint's velocity for the second message by hand. Which part of yours differs?",
+    todo="Velocity is a change divided by the time that it took: (position now - position before) / (stamp now - "
+    "stamp before). Take both positions of the same joint, by its name, not by its index. Both stamps are in "
+    "seconds: sec and nanosec belong together, and a nanosecond is a billionth of a second. Remember "
+    "positions and stamp of this message at the end of the callback, after you have used those of the one "
+    "before. Log position, position before and dt of one joint, and compare with your result.",
     depends=[test_velocities_follow_the_joints],
 )
 def test_velocity_of_each_joint(chapter: Run) -> None:
@@ -91,6 +100,7 @@ def test_names_in_the_order_of_the_message(chapter: Run) -> None:
     hint="Copy the header of the message that arrived, as a whole: it holds the stamp.",
     depends=[test_velocities_follow_the_joints],
     misconception="forgets the stamp",
+    untested="the stamp is also the time at which the message arrives, so a stamp from now() passes, too.",
 )
 def test_stamp_is_copied(chapter: Run) -> None:
     """The stamp is that of the message that arrived."""

@@ -78,7 +78,12 @@ def test_success(switching: Run) -> None:
 
 @check(
     points=8,
-    hint="Switch first, then report the state of the motors.",
+    hint="Is message made after the motors are switched, and from their state?",
+    todo="The callback does three things, in this order: it decides whether the request may be carried out, it "
+    "switches the motors (and publishes, if that is a change), and it fills in the response. So message says "
+    "how the motors are now, not how they were, and not what was asked for. Keep the state in one attribute "
+    "of the node, and make the text from it in one place. Try it: `ros2 service call /switch_motors "
+    'std_srvs/srv/SetBool "{data: true}"`.',
     depends=[test_responds],
     misconception="the state before the request",
     rule=("says", "request"),

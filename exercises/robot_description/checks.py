@@ -24,7 +24,7 @@ def must_start_with(run: Run) -> None:
     first, expected = run.messages_on()[0], run.messages_on(reference=True)[0]
     got, right = first.fields["data"], expected.fields["data"]
     if squeezed(got) != squeezed(right):
-        run.wrong_at(first.at, "another text was published first.", "", right, got)
+        run.wrong_at(first.at, f"expected the text {right}, got {got}.", "", right, got)
     if first.at - expected.at > 110_000_000:
         late = (first.at - expected.at) / 1_000_000_000
         run.wrong_at(first.at, f"it was expected at the start, got it {late:.2f} s later.", "", "at the start", "later")
@@ -43,13 +43,14 @@ def test_publishes_the_description(started: Run, changed: Run) -> None:
     if of_start not in published(started) and not new & set(published(changed)):
         started.must_publish()
         got = started.messages_on()[0].fields["data"]
-        text = "the text is not the one that the parameter holds, neither at the start nor after a change."
+        text = "the text is not the one that the parameter holds, neither at the start nor after a change: "
+        text += f"expected {started.messages_on(reference=True)[0].fields['data']}, got {got}."
         started.wrong_at(None, text, "", "the parameter's text", got)
 
 
 @check(
     points=5,
-    hint="Publish once in __init__, after you have declared the parameter.",
+    hint="What is published first, and when? Only the parameter's value, at the end of __init__.",
     depends=[test_publishes_the_description],
     rule="start",
 )
@@ -100,7 +101,12 @@ def test_publishes_once(late: Run) -> None:
 
 @check(
     points=5,
-    hint="declare_parameter() returns the parameter with the value that the node was started with.",
+    hint="Is the published text the parameter's value, or the default?",
+    todo="The default counts only if nobody gives another text. Declare the parameter with its default, and then "
+    "ask for its value: self.get_parameter('robot_description').value. A Parameter itself is not the text, "
+    "and neither is str() of it. Publish this value, as it is, once, when the publisher exists. To try it, "
+    "start the node with another text: `python3 robot_description.py --ros-args -p robot_description:='<robot "
+    'name="arm"/>\'`, and look with `ros2 topic echo --once /robot_description`.',
     depends=[test_publishes_the_description],
     rule=("start_text", "start"),
 )

@@ -48,6 +48,7 @@ class AuditedCheck:
     file: Path
     line: int
     seconds: float
+    todo: str = ""
 
 
 @dataclass(frozen=True)
@@ -91,6 +92,7 @@ class _Listing(Checks):
             title=(inspect.getdoc(function) or "").replace("\n", " "),
             points=mark.points,
             hint=mark.hint,
+            todo=mark.todo,
             depends=mark.depends,
             rules=mark.rules,
             hidden=item.path.name == "hidden_checks.py",
@@ -134,7 +136,7 @@ def _giveaways(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[Aud
     secret = {_squeezed(line): line for line in lines if len(line) >= SHORTEST and _squeezed(line) not in in_starter}
     problems = []
     for check in checks:
-        for name, text in (("hint", check.hint), ("title", check.title)):
+        for name, text in (("hint", check.hint), ("todo", check.todo), ("title", check.title)):
             for squeezed, line in secret.items():
                 if squeezed in _squeezed(text):
                     message = f"the {name} of {check.name} contains a line of the solution: {line}"

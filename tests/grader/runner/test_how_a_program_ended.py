@@ -281,7 +281,10 @@ def test_advice_names_what_the_student_can_change(log: str, source: str, advice:
             "SystemError: <function x at 0x7fdf61b63380> returned a result with an exception set",
             "takes an int",
         ),
-        ("TypeError: unsupported operand type(s) for *: 'Parameter' and 'float'", "and its value is get_parameter(…).value"),
+        (
+            "TypeError: unsupported operand type(s) for *: 'Parameter' and 'float'",
+            "get_parameter() returns a Parameter",
+        ),
         ("TypeError: 'float' object is not iterable", "write [value]"),
         ("TypeError: 'Twist' object is not iterable", "A Twist is not a list."),
     ],

@@ -118,12 +118,12 @@ def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str, tmp_
 
         wrong = tmp_path / "degrees.py"
         wrong.write_text(f"# Degrees.\n{mistake_of(load(ROOT / 'exercises' / 'joint_velocity'), 'degrees').source}")
-        check(wrong, "9 of 11 public checks, 28 of 41 points")
+        check(wrong, "8 of 10 public checks, 24 of 37 points")
         expect(page.locator(".check-failed")).to_contain_text("Every velocity is in degrees.")
         assert shown.violations() == []
         assert not shown.scrolls_sideways()
-        check(solutions / "right" / "several_threads.py", "11 of 11 public checks, 41 of 41 points")
-        check(solutions / "solution.py", "11 of 11 public checks, 41 of 41 points")
+        check(solutions / "right" / "several_threads.py", "10 of 10 public checks, 37 of 37 points")
+        check(solutions / "solution.py", "10 of 10 public checks, 37 of 37 points")
         expect(page.locator(".check-result")).to_contain_text("This is a preview, not your grade")
 
         with page.expect_download() as download:
