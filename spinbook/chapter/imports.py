@@ -44,6 +44,18 @@ _REAL = frozenset(
         "cv_bridge",
     ]
 )
+#: Python modules of ROS 2 that PyPI does not have.
+_ONLY_IN_ROS = frozenset(
+    [
+        *("cv_bridge", "image_geometry", "image_transport_py", "laser_geometry", "tf_transformations", "rosbag2_py"),
+        *("rqt_gui", "rqt_gui_py", "nav2_simple_commander", "moveit_py", "robot_localization", "diagnostic_updater"),
+        *("ros2cli", "ros2run", "ros2launch", "launch_testing", "launch_testing_ros", "ros_gz_bridge", "gazebo_ros"),
+    ]
+)
+#: Modules that only programs bring along.
+_WITH_OTHERS = {"omni": "Isaac Sim", "carb": "Isaac Sim", "pxr": "Isaac Sim", "rospy": "ROS 1", "roslib": "ROS 1"}
+#: What helps if PyPI lacks a package of ROS.
+IN_ROS = "run the course where a ROS installation has it"
 
 
 @dataclass(frozen=True)
@@ -107,14 +119,20 @@ def _not_installed(top: str, line: int) -> MissingPackage:
         fix = f"Did you mean `{close}`?"
     elif top.endswith(("_msgs", "_srvs", "_interfaces", "_actions")):
         fix = remedy(top)
+    elif top in _ONLY_IN_ROS:
+        fix = f"PyPI does not have ROS 2's: {IN_ROS}, or write `static` after the fence's language."
+    elif top in _WITH_OTHERS:
+        fix = f"It comes only with {_WITH_OTHERS[top]}: write `static` after the fence's language."
     else:
-        fix = "Install it and add it to the course's dependencies, or write `static` after the fence's language."
+        fix = (
+            "If PyPI has it, add it to the course's dependencies; otherwise write `static` after the fence's language."
+        )
     return MissingPackage(top, f"imports `{top}`, which is not installed here.", fix, line)
 
 
 def remedy(package: str) -> str:
     """Return how to get a package of interfaces that is not here."""
-    unknown = "It is a package of ROS interfaces: install it, or show its .msg, .srv and .action files in the chapter."
+    unknown = f"PyPI does not have it: show its .msg, .srv and .action files in the chapter, or {IN_ROS}."
     return shipped.how_to_add(package) or unknown
 
 
@@ -186,6 +204,9 @@ def _similar(module: str) -> str:
         return ""
     known = [*ros_packages(), "rclpy", "numpy", "matplotlib"]
     close = difflib.get_close_matches(module, known, n=1, cutoff=0.8)
+    # geometry_msgs_py is not a misspelt geometry_msgs.
+    if close and (module.startswith(f"{close[0]}_") or close[0].startswith(f"{module}_")):
+        return ""
     # Interface packages have similar names: control_msgs is not a misspelt sensor_msgs.
     alike = close and module.rpartition("_")[2] == close[0].rpartition("_")[2] and "_" in module
     stem = module.rpartition("_")[0]

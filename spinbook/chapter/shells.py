@@ -14,11 +14,11 @@ from groundwork.problem import Problem, Severity
 from interface_compiler import prefixes
 from ros_in_python.ros2 import executables
 from spinbook.chapter.classify import CellKind, ClassifiedFence
-from spinbook.chapter.imports import interfaces_of, own_names, remedy, ros_packages
+from spinbook.chapter.imports import IN_ROS, interfaces_of, own_names, remedy, ros_packages
 from spinbook.chapter.launch_files import LaunchedNode, NotSupportedError, launched_nodes
 from spinbook.chapter.own_packages import OwnPackages, created_node, created_package
 from spinbook.chapter.program_names import ProgramNames
-from spinbook.chapter.terminal import Command, CommandKind
+from spinbook.chapter.terminal import Command, CommandKind, is_placeholder
 from spinbook.chapter.values_in_commands import wrong_values
 
 #: Commands that fail if the name they are given does not exist: noun -> verbs.
@@ -41,6 +41,13 @@ class _Reason:
     why: str
     fix: str
     group: str
+
+
+_TO_FILL_IN = _Reason(
+    "it holds placeholders for what a reader fills in",
+    "Write `static` after the language to say that this is meant.",
+    "",
+)
 
 
 class _CodeSoFar:
@@ -221,7 +228,9 @@ class Shells:
             close = difflib.get_close_matches(file, [*self._files, *self._launch_files], n=1)
             fix = f"Did you mean `{close[0]}`?" if close else "Show it in a fence above."
             return _Reason("no fence above is its launch file", fix, "" if close else "launch files")
-        fix = "Install it, or show its launch file and its programs in fences of the chapter."
+        if is_placeholder(package):
+            return _TO_FILL_IN
+        fix = f"Show its launch file and its programs in fences of the chapter, or {IN_ROS}."
         return _Reason(f"there is no package `{package}` here", fix, package)
 
     def _foreign(self, package: str, executable: str) -> _Reason | None:
@@ -245,7 +254,10 @@ class Shells:
         if package in self.own.names:
             fix = f'Show its program in a fence above: ```python title="{executable}.py"'
             return _Reason(f"no fence above shows `{executable}` of `{package}`", fix, "programs that no fence shows")
-        fix = f"Did you mean `{close[0]}`?" if close else "Install it, or show its program in a fence of the chapter."
+        if is_placeholder(package):
+            return _TO_FILL_IN
+        show = f"Show its program in a fence of the chapter, or {IN_ROS}."
+        fix = f"Did you mean `{close[0]}`?" if close else show
         return _Reason(f"there is no package `{package}` here", fix, package)
 
     def _lacks_file(self, command: Command) -> bool:

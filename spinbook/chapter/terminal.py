@@ -121,6 +121,21 @@ def looks_like_shell(code: str) -> bool:
     return bool(firsts) and set(firsts) <= known and bool(set(firsts) & PROGRAMS) and says_what
 
 
+#: What stands for the name of a package: `PACKAGE_NAME`, `<package>`, `{[1]`, `your_package`.
+_PACKAGE_PLACEHOLDER = re.compile(
+    r"[A-Z][A-Z0-9_]+|.*[^\w/.~-].*|(your|the|some|any|a|my_ros2?|ros2?)?_?(package|pkg)(_?name)?|(your|some)_\w+"
+)
+
+
+def is_placeholder(package: str) -> bool:
+    """Return whether a word in the place of a package's name is for a reader to fill in.
+
+    >>> [is_placeholder(name) for name in ("PACKAGE_NAME", "{[1]", "package_name", "my_package", "turtlesim")]
+    [True, True, True, False, False]
+    """
+    return bool(_PACKAGE_PLACEHOLDER.fullmatch(package))
+
+
 def programs_of(code: str) -> list[tuple[str, ...]]:
     """Return the words of each command, whether a notebook runs it or not."""
     commands = []
