@@ -24,6 +24,7 @@ from grader.report.printable import printable
 from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.workers.pool import HostFault, WorkerPool
 from groundwork.files import write_if_changed
+from groundwork.plain_text import print_in_any_encoding
 
 
 def main(folder: Path, repository: Path, isolation: str = "") -> int:
@@ -142,4 +143,5 @@ def _fenced(text: str) -> str:
 
 
 if __name__ == "__main__":
+    print_in_any_encoding()
     sys.exit(main(Path(sys.argv[1]), Path(sys.argv[2]), *sys.argv[3:4]))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import re
 import shlex
 import sys
 import zipfile
@@ -16,6 +15,7 @@ import click
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import COURSE, NoExercise, find, load
+from grader.gradescope.pins import NAME, hashed_pins, pins
 from grader.grading.reference import solution_file
 from grader.sandbox.middleware import MiddlewareUnavailable
 from grader.sandbox.program import Isolation
@@ -26,7 +26,8 @@ from interface_compiler.wheel_file import record, zipped
 SOURCE = Path(__file__).parents[2]
 
 #: The parts of it that the container needs.
-NEEDED = ("pyproject.toml", "README.md", "LICENSE", "constraints.txt", "constraints-ros.txt")
+NEEDED = ("pyproject.toml", "README.md", "LICENSE")
+LOCKS = ("constraints.txt", "constraints-ros.txt")
 
 PACKAGES = (
     *("grader", "spinbook", "packages/groundwork", "packages/rmw_lockstep"),
@@ -72,6 +73,7 @@ def autograder_files(exercise: Exercise, isolation: Isolation | None = None) -> 
 def _source() -> dict[str, bytes]:
     """Return the files of a checkout that the container needs."""
     files = {name: (SOURCE / name).read_bytes() for name in NEEDED}
+    files["pins.txt"] = hashed_pins(*(SOURCE / name for name in LOCKS)).encode()
     for package in PACKAGES:
         for file in _within(SOURCE / package):
             files[f"{package}/{file.relative_to(SOURCE / package)}"] = file.read_bytes()
@@ -169,8 +171,6 @@ def gradescope(exercise: str, out: Path | None, isolation: Isolation | None) -> 
     click.echo(f"{file}: upload it to Gradescope, under Configure Autograder.")
 
 
-NAME = "spinbook"
-
 #: The files that the installer adds to a wheel's own files.
 _INSTALLERS = ("INSTALLER", "REQUESTED", "direct_url.json", "RECORD")
 
@@ -199,20 +199,3 @@ def installed_wheel() -> tuple[str, bytes]:
     listing = f"{NAME}-{distribution.version}.dist-info/RECORD"
     files[listing] = record(files, listing)
     return f"{NAME}-{distribution.version}-py3-none-any.whl", zipped(files, last=listing)
-
-
-def pins() -> list[str]:
-    """Return the installed versions, such as `numpy==2.3.1`, of everything that the wheel may need."""
-    versions: dict[str, str] = {}
-    waiting = [NAME]
-    while waiting:
-        name = re.sub(r"[-_.]+", "-", waiting.pop()).lower()  # PEP 503, "Normalized Names"
-        if name in versions:
-            continue
-        try:
-            distribution = metadata.distribution(name)
-        except metadata.PackageNotFoundError:
-            continue
-        versions[name] = distribution.version
-        waiting += [match[0] for line in distribution.requires or () if (match := re.match(r"[\w.-]+", line))]
-    return sorted(f"{name}=={version}" for name, version in versions.items() if name != NAME)

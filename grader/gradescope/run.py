@@ -26,6 +26,7 @@ from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.submission.reader import Submission, read
 from grader.workers.pool import HostFault, WorkerPool
 from groundwork.files import write_if_changed
+from groundwork.plain_text import print_in_any_encoding
 
 
 def cache_next_to_course(exercise: Path) -> None:
@@ -96,6 +97,7 @@ def _metadata(file: Path) -> tuple[Student, datetime | None]:
 
 
 if __name__ == "__main__":
+    print_in_any_encoding()
     if sys.argv[1] == "prepare":
         prepare(Path(sys.argv[2]), *sys.argv[3:4])
     else:

@@ -15,19 +15,20 @@ if [ "${#missing[@]}" -gt 0 ]; then
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
 fi
 
-# Install a wheel with the versions that it ran with, or a checkout with the pinned ones. Hashes are left out, because
-# pip would then require one for everything, and a folder has none. The other wheels are what would have to be compiled:
-# the grader's middleware, the course's interfaces, and those that PyPI lacks.
-software=$(ls "$here"/course/spinbook-*.whl 2>/dev/null || echo "$here/course")
-if [ -f "$here/course/pins.txt" ]; then
-    cp "$here/course/pins.txt" "$here/pins.txt"
-else
-    cat "$here/course/constraints.txt" "$here/course/constraints-ros.txt" |
-        sed -n 's/^\([A-Za-z0-9].*[^ \\]\) *\\$/\1/p' >"$here/pins.txt"
-fi
+# A checkout's pins have hashes, and nothing is built but the checkout itself, with the pinned setuptools. An installed
+# wheel only knows the versions that it ran with. The other wheels are what would have to be compiled: the grader's
+# middleware, the course's interfaces, and those that PyPI lacks.
 python3 -m venv "$here/venv"
-"$here/venv/bin/python" -m pip install --quiet --disable-pip-version-check -c "$here/pins.txt" \
-    "$software[ros]" "$here"/course/wheels/*.whl
+pip() { "$here/venv/bin/python" -m pip --quiet --disable-pip-version-check "$@"; }
+pins=$here/course/pins.txt
+software=$(ls "$here"/course/spinbook-*.whl 2>/dev/null || echo "$here/course")
+if [ "$software" = "$here/course" ]; then
+    pip install --no-deps --require-hashes --only-binary :all: -r "$pins"
+    pip install --no-deps --no-build-isolation "$software"
+else
+    pip install -c "$pins" "$software[ros]"
+fi
+pip install --no-deps "$here"/course/wheels/*.whl
 
 # Test that grading works here, and store what the solution publishes. Problems are in the build's output.
 "$here/venv/bin/python" -m grader.gradescope.run prepare "$here/course/exercises/$EXERCISE" $ISOLATION

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +11,7 @@ import click
 import pytest
 from click.testing import CliRunner
 from course_folder import CourseFolder
+from tree import ROOT
 
 from spinbook import cli
 
@@ -83,6 +85,12 @@ def test_a_module_that_is_missed_only_while_a_verb_runs_is_one_sentence_too(
     assert done.exit_code == 2
     assert "`spinbook site` needs livereload" in done.output
     assert "pip install 'spinbook[site]'" in done.output
+
+
+def test_the_readme_lists_every_command() -> None:
+    rows = [row for row in (ROOT / "README.md").read_text(encoding="utf-8").splitlines() if row.startswith("| `")]
+    commands = {re.sub(r"^\| `(spinbook )?|[ `].*", "", row) for row in rows}
+    assert set(cli.VERBS) <= commands
 
 
 def test_ros2_run_without_ros_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -8,6 +8,10 @@ import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
+# Another thread must not make a file while it is being asked for, so it is asked for once.
+_UMASK = os.umask(0o077)
+os.umask(_UMASK)
+
 #: How the name of a file ends while it is being written.
 PART = ".part"
 
@@ -37,7 +41,7 @@ def write_if_changed(file: Path, content: str | bytes, *, durable: bool = False)
             if durable:
                 out.flush()
                 os.fsync(out.fileno())
-        os.chmod(temporary, 0o644)  # noqa: PTH101
+        os.chmod(temporary, 0o666 & ~_UMASK)  # noqa: PTH101
         os.replace(temporary, file)  # noqa: PTH105
     except BaseException:
         os.unlink(temporary)  # noqa: PTH108

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import platform
+import re
 import shutil
 import stat
 import subprocess
@@ -95,6 +96,23 @@ def test_the_zip_holds_the_two_scripts_and_of_the_solutions_only_one(autograder:
         assert subprocess.run(["bash", "-n", str(source / script)], check=False).returncode == 0
     solutions = [file.name for file in (source / "course" / "solutions").rglob("*") if file.is_file()]
     assert solutions == ["solution.py"]
+
+
+def test_what_the_container_installs_is_pinned_with_hashes_for_every_python(autograder: Path) -> None:
+    pins = (autograder / "source" / "course" / "pins.txt").read_text()
+    entries = re.split(r"^(?=[a-z])", pins, flags=re.MULTILINE)[1:]
+    names = {entry.partition("==")[0] for entry in entries}
+    assert {
+        "click",
+        "numpy",
+        "setuptools",
+        "tomli",
+        "ros-jazzy-rclpy",
+        "ros-rmw-fastrtps-cpp",
+        "ros-test-msgs",
+    } <= names
+    assert not names & {"sphinx", "mypy", "jupyterlab", "empy", "spinbook"}
+    assert all("--hash=sha256:" in entry for entry in entries)
 
 
 def test_the_zip_holds_wheels_of_all_that_would_have_to_be_compiled(

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import io
 import sys
 
 
 def main() -> None:
     """Run the command as this process; a signal during the imports ends it as quietly as one later on."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a message may have characters that the terminal's encoding lacks
     try:
         from ros_in_python.ros2.command import ros2
 

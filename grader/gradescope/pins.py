@@ -1,0 +1,64 @@
+"""The versions of everything that an autograder installs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from importlib import metadata
+from pathlib import Path
+
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+#: The distribution that an autograder installs, with ROS 2 from PyPI, and what builds it from a checkout.
+NAME, EXTRA, BUILD_TOOL = "spinbook", "ros", "setuptools"
+
+#: Needed only by ROS 2's own code generators, which do not run there.
+WITHOUT_WHEEL = {"empy"}
+
+#: The versions of Python that its container may have.
+PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14")
+
+
+def pins() -> list[str]:
+    """Return the installed versions, such as `numpy==2.3.1`, of everything that is needed."""
+    found = {name: _installed(name) for name in needed() if name != NAME}
+    return sorted(f"{name}=={distribution.version}" for name, distribution in found.items() if distribution)
+
+
+def hashed_pins(*locks: Path) -> str:
+    """Return what these files of pins with hashes (pip, "Secure installs") say of everything that is needed."""
+    names = {*needed(), BUILD_TOOL} - WITHOUT_WHEEL
+    entries = (entry for lock in locks for entry in re.split(r"^(?=[A-Za-z0-9])", lock.read_text(), flags=re.MULTILINE))
+    return "".join(entry for entry in entries if canonicalize_name(re.split("[=; ]", entry, maxsplit=1)[0]) in names)
+
+
+def needed() -> set[str]:
+    """Return the names of everything that is needed on any of these Pythons, as far as it is installed here."""
+    waiting, done = [(NAME, frozenset({EXTRA}))], set[tuple[str, frozenset[str]]]()
+    while waiting:
+        one = waiting.pop()
+        if one not in done:
+            done.add(one)
+            waiting += _requirements(*one)
+    return {name for name, _ in done}
+
+
+def _requirements(name: str, extras: frozenset[str]) -> Iterator[tuple[str, frozenset[str]]]:
+    distribution = _installed(name)
+    for text in (distribution.requires if distribution else None) or ():
+        requirement = Requirement(text)
+        if any(_applies(requirement, extra, python) for extra in ("", *extras) for python in PYTHONS):
+            yield canonicalize_name(requirement.name), frozenset(requirement.extras)
+
+
+def _applies(requirement: Requirement, extra: str, python: str) -> bool:
+    environment = {"extra": extra, "python_version": python, "python_full_version": f"{python}.0"}
+    return requirement.marker is None or requirement.marker.evaluate(environment)
+
+
+def _installed(name: str) -> metadata.Distribution | None:
+    try:
+        return metadata.distribution(name)
+    except metadata.PackageNotFoundError:
+        return None
