@@ -220,7 +220,7 @@ def _class(
     from grader.classroom.deadline import OverridesError
     from grader.classroom.formats.registry import FORMATS
     from grader.classroom.request import ClassRequest, NoCluster
-    from grader.classroom.results import Busy, NotWritable
+    from grader.classroom.results import Busy, NotWritable, OtherExercise
     from grader.classroom.submissions import SubmissionsError
 
     if class_options["format"] not in ("", *FORMATS):
@@ -230,7 +230,7 @@ def _class(
         return grade_class(exercise, class_request, Console(soft_wrap=False, highlight=False))
     except NotWritable as error:
         _stop(f"{error} Give another folder with --out.")
-    except (SubmissionsError, OverridesError, Busy, NoCluster) as error:
+    except (SubmissionsError, OverridesError, Busy, OtherExercise, NoCluster) as error:
         raise click.UsageError(str(error)) from None
 
 

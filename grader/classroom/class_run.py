@@ -46,8 +46,8 @@ def grade_class(exercise: Exercise, class_request: ClassRequest, console: Consol
     """Grade a class and print the result; return the exit code.
 
     Raises `SubmissionsError` if there is nothing to grade, `OverridesError` for a mistake in the overrides, `Busy`
-    when another run is using the same results folder, `NotWritable` when the results can't be written, and what
-    `grading_of` raises.
+    when another run is using the same results folder, `OtherExercise` when it has another exercise's grades,
+    `NotWritable` when the results can't be written, and what `grading_of` raises.
     """
     with tempfile.TemporaryDirectory(prefix="spinbook-class-") as unpacked, _ended_by_signals():
         deadline = deadline_of(exercise)
@@ -65,6 +65,7 @@ def grade_class(exercise: Exercise, class_request: ClassRequest, console: Consol
             collected, handed_in=tuple(one for one in collected.handed_in if one.student.id in submissions)
         )
         with Results(class_request.out) as results, WorkerPool() as workers:
+            results.check_exercise(exercise.name)
             grading = grading_of(exercise, class_request.options, workers)
             with _backend(grading, class_request) as backend:
                 class_grading = ClassGrading(exercise, backend, results, adjuster, grading)

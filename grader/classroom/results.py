@@ -52,6 +52,10 @@ class Busy(Exception):
     """Raised if another grading is writing to the same folder."""
 
 
+class OtherExercise(Exception):
+    """Raised if a folder holds the grades of another exercise, which would be replaced."""
+
+
 class Results:
     """One folder of results. Use it as a context manager, which keeps other gradings from writing to it."""
 
@@ -66,6 +70,16 @@ class Results:
             return from_json((folder_of(self.folder, student) / "grade.json").read_text(encoding="utf-8"))
         except (OSError, ValueError, KeyError, TypeError, AttributeError):
             return None
+
+    def check_exercise(self, exercise: str) -> None:
+        """Raise `OtherExercise` if the folder has grades of another exercise than this one."""
+        for file in sorted(self.folder.glob(f"{STUDENTS}/*/grade.json")):
+            stored = self.entry(file.parent.name)
+            if stored and stored[0].grade.exercise != exercise:
+                raise OtherExercise(
+                    f"{self.folder} holds the grades of the exercise {stored[0].grade.exercise}, which those of "
+                    f"{exercise} would replace. Give each exercise a folder of its own with --out."
+                )
 
     def plot(self, student: str) -> str | None:
         """Return the stored plot of a student's run."""

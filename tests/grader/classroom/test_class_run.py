@@ -14,6 +14,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
+from prepared_python import run_prepared
 from small_class import POINTS, ROOT, SmallClass
 
 from grader.classroom.formats.registry import TABLES
@@ -48,6 +49,18 @@ def test_everybody_gets_what_is_theirs_whatever_others_hand_in(graded: tuple[Sma
     assert "6 students in a folder with one file (or one folder) per student." in printed
     assert "fay: 0 of 20 points (did-not-start)" in printed
     assert "6 grades: median 17 of 20 points, 2 with full marks." in printed
+
+
+def test_grades_of_another_exercise_are_never_replaced(done: SmallClass) -> None:
+    other = done.folder / "exercises" / "other"
+    shutil.copytree(done.exercise, other)
+    shutil.copytree(done.folder / "solutions" / done.exercise.name, done.folder / "solutions" / "other")
+    before = {student: done.entry(student) for student in POINTS}
+    said = run_prepared("grader", "other", "submissions", "--out", "results", cwd=done.folder, env=done.environment)
+    assert said.returncode == 2
+    assert "holds the grades of the exercise" in said.stderr
+    assert "Give each exercise a folder of its own with --out." in said.stderr
+    assert {student: done.entry(student) for student in POINTS} == before
 
 
 def test_each_grade_is_as_the_published_schema_says(graded: tuple[SmallClass, str]) -> None:
