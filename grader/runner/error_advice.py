@@ -84,16 +84,14 @@ def result_advice(action: str) -> str:
 
 
 def _of_newer_ros(last: LastError, sources: Mapping[str, str]) -> str:
-    """Explain what newer distributions of ROS 2 have: `with rclpy.init()` and rclpy.experimental, since Kilted."""
-    here = f"This is ROS 2 {os.environ.get('ROS_DISTRO', 'jazzy').capitalize()}"
-    if "rclpy.init" in last.text and re.search(r"context manager protocol|__enter__", last.error):
-        return (
-            f"{here}, in which rclpy.init() can't follow `with`, as in newer versions. Write rclpy.init() on a line of "
-            "its own, and call rclpy.try_shutdown() at the end."
-        )
-    if "No module named 'rclpy.experimental" in last.error:
-        return f"{here}, which does not have it yet. Use an executor from rclpy.executors, or rclpy.spin(node)."
-    return ""
+    """Explain `with rclpy.init()`, which newer distributions of ROS 2 have, since Kilted."""
+    if "rclpy.init" not in last.text or not re.search(r"context manager protocol|__enter__", last.error):
+        return ""
+    here = os.environ.get("ROS_DISTRO", "jazzy").capitalize()
+    return (
+        f"This is ROS 2 {here}, in which rclpy.init() can't follow `with`, as in newer versions. Write rclpy.init() on a "
+        "line of its own, and call rclpy.try_shutdown() at the end."
+    )
 
 
 def _of_a_callback(last: LastError, sources: Mapping[str, str]) -> str:
