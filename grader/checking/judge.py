@@ -158,11 +158,16 @@ def with_spelling(verdict: Verdict, topics: Collection[str], node: str) -> Verdi
 
 def _suggest(finding: Finding, topics: Collection[str], node: str) -> Finding:
     for name in dict.fromkeys(TOPIC.findall(finding.text)):
-        meant = [] if name in (*topics, node) else difflib.get_close_matches(name, topics, n=1, cutoff=ALIKE)
-        if not meant and name not in (*topics, node):
-            meant = [topic for topic in topics if topic.rpartition("/")[2] == name.rpartition("/")[2]]
-            if meant:
-                return replace(finding, text=f"{finding.text} {name} is not {meant[0]}: the whole name counts.")
-        if meant:
-            return replace(finding, text=f"{finding.text} Is {name} a misspelling of {meant[0]}?")
+        if name not in (*topics, node) and (advice := _meant(name, topics)):
+            return replace(finding, text=f"{finding.text} {advice}")
     return finding
+
+
+def _meant(name: str, topics: Collection[str]) -> str:
+    """Return what a name that the task does not have probably means."""
+    if name.endswith("/transition_event"):
+        return "A lifecycle node has this topic. The task asks for a plain one: derive it from rclpy.node.Node."
+    if similar := difflib.get_close_matches(name, topics, n=1, cutoff=ALIKE):
+        return f"Is {name} a misspelling of {similar[0]}?"
+    same_end = [topic for topic in topics if topic.rpartition("/")[2] == name.rpartition("/")[2]]
+    return f"{name} is not {same_end[0]}: the whole name counts." if same_end else ""

@@ -14,6 +14,7 @@ from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
 from grader.report.pages import template
 from grader.report.path_plot import path_of, path_plot
+from grader.scenario.times import SECOND, START
 
 #: (seconds after the scenario's start, value)
 Point = tuple[float, float]
@@ -24,12 +25,16 @@ HIGHEST, MOST = 1e9, 24
 
 @dataclass(frozen=True)
 class Quantity:
-    """The field that is drawn. `element` is the word for one value; the list `named_by` contains the names of all."""
+    """The field that is drawn. `element` is the word for one value; the list `named_by` contains the names of all.
+
+    `state` is the topic on which a world publishes it, if the node moves it; otherwise, the node publishes it.
+    """
 
     field: str
     unit: str
     element: str
     named_by: str
+    state: str = ""
 
 
 @dataclass(frozen=True)
@@ -46,8 +51,19 @@ class Curve:
     first_wrong: Point | None
 
 
-def drawn_quantity(exercise: Exercise) -> Quantity | None:
-    """Return the first field that the node publishes and exercise.toml gives a unit for."""
+def drawn_quantity(exercise: Exercise, grade: Grade, scenario: str) -> Quantity | None:
+    """Return the first field that exercise.toml gives a unit for, and that the node publishes.
+
+    In a closed loop, it is the first that the node moves: each node may do that with values of its own.
+    """
+    for topic in exercise.inputs if scenario in grade.recordings else ():
+        mine, its = (
+            [message.fields for message in runs[scenario].sent if message.topic == topic.name]
+            for runs in (grade.recordings, grade.references)
+        )
+        if mine != its:
+            for field, unit in topic.units.items():
+                return Quantity(field, unit, "value", "name", topic.name)
     for topic in exercise.outputs:
         for field, unit in topic.units.items():
             called, named_by = (topic.elements.called, topic.elements.named_by) if topic.elements else ("value", "name")
@@ -61,6 +77,8 @@ def curves(grade: Grade, exercise: Exercise, scenario: str, quantity: Quantity) 
     A field that is a single number gives one curve, named as the field. Messages without such a field or without names
     give none.
     """
+    if quantity.state:
+        return (_state_curve(grade, scenario, quantity),)
     run = Run(exercise, grade.recordings[scenario], grade.references[scenario])
     expected: dict[str, list[Point]] = {}
     got: dict[str, list[Point]] = {}
@@ -77,10 +95,29 @@ def curves(grade: Grade, exercise: Exercise, scenario: str, quantity: Quantity) 
     return tuple(_curve(element, expected.get(element, []), got.get(element, []), since) for element in elements)
 
 
+def _state_curve(grade: Grade, scenario: str, quantity: Quantity) -> Curve:
+    """Return what a world published of its state. The cross is at the first finding that has a time."""
+    expected, got = (
+        [
+            ((message.at - START) / SECOND, _number(Message(message).value(quantity.field)))
+            for message in runs[scenario].sent
+            if message.topic == quantity.state
+        ]
+        for runs in (grade.references, grade.recordings)
+    )
+    at = _times_of_findings(grade, scenario)
+    before = [point for point in _drawable(got) if at and point[0] <= at[0] + 1e-6]
+    return Curve(quantity.field, _drawable(expected), _drawable(got), before[-1] if before else None)
+
+
+def _times_of_findings(grade: Grade, scenario: str) -> list[float]:
+    findings = [verdict.finding for verdict in grade.verdicts if verdict.status == "failed" and not verdict.hidden]
+    return sorted(one.at for one in findings if one and one.scenario == scenario and one.at is not None)
+
+
 def _first_finding(grade: Grade, scenario: str, times: list[float]) -> float:
     """Return the time of the last message before the first finding: an earlier difference is allowed."""
-    findings = [verdict.finding for verdict in grade.verdicts if verdict.status == "failed" and not verdict.hidden]
-    at = min((one.at for one in findings if one and one.scenario == scenario and one.at is not None), default=0.0)
+    at = next(iter(_times_of_findings(grade, scenario)), 0.0)
     return max((time for time in times if time <= at + 1e-9), default=at)
 
 
@@ -143,7 +180,7 @@ def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
         return None
     if path := path_of(grade, exercise, scenario):
         return path_plot(path)
-    quantity = drawn_quantity(exercise)
+    quantity = drawn_quantity(exercise, grade, scenario)
     drawn = curves(grade, exercise, scenario, quantity) if quantity else ()
     if not quantity or not any(curve.got for curve in drawn):
         return None

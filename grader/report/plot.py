@@ -28,8 +28,8 @@ def draw(grade: Grade, exercise: Exercise, file: Path, scenario: str = "") -> No
     Each panel shows one element over simulated time; the first sample that differs is marked. Raises OSError when the
     file can't be written.
     """
-    quantity = drawn_quantity(exercise)
     name = scenario or _first_wrong(grade)
+    quantity = drawn_quantity(exercise, grade, name)
     figure = Figure(figsize=(9, 1.2), layout="constrained")
     if name in grade.recordings and (path := path_of(grade, exercise, name)):
         _path(figure, path)

@@ -89,8 +89,8 @@ def _of_newer_ros(last: LastError, sources: Mapping[str, str]) -> str:
         return ""
     here = os.environ.get("ROS_DISTRO", "jazzy").capitalize()
     return (
-        f"This is ROS 2 {here}, in which rclpy.init() can't follow `with`, as in newer versions. Write rclpy.init() on a "
-        "line of its own, and call rclpy.try_shutdown() at the end."
+        f"This is ROS 2 {here}, in which rclpy.init() can't follow `with`, as in newer versions. Write rclpy.init() on "
+        "a line of its own, and call rclpy.try_shutdown() at the end."
     )
 
 

@@ -25,3 +25,13 @@ def test_a_slip_is_reported() -> None:
 @pytest.mark.parametrize("text", ["Expected /joint_velocity, got /joint_velocity, /log.", "Nothing came on /scan."])
 def test_the_exercises_own_names_and_quite_other_ones_are_no_slips(text: str) -> None:
     assert hinted(text) == text
+
+
+def test_a_name_in_another_namespace_is_reported() -> None:
+    text = "It publishes on: /joint_velocity/joint_velocities."
+    assert hinted(text) == f"{text} /joint_velocity/joint_velocities is not /joint_velocities: the whole name counts."
+
+
+def test_the_topic_of_a_lifecycle_node_is_explained() -> None:
+    text = "Your node publishes on other topics, too. Expected none, got /joint_velocity/transition_event."
+    assert hinted(text).startswith(f"{text} A lifecycle node has this topic.")

@@ -66,6 +66,27 @@ def test_a_long_path_is_drawn_to_its_end_and_numbers_that_are_not_finite_are_lef
     assert all(re.fullmatch(r"[\d.]+,[\d.]+", point) for point in points)
 
 
+def test_of_a_loop_with_one_number_the_controlled_number_is_drawn() -> None:
+    level = replace(POSE, name="/level", units={"x": "m"})
+    exercise = replace(EXERCISE, topics=(level, COMMAND))
+
+    def filled(slope: float) -> Recording:
+        return replace(drive(slope), sent=tuple(replace(one, topic="/level") for one in drive(slope).sent[2:]))
+
+    finding = Finding("At 3.00 s: it overshoots", "ahead", at=3.0)
+    levels = tuple(replace(one, fields={"x": 2 * one.fields["x"]}) for one in filled(1.0).sent)
+    mine = replace(filled(1.0), sent=levels)
+    grade = replace(
+        plain.grade(plain.failed(plain.PUBLIC, finding)), recordings={"ahead": mine}, references={"ahead": filled(1.0)}
+    )
+
+    plot = feedback_plot(grade, exercise)
+
+    assert plot
+    assert "The x over 4 s, yours drawn over the solution's." in plot.replace("&#39;", "'")
+    assert "at 3.00 s, is marked with a cross." in plot
+
+
 def test_the_instructors_picture_shows_the_path_too(tmp_path: Path) -> None:
     grade = plain.grade(plain.failed(plain.PUBLIC, Finding("At 2.00 s: wrong", "ahead", at=2.0)))
 
