@@ -19,7 +19,8 @@ def main() -> int:
         # The installer prints on standard error: standard output is the runner's.
         subprocess.run(["bash", str(HERE / "setup.sh")], check=True, stdout=sys.stderr)
     exercise = HERE / "course" / "exercises" / EXERCISE
-    words = [str(python), "-m", "grader.classroom50.run", str(exercise), ".", *filter(None, [ISOLATION])]
+    # -I: the current folder is the student's, whose json.py must not run in the grader.
+    words = [str(python), "-I", "-m", "grader.classroom50.run", str(exercise), ".", *filter(None, [ISOLATION])]
     return subprocess.run(words, check=False).returncode
 
 

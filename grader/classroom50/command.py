@@ -11,34 +11,8 @@ from grader.exercise.loading import find, load
 from grader.gradescope.command import author_errors, autograder_files, isolation_option
 from grader.sandbox.program import Isolation
 
-#: For a repository without Classroom 50. The folder that this command writes must then be a private repository.
-WORKFLOW = """\
-# Put this into .github/workflows/ of the repository to grade. The folder with autograder.py must be a private
-# repository of yours, read with a token (Settings > Secrets > Actions): students must not be able to read it.
-name: Grade @EXERCISE@
-on: [push, workflow_dispatch]
-permissions:
-  contents: read
-jobs:
-  grade:
-    runs-on: ubuntu-latest
-    steps:
-      - uses: actions/checkout@v4
-      - uses: actions/checkout@v4
-        with:
-          repository: ${{ vars.SPINBOOK_GRADER }}
-          token: ${{ secrets.SPINBOOK_GRADER_TOKEN }}
-          path: .spinbook-grader
-      - run: mv .spinbook-grader "$RUNNER_TEMP/grader"
-      - uses: actions/setup-python@v5
-        with:
-          python-version: "3.12"
-      - run: python "$RUNNER_TEMP/grader/autograder.py"
-      - uses: actions/upload-artifact@v4
-        with:
-          name: result
-          path: result.json
-"""
+#: The level on GitHub's machines: without bubblewrap, which would have to be installed for each run.
+ON_GITHUB = Isolation.NAMESPACES
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -51,10 +25,12 @@ def classroom50(exercise: str, out: Path | None, isolation: Isolation | None) ->
     Classroom 50: copy the contents of the folder to CLASSROOM/autograders/ASSIGNMENT/ of your organization's repository
     classroom50. Its runner starts autograder.py for each submission, which writes result.json (classroom50/result/v1).
 
-    GitHub Actions alone: make the folder a private repository, and put its github-workflow.yml into each student's.
+    GitHub Actions alone: make the folder a private repository of yours. Its workflow, .github/workflows/grade.yml,
+    fetches the students' repositories and grades them as a class; that file says what to set.
 
-    The folder holds the solution and the hidden checks. Classroom 50 publishes it with GitHub Pages, where anybody who
-    finds the address can read it.
+    The folder holds the solution and the hidden checks, so students must not be able to read it or to write to it.
+    Classroom 50 publishes it with GitHub Pages, where anybody who finds the address can read it: solutions there are
+    not secret.
 
     Exit codes: 0 written, 2 wrong usage, 3 the exercise is at fault.
     """
@@ -65,14 +41,22 @@ def classroom50(exercise: str, out: Path | None, isolation: Isolation | None) ->
     for name, content in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(content)
-    click.echo(f"{folder}: copy its contents to CLASSROOM/autograders/ASSIGNMENT/ of your classroom50 repository.")
-    click.echo("It contains the solution; --help says who can read it there.")
+    click.echo(f"{folder}: copy its contents to CLASSROOM/autograders/ASSIGNMENT/ of your classroom50 repository,")
+    click.echo(
+        "or make it a private repository for GitHub Actions. It contains the solution; --help says who can read it."
+    )
 
 
 def _files(exercise: Exercise, isolation: Isolation | None) -> dict[str, bytes]:
-    script = Path(__file__).with_name("autograder.py").read_text(encoding="utf-8")
-    script = script.replace("@EXERCISE@", exercise.name).replace("@ISOLATION@", isolation.value if isolation else "")
     files = {name: content for name, (content, _) in autograder_files(exercise, isolation).items()}
     del files["run_autograder"]
-    workflow = WORKFLOW.replace("@EXERCISE@", exercise.name)
-    return {**files, "autograder.py": script.encode(), "github-workflow.yml": workflow.encode()}
+    files["autograder.py"] = _filled("autograder.py", exercise, isolation)
+    files["fetch_repositories.py"] = _filled("fetch_repositories.py", exercise, isolation)
+    files[".github/workflows/grade.yml"] = _filled("grade.yml", exercise, isolation or ON_GITHUB)
+    return files
+
+
+def _filled(name: str, exercise: Exercise, isolation: Isolation | None) -> bytes:
+    text = Path(__file__).with_name(name).read_text(encoding="utf-8")
+    level = isolation.value if isolation else ""
+    return text.replace("@EXERCISE@", exercise.name).replace("@ISOLATION@", level).encode()

@@ -31,4 +31,4 @@ fi
 pip install --no-deps "$here"/course/wheels/*.whl
 
 # Test that grading works here, and store what the solution publishes. Problems are in the build's output.
-"$here/venv/bin/python" -m grader.gradescope.run prepare "$here/course/exercises/$EXERCISE" $ISOLATION
+"$here/venv/bin/python" -I -m grader.gradescope.run prepare "$here/course/exercises/$EXERCISE" $ISOLATION
