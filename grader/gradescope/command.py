@@ -75,7 +75,7 @@ def _source() -> dict[str, bytes]:
     files = {name: (SOURCE / name).read_bytes() for name in NEEDED}
     files["pins.txt"] = hashed_pins(*(SOURCE / name for name in LOCKS)).encode()
     for package in PACKAGES:
-        for file in _within(SOURCE / package):
+        for file in _within(SOURCE / package, but="tests"):
             files[f"{package}/{file.relative_to(SOURCE / package)}"] = file.read_bytes()
     return files
 
@@ -113,10 +113,11 @@ def _files(exercise: Exercise) -> Iterator[tuple[str, Path]]:
         yield course.name, course
 
 
-def _within(folder: Path) -> list[Path]:
-    """Return the files below `folder`, without caches and hidden files."""
+def _within(folder: Path, but: str = "") -> list[Path]:
+    """Return the files below `folder`, without caches, hidden files and the folder `but` in it."""
     files = [file for file in folder.rglob("*") if file.is_file() and file.suffix != ".pyc"]
-    kept = [file for file in files if not any(part.startswith(".") for part in file.relative_to(folder).parts)]
+    parts = {file: file.relative_to(folder).parts for file in files}
+    kept = [file for file in files if parts[file][0] != but and not any(part.startswith(".") for part in parts[file])]
     return sorted(file for file in kept if "__pycache__" not in file.parts)
 
 
