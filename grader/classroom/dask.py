@@ -7,7 +7,7 @@ import hashlib
 import tempfile
 import threading
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ from grader.classroom.local import own_core
 from grader.classroom.request import GradedSubmission, NoCluster, host_error
 from grader.classroom.results import grade_key
 from grader.exercise.exercise import Exercise
-from grader.exercise.loading import load
+from grader.exercise.loading import COURSE, load
 from grader.grading.grade import Options
 from grader.grading.grading import Grading, grading_of
 from grader.grading.reference import versions
@@ -23,6 +23,8 @@ from grader.report.feedback_plot import picture
 from grader.sandbox.middleware import require_middleware
 from grader.submission.reader import Submission
 from grader.workers.pool import WorkerPool
+from groundwork.files import cached, write_if_changed
+from interface_compiler.near import CURRENT, STORE, current
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -30,37 +32,64 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ExerciseFiles:
-    """The files that grading needs, by path inside the course's folder."""
+    """The files that grading needs, by path inside the course's folder.
+
+    `interfaces` are those that were compiled for the course, by path inside their prefix, which is called `prefix`.
+    """
 
     exercise: str
     files: dict[str, bytes]
+    prefix: str = ""
+    interfaces: dict[str, bytes] = field(default_factory=dict)
 
     @property
     def digest(self) -> str:
         """The SHA-256 of all names and contents."""
         total = hashlib.sha256(self.exercise.encode())
-        for name, content in sorted(self.files.items()):
+        for name, content in (*sorted(self.files.items()), *sorted(self.interfaces.items())):
             total.update(f"{name} {len(content)}\n".encode())
             total.update(content)
         return total.hexdigest()
 
     def unpack(self, into: Path) -> Path:
         """Write the files into the folder `into`; return the exercise's folder."""
-        for name, content in self.files.items():
-            file = into / name
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_bytes(content)
+        _write(into, self.files)
+        if self.prefix:
+            store = self._keep_interfaces()
+            (into / STORE).parent.mkdir(parents=True)
+            (into / STORE).symlink_to(store)
         return into / "exercises" / self.exercise
+
+    def _keep_interfaces(self) -> Path:
+        """Write the interfaces where they stay: Python has loaded them when the next exercise needs them."""
+        store = cached("cluster-interfaces") / self.prefix
+        if not (store / CURRENT).is_file():
+            _write(store / self.prefix, self.interfaces)
+            write_if_changed(store / CURRENT, self.prefix)
+        return store
+
+
+def _write(into: Path, files: Mapping[str, bytes]) -> None:
+    for name, content in files.items():
+        file = into / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_if_changed(file, content)
 
 
 def pack_exercise(exercise: Exercise) -> ExerciseFiles:
-    """Return the exercise's folder and the author's solution."""
+    """Return the exercise's folder, the author's solution, and the interfaces that were compiled for the course."""
     name = exercise.name
     found = [file for file in sorted(exercise.folder.rglob("*")) if file.is_file() and "__pycache__" not in file.parts]
     files = {f"exercises/{name}/{file.relative_to(exercise.folder).as_posix()}": file.read_bytes() for file in found}
     if exercise.solution_file:
         files[f"solutions/{name}/solution.py"] = exercise.solution_file.read_bytes()
-    return ExerciseFiles(name, files)
+    course = next((folder for folder in exercise.folder.parents if (folder / COURSE).is_file()), None)
+    prefix = current(course / STORE) if course else None
+    if prefix is None:
+        return ExerciseFiles(name, files)
+    inside = (file for file in sorted(prefix.rglob("*")) if file.is_file() and "__pycache__" not in file.parts)
+    interfaces = {file.relative_to(prefix).as_posix(): file.read_bytes() for file in inside}
+    return ExerciseFiles(name, {**files, COURSE: b""}, prefix.name, interfaces)
 
 
 @dataclass(frozen=True)
@@ -109,8 +138,9 @@ def _prepared_grading(packed: ExerciseFiles, options: Options) -> PreparedGradin
                 _ready.popitem()[1].resources.close()
             with contextlib.ExitStack() as resources:
                 folder = resources.enter_context(tempfile.TemporaryDirectory(prefix="spinbook-exercise-"))
+                exercise = load(packed.unpack(Path(folder)))  # before the workers start: they use its interfaces, too
                 workers = resources.enter_context(WorkerPool())
-                grading = grading_of(load(packed.unpack(Path(folder))), options, workers)
+                grading = grading_of(exercise, options, workers)
                 _ready[name] = PreparedGrading(grading, grade_key(grading), resources.pop_all())
         return _ready[name]
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from grader.exercise.exercise import Qos
 from grader.recording.recording import Fields
-from grader.scenario.code import line_of_the_author
+from grader.scenario.code import AuthorCode, line_of_the_author
 from grader.scenario.servers import ActionServer, Server
 from grader.scenario.times import BEFORE_START as BEFORE_START
 from grader.scenario.times import SECOND as SECOND
@@ -300,6 +300,8 @@ def _digestible(value: Any) -> Any:
         return {str(key): _digestible(one) for key, one in value.items()}
     if not hasattr(value, "__dataclass_fields__"):
         return value
+    if isinstance(value, AuthorCode):
+        value = value.without_folder()
     # Names of classes matter only where several are possible; they were never part of the digest of messages.
     found = {} if isinstance(value, (Scenario, Message)) else {"is": type(value).__name__}
     for one in fields(value):

@@ -11,14 +11,14 @@ from interface_compiler.prefixes import PYTHON
 #: A project's store, relative to the project's folder.
 STORE = Path("build", "interfaces")
 #: The file in the store's folder that names the newest prefix.
-_CURRENT = "current"
+CURRENT = "current"
 
 
 def make_current(folder: Path, prefix: Path) -> None:
     """Note which of a store's prefixes is in use, for processes that start later."""
-    new = folder / f".{_CURRENT}-{os.getpid()}"
+    new = folder / f".{CURRENT}-{os.getpid()}"
     new.write_text(prefix.name + "\n", encoding="utf-8")
-    new.replace(folder / _CURRENT)
+    new.replace(folder / CURRENT)
 
 
 def use(prefix: Path, folder: Path) -> None:
@@ -30,7 +30,7 @@ def use(prefix: Path, folder: Path) -> None:
 def current(folder: Path) -> Path | None:
     """Return the prefix that was made current in a store, if it exists and is for this version of Python."""
     try:
-        name = (folder / _CURRENT).read_text(encoding="utf-8").strip()
+        name = (folder / CURRENT).read_text(encoding="utf-8").strip()
     except OSError:
         return None
     prefix = folder.resolve() / name

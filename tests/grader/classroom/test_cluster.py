@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -13,7 +14,12 @@ from pathlib import Path
 
 import psutil
 import pytest
-from small_class import POINTS, SmallClass, wait_until, without_timings
+from small_class import POINTS, ROOT, SmallClass, wait_until, without_timings
+
+from grader.classroom.dask import pack_exercise
+from grader.exercise import load
+from grader.scenario.declared import declared
+from interface_compiler import near, prefixes
 
 # Importing it takes half a second, in each of pytest-xdist's processes.
 pytestmark = pytest.mark.skipif(find_spec("distributed") is None, reason="Dask is not installed")
@@ -76,3 +82,35 @@ def test_a_scheduler_that_does_not_answer_is_reported_in_a_sentence(small_class:
     assert code == 2, printed
     assert "no Dask scheduler answers there" in printed
     assert "Traceback" not in printed
+
+
+def test_a_course_grades_the_same_from_any_folder(tmp_path: Path) -> None:
+    for name in ("here", "there"):
+        shutil.copytree(ROOT / "exercises" / "go_to_goal", tmp_path / name / "exercises" / "go_to_goal")
+    digests = [
+        [scenario.digest for scenario in declared(load(tmp_path / name / "exercises" / "go_to_goal"), 1)]
+        for name in ("here", "there")
+    ]
+    assert digests[0] == digests[1]
+
+
+def test_the_interfaces_of_a_course_travel_to_the_workers_and_stay_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SPINBOOK_CACHE", str(tmp_path / "cache"))
+    shutil.copytree(ROOT / "exercises" / "heartbeat", tmp_path / "course" / "exercises" / "heartbeat")
+    (tmp_path / "course" / "course.toml").touch()
+    exercise = load(tmp_path / "course" / "exercises" / "heartbeat")
+    module = tmp_path / "course" / near.STORE / "0123" / prefixes.PYTHON / "arm_msgs" / "__init__.py"
+    module.parent.mkdir(parents=True)
+    module.write_text("# compiled")
+    near.make_current(tmp_path / "course" / near.STORE, module.parents[4])
+
+    packed = pack_exercise(exercise)
+    for worker in ("first", "second"):
+        folder = packed.unpack(tmp_path / worker)
+        prefix = near.current(folder.parents[1] / near.STORE)
+        assert prefix
+        assert (prefix / prefixes.PYTHON / "arm_msgs" / "__init__.py").read_text() == "# compiled"
+        shutil.rmtree(tmp_path / worker)
+        assert prefix.is_dir()
