@@ -13,6 +13,7 @@ from markdown_it.token import Token
 
 from spinbook.chapter import attributes
 from spinbook.chapter.block import Block, BlockKind, SourceLine, as_fence, merged_callouts, paired, unquoted
+from spinbook.chapter.components import unindented
 from spinbook.chapter.fence import Fence, directive, make_fence
 from spinbook.chapter.flavours import parser
 
@@ -327,7 +328,7 @@ class _Reader:
 
 def read_blocks(text: str, include: Include) -> tuple[Block, ...]:
     """Return the blocks of a chapter's text."""
-    text = attributes.imported_pictures(text)
+    text = unindented(attributes.imported_pictures(text))
     lines = [SourceLine(content, number) for number, content in enumerate(text.split("\n"), start=1)]
     return _Reader(include).blocks(lines)
 

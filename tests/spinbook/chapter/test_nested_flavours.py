@@ -25,6 +25,8 @@ FLAVOURS = {
     "mdx": (('<Admonition type="warning" title="Sharp">', "WORDS", "</Admonition>"), "Sharp"),
     "starlight": (('<Aside type="caution" title="Keep off">', "WORDS", "</Aside>"), "Keep off"),
     "nextra": (("<Callout title={'Read'} type=\"info\">", "  WORDS", "</Callout>"), "Read"),
+    "mdx-indented": (("<Tabs>", '  <TabItem label="A">', "    WORDS", "  </TabItem>", "</Tabs>"), None),
+    "starlight-indented": (('<Aside title="Inside">', "", "    WORDS", "", "</Aside>"), "Inside"),
     "one-line": (('<Aside type="tip" title="Short">WORDS</Aside>',), "Short"),
     "gitbook": (('{% hint style="danger" %}', "WORDS", "{% endhint %}"), "Caution"),
     "kramdown": (("WORDS", "{: .warning }"), "Warning"),
