@@ -8,6 +8,7 @@ from typing import Any
 
 from grader.checking.cause import Cause
 from grader.checking.comparator import TOLERANCE, difference, equal, shown
+from grader.checking.doubts import note
 from grader.checking.hint_texts import hints
 from grader.checking.late_answers import AT_ONCE, delay, how_late, in_general, is_late, is_one_late
 from grader.checking.message import Exchange, Message
@@ -40,7 +41,17 @@ def must_match(
         else:
             _compare(run, exchange, got, field, unit, tolerance)
 
+    if field.startswith("header"):
+        _note_stamps(_expected(run))
     each((exchange for exchange in _expected(run) if exchange.answers or not missing_ok), compare)
+
+
+def _note_stamps(exchanges: list[Exchange]) -> None:
+    """Note whether a copied stamp can be told from the time at which the message arrived."""
+    stamped = [exchange for exchange in exchanges if "header" in exchange.sent._fields]
+    if stamped:
+        text = "the stamp is also the time at which the message arrives, so a stamp from now() passes, too."
+        note(text, tested=any(exchange.sent.stamp_ns != exchange.sent.at_ns for exchange in stamped))
 
 
 def _expected(run: RecordedRun) -> list[Exchange]:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
+import pkgutil
 import re
 from functools import cache
-from pathlib import Path
-
-_FILE = Path(__file__).with_name("hints.md")
 
 
 def hints(name: str, **words: str) -> tuple[str, str]:
@@ -23,7 +21,9 @@ def hints(name: str, **words: str) -> tuple[str, str]:
 @cache
 def texts() -> dict[str, tuple[str, str]]:
     """Return the two paragraphs of each section of hints.md, each on one line."""
-    sections = re.split(r"^## (\w+)$", _FILE.read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]
+    content = pkgutil.get_data(__package__, "hints.md")  # in a page, this package is in an archive
+    assert content
+    sections = re.split(r"^## (\w+)$", content.decode(), flags=re.MULTILINE)[1:]
     return dict(zip(sections[::2], map(_paragraphs, sections[1::2]), strict=True))
 
 

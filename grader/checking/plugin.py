@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 import pytest
 
+from grader.checking import doubts
 from grader.checking.ending_message import message_of
 from grader.checking.run import Run
 from grader.checking.verdict import CheckOptions, Finding, Verdict, Wrong, check_options
@@ -149,6 +150,7 @@ class Checks:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         """Skip what can't be judged."""
+        doubts.begin()
         if not self._run:
             pytest.skip("only listed")
         blocking = self._blocking(item.name)
@@ -182,7 +184,7 @@ class Checks:
         )
         error = call.excinfo.value if call.excinfo else None
         if error is None:
-            return verdict
+            return replace(verdict, untested=mark.untested or doubts.untested())
         if isinstance(error, pytest.skip.Exception):
             return replace(verdict, status="blocked", blocked_by=self._blocking(item.name))
         if isinstance(error, AssertionError):

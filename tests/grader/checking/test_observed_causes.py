@@ -7,12 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from made_up import EMPTY, ENDS, EXERCISE, FLOAT, finding, ns, published, run
+import pytest
+from made_up import EMPTY, ENDS, EXERCISE, FLOAT, STAMPED, finding, ns, published, run
 
-from grader.checking import observed
+from grader.checking import doubts, observed
 from grader.checking.hint_texts import texts
 from grader.exercise.exercise import Elements, Topic
-from grader.recording import Ending, Endpoint, ReceivedMessage, Recording
+from grader.recording import Ending, Endpoint, ReceivedMessage, Recording, SentMessage
 
 RIGHT = published((0.1, 0.2, 0.3), (1.0, 2.0, 3.0))
 
@@ -75,6 +76,21 @@ def test_messages_at_one_moment_have_no_rate() -> None:
         "At 0.10 s (as usual): all 3 messages on /out were published at one moment, 10 per second were expected. "
         "No time passed between them."
     )
+
+
+@pytest.mark.parametrize(("late", "untested"), [(0.0, True), (0.3, False)])
+def test_a_copied_stamp_is_tested_only_where_messages_are_late(late: float, untested: bool) -> None:
+    def stamped(at: float) -> dict[str, Any]:
+        sec, nanosec = divmod(ns(at), 1_000_000_000)
+        return {"header": {"stamp": {"sec": sec, "nanosec": nanosec}, "frame_id": ""}}
+
+    sent = tuple(SentMessage(ns(at + late), "/in", STAMPED, stamped(at)) for at in (0.1, 0.2))
+    got = tuple(ReceivedMessage(one.at, number, "/out", STAMPED, one.fields) for number, one in enumerate(sent, 1))
+    doubts.begin()
+
+    run(replace(EMPTY, sent=sent, received=got)).must_match("header.stamp")
+
+    assert bool(doubts.untested()) is untested
 
 
 def test_every_hint_is_used_and_filled_in_and_not_longer_than_a_student_reads() -> None:
