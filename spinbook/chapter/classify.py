@@ -10,7 +10,8 @@ from pathlib import Path
 
 from groundwork.problem import Problem, Severity
 from spinbook.chapter.attributes import not_included
-from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_of, interface_title, is_someone_elses
+from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_of, interface_title
+from spinbook.chapter.installed_interfaces import is_someone_elses
 from spinbook.chapter.launch_files import is_package_file, unsupported_in_launch_file
 from spinbook.chapter.node_classes import snake_case
 from spinbook.chapter.own_packages import is_setup_excerpt

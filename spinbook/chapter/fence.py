@@ -7,7 +7,6 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from interface_compiler import prefixes, shipped
 from interface_compiler.definition import KINDS
 from spinbook.chapter.attributes import options
 
@@ -217,14 +216,3 @@ def interface_of(fence: Fence, package: str) -> str | None:
     `package` is used if neither the fence nor the chapter names one.
     """
     return None if fence.has("static") else interface_path(fence.interface or fence.title or "", package)
-
-
-def is_someone_elses(package: str, own: str) -> bool:
-    """Return whether a package is installed and does not belong to a course: a chapter only shows its interfaces. `own`
-    is this course's package."""
-    if package == own:
-        return False
-    if package in (*shipped.standard(), *shipped.optional()):
-        return True
-    prefix = prefixes.prefix_of(package, prefixes.installed())
-    return prefix is not None and not prefixes.key_of(package, prefix)

@@ -12,7 +12,7 @@ import shlex
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from ros_in_python.launch.python_file import MODULES
+from ros_in_python.launch.api import NAMES
 from spinbook.chapter.node_classes import last_name
 from spinbook.chapter.terminal import Command, CommandKind
 
@@ -191,12 +191,12 @@ def unsupported_in_launch_file(code: str) -> str:
     """
     for item in ast.walk(ast.parse(code)):
         if isinstance(item, ast.ImportFrom) and item.module and item.module.split(".")[0] in {"launch", "launch_ros"}:
-            there = MODULES.get(item.module, {})
+            there = NAMES.get(item.module, ())
             missing = [name.name for name in item.names if name.name not in there]
-            if missing and not all(f"{item.module}.{name}" in MODULES for name in missing):
+            if missing and not all(f"{item.module}.{name}" in NAMES for name in missing):
                 return f"{item.module}.{missing[0]}"
         elif isinstance(item, ast.Import):
             for name in item.names:
-                if name.name.split(".")[0] in {"launch", "launch_ros"} and name.name not in MODULES:
+                if name.name.split(".")[0] in {"launch", "launch_ros"} and name.name not in NAMES:
                     return name.name
     return ""

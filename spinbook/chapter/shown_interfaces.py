@@ -15,7 +15,8 @@ from interface_compiler import prefixes, shipped
 from interface_compiler.definition import KINDS
 from interface_compiler.grammar import PRIMITIVES, usual_name
 from spinbook.chapter.block import Block, BlockKind, SourceLine, as_fence
-from spinbook.chapter.fence import Fence, is_someone_elses
+from spinbook.chapter.fence import Fence
+from spinbook.chapter.installed_interfaces import is_someone_elses
 
 #: A path. ASCII, because Chinese text has no spaces around it.
 _FILE = re.compile(r"(?<![\w.:])(?:[\w.~${}-]+/)*[A-Z]\w*\.(?:msg|srv|action)\b(?![\w(/]|\.\w)", re.ASCII)

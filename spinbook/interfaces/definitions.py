@@ -13,7 +13,8 @@ from interface_compiler.checks import check
 from interface_compiler.definition import CompileError, Definition, DefinitionError, Fault, by_package, read_folder
 from interface_compiler.near import make_current, use
 from interface_compiler.store import CompiledPackages
-from spinbook.chapter.fence import interface_package, interface_path, is_someone_elses
+from spinbook.chapter.fence import interface_package, interface_path
+from spinbook.chapter.installed_interfaces import is_someone_elses
 from spinbook.chapter.read import definitions_of
 from spinbook.course.course import FILE, Course
 from spinbook.problem import SpinbookError

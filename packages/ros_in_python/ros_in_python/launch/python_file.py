@@ -13,75 +13,36 @@ from typing import Any
 
 from ros_in_python.launch import actions, conditions, events, parameters, substitutions
 from ros_in_python.launch.actions import LaunchDescription
+from ros_in_python.launch.api import NAMES
 from ros_in_python.ros2.cli import CommandError
 
-_SOURCES = dict.fromkeys(
-    (
-        *("AnyLaunchDescriptionSource", "FrontendLaunchDescriptionSource", "PythonLaunchDescriptionSource"),
-        *("XMLLaunchDescriptionSource", "YAMLLaunchDescriptionSource"),
-    ),
-    actions.LaunchDescriptionSource,
-)
+#: Names that mean something with another name here, for any module or for one.
+_RENAMED: dict[str, Any] = {
+    "LaunchContext": substitutions.Context,
+    "SomeSubstitutionsType": Any,
+    "launch.events.Shutdown": events.ShutdownRequested,
+    "ExecuteLocal": actions.ExecuteProcess,
+    "RosTimer": actions.TimerAction,
+    "SetParameter": actions.ParameterForAll,
+    "Parameter": parameters.NodeParameter,
+    "PushROSNamespace": actions.PushRosNamespace,
+    "Command": substitutions.CommandOutput,
+    "PathSubstitution": substitutions.PathJoinSubstitution,
+    "FindPackage": substitutions.FindPackagePrefix,
+}
 
 
-def _named(module: ModuleType, *names: str) -> dict[str, Any]:
-    return {name: getattr(module, name) for name in names}
+def _meaning(module: str, name: str) -> Any:
+    if renamed := _RENAMED.get(f"{module}.{name}", _RENAMED.get(name)):
+        return renamed
+    if module.endswith("launch_description_sources"):
+        return actions.LaunchDescriptionSource
+    places = (actions, events, conditions, parameters, substitutions)
+    return next(getattr(place, name) for place in places if hasattr(place, name))
 
 
 #: The modules of ROS 2's launch API and what of each there is here.
-MODULES: dict[str, dict[str, Any]] = {
-    "launch": {
-        **_named(actions, "LaunchDescription", "LaunchDescriptionSource"),
-        **_named(substitutions, "Substitution"),
-        "LaunchContext": substitutions.Context,
-    },
-    "launch.actions": {
-        **_named(actions, "AppendEnvironmentVariable", "DeclareLaunchArgument", "ExecuteProcess", "GroupAction"),
-        **_named(actions, "IncludeLaunchDescription", "LogInfo", "OpaqueFunction", "SetEnvironmentVariable"),
-        **_named(actions, "SetLaunchConfiguration", "Shutdown", "TimerAction", "UnsetEnvironmentVariable"),
-        **_named(events, "EmitEvent", "RegisterEventHandler"),
-        "ExecuteLocal": actions.ExecuteProcess,
-    },
-    "launch.conditions": _named(
-        conditions, "IfCondition", "UnlessCondition", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals"
-    ),
-    "launch.event_handlers": _named(events, "OnProcessExit", "OnProcessIO", "OnProcessStart", "OnShutdown"),
-    "launch.events": {"Shutdown": events.ShutdownRequested},
-    "launch.events.process": _named(events, "ProcessExited", "ProcessIO", "ProcessStarted"),
-    "launch.launch_context": {"LaunchContext": substitutions.Context},
-    "launch.launch_description": {"LaunchDescription": LaunchDescription},
-    "launch.launch_description_source": _named(actions, "LaunchDescriptionSource"),
-    "launch.launch_description_sources": _SOURCES,
-    "launch.some_substitutions_type": {"SomeSubstitutionsType": Any},
-    "launch.substitution": _named(substitutions, "Substitution"),
-    "launch.substitutions": {
-        **_named(substitutions, "EnvironmentVariable", "FindExecutable", "LaunchConfiguration"),
-        **_named(substitutions, "PathJoinSubstitution", "PythonExpression", "TextSubstitution"),
-        **_named(substitutions, "ThisLaunchFile", "ThisLaunchFileDir"),
-        **_named(conditions, "AllSubstitution", "AndSubstitution", "AnySubstitution", "EqualsSubstitution"),
-        **_named(conditions, "IfElseSubstitution", "NotEqualsSubstitution", "NotSubstitution", "OrSubstitution"),
-        "Command": substitutions.CommandOutput,
-        "PathSubstitution": substitutions.PathJoinSubstitution,
-    },
-    "launch_ros": {},
-    "launch_ros.actions": {
-        **_named(actions, "LifecycleNode", "Node", "PushRosNamespace", "SetParametersFromFile"),
-        **_named(actions, "SetRemap", "SetUseSimTime"),
-        "PushROSNamespace": actions.PushRosNamespace,
-        "SetParameter": actions.ParameterForAll,
-        "RosTimer": actions.TimerAction,
-    },
-    "launch_ros.parameter_descriptions": {
-        **_named(parameters, "ParameterFile", "ParameterValue"),
-        "Parameter": parameters.NodeParameter,
-    },
-    "launch_ros.substitutions": _named(substitutions, "ExecutableInPackage", "FindPackagePrefix", "FindPackageShare")
-    | {"FindPackage": substitutions.FindPackagePrefix},
-    "launch_xml": {},
-    "launch_xml.launch_description_sources": _SOURCES,
-    "launch_yaml": {},
-    "launch_yaml.launch_description_sources": _SOURCES,
-}
+MODULES = {module: {name: _meaning(module, name) for name in names} for module, names in NAMES.items()}
 _ELSEWHERE = "ROS 2's own launch, which `ros2 launch` uses where ROS 2 is installed, knows more."
 _NOT_FOUND = re.compile(r"cannot import name '(\w+)'")
 
