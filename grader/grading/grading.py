@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from grader.checking.ending_message import message_of
 from grader.checking.verdict import Verdict
@@ -12,6 +12,7 @@ from grader.grading.grade import Grade, Options, Outcome
 from grader.grading.public import PublicPart, public_part
 from grader.grading.reference import reference, solution_file, versions
 from grader.grading.scenario_runner import ScenarioRunner
+from grader.recording.printed_paths import without_paths
 from grader.recording.recording import Ending, Recording
 from grader.sandbox.isolation import choose
 from grader.sandbox.program import Isolation, SandboxUnavailable
@@ -79,6 +80,7 @@ class Grading:
         message: str,
         began: float,
     ) -> Grade:
+        recordings = {name: replace(each, log=without_paths(each.log)) for name, each in recordings.items()}
         first = recordings.get(self.runner.scenarios[0].name)
         none = outcome in ("host-error", "undecided")
         score = 0.0 if none else sum(verdict.earned for verdict in verdicts)

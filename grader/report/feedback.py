@@ -9,9 +9,10 @@ from html import unescape
 
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Adjustment, Entry, Grade, Outcome
+from grader.recording.printed_paths import without_paths
 from grader.report.checks import shown_checks
 from grader.report.pages import render
-from grader.report.printable import as_students_see_it, printable
+from grader.report.printable import printable
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,7 @@ def tail(log: str) -> tuple[str, int]:
 
 
 def _readable(line: str) -> str:
-    return printable(as_students_see_it(ORDERS.sub("", line)), LONGEST_LINE)
+    return printable(without_paths(ORDERS.sub("", line)), LONGEST_LINE)
 
 
 KINDS: dict[str, str] = {"late": "Late", "override": "Changed by your instructor", "extra": "Extra credit"}

@@ -2,16 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
-#: Where libraries and the submission are on the grading machine says nothing to a student.
-PLACES = re.compile(r'(?<=File ")(?:/submission/|[^"\n]*/(?:site|dist)-packages/)')
-
-
-def as_students_see_it(log: str) -> str:
-    """Return a log in whose tracebacks files have the names that the student knows, such as `joint_velocity.py`."""
-    return PLACES.sub("", log)
-
 
 def printable(text: str, longest: int = 0) -> str:
     """Return `text` with every character that could control a terminal replaced; line ends and tabs stay.

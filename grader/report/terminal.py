@@ -8,8 +8,9 @@ from rich.text import Text
 
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
+from grader.recording.printed_paths import without_paths
 from grader.report.checks import ShownCheck, public_total, shown_checks
-from grader.report.printable import as_students_see_it, printable
+from grader.report.printable import printable
 from grader.sandbox.program import Isolation
 
 
@@ -62,7 +63,7 @@ def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = Fal
     console.print(Text(f"isolation: {grade.isolation}", style="dim"))
     if verbose:
         console.print(Text("the node's log:", style="bold"))
-        console.print(Text(printable(as_students_see_it(grade.log)) or "(nothing)"), soft_wrap=True)
+        console.print(Text(printable(without_paths(grade.log)) or "(nothing)"), soft_wrap=True)
 
 
 def _show_check(check: ShownCheck, error: str, console: Console, steps: int) -> None:

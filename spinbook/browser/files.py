@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -42,6 +43,7 @@ def pyodide_files(folder: Path) -> dict[str, bytes]:
 FOLDER = "run"
 _OFFLINE, _LIST = "offline.js", "files.json"
 _STATIC = Path(__file__).with_name("static")
+_SCRIPTS = frozenset(file.name for file in _STATIC.glob("*.js"))
 
 
 def can_run() -> bool:
@@ -62,14 +64,40 @@ def run_files(exercises: Mapping[str, bytes]) -> dict[str, str | bytes]:
     # A service worker only serves its own folder and those below.
     at_the_top = {_OFFLINE: files.pop(_OFFLINE)}
     files |= {"ros.zip": ros_archive(), "share.zip": share_archive(), "check.zip": check_archive(exercises)}
-    files[_LIST] = _listed(files)
+    version = _version(files)
+    files = {name: _with_version(name, data, version) for name, data in files.items()}
+    files[_LIST] = _listed(version, files)
     return {**at_the_top, **{f"{FOLDER}/{name}": data for name, data in files.items()}}
 
 
-def _listed(files: Mapping[str, bytes]) -> bytes:
-    """Return the list of what to load, for the page: each file's size in bytes, and a version that changes with any."""
-    version = digest(*(part for name in sorted(files) for part in (name, files[name])))[:16]
-    return json.dumps({"version": version, "files": {name: len(files[name]) for name in sorted(files)}}).encode()
+def run_version(files: Mapping[str, str | bytes]) -> str:
+    """Return the version of the files from `run_files` among a site's files; "" if there are none."""
+    listed = files.get(f"{FOLDER}/{_LIST}")
+    return str(json.loads(listed)["version"]) if listed else ""
+
+
+def _version(files: Mapping[str, bytes]) -> str:
+    """Return a version that changes with any of the files."""
+    return digest(*(part for name in sorted(files) for part in (name, files[name])))[:16]
+
+
+_ADDRESSES = "address.js"
+_IMPORT = re.compile(rb'((?:from|import) "\./[\w.]+\.js)"')
+
+
+def _with_version(name: str, data: bytes, version: str) -> bytes:
+    """Return a script that loads the others by addresses with this version, so that a page never mixes two."""
+    if name == _ADDRESSES:
+        return data.replace(b'VERSION = "VERSION"', f'VERSION = "{version}"'.encode())
+    if name not in _SCRIPTS:
+        return data
+    return _IMPORT.sub(rb"\1?v=" + version.encode() + b'"', data)
+
+
+def _listed(version: str, files: Mapping[str, bytes]) -> bytes:
+    """Return the list of what to load, for the page: each file's size in bytes and its digest."""
+    listed = {name: [len(files[name]), digest(files[name])[:16]] for name in sorted(files)}
+    return json.dumps({"version": version, "files": listed}).encode()
 
 
 #: The parts of a student's copy that the checks need.

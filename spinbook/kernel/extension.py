@@ -18,6 +18,7 @@ from spinbook.kernel import environment as domain
 from spinbook.kernel.node_errors import ERROR
 from spinbook.kernel.process import KeptProcess
 from spinbook.kernel.session import Session
+from spinbook.kernel.spin_in_cell import SpinInCell
 
 #: The domain to share with other programs, instead of the notebook's own.
 DOMAIN_VARIABLE = "SPINBOOK_DOMAIN"
@@ -43,6 +44,7 @@ def load(shell: Any) -> None:
     shell.events.register("pre_run_cell", lambda info: report_errors(session))
     shell.events.register("post_run_cell", lambda result: report_errors(session))
     shell.set_custom_exc((Exception,), _show_own_frames)
+    shell.events.register("pre_run_cell", SpinInCell(session.ran).before_cell)
     _find_scripts()
     atexit.register(farewell, session)
 

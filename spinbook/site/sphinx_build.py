@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import logging
 import re
 import shutil
@@ -17,7 +18,8 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem, Severity
-from spinbook.browser.files import FOLDER, pyodide_files, pyodide_folder
+from spinbook.browser.files import FOLDER, pyodide_files, pyodide_folder, run_version
+from spinbook.build.digest import digest
 from spinbook.course.course import Course
 from spinbook.handout.leaks import authors_code, leaks, secrets_of_all
 from spinbook.problem import SpinbookError
@@ -27,27 +29,53 @@ from spinbook.site.page import FRAME_SUFFIX, HOME, SEARCH
 
 #: The pictures and the other files of Sphinx's output that are published.
 _IMAGES = "_images"
-_OURS = ("early.js", "site.js", "run.js", "search.js", "site.css", "print.css", "icon.svg", "search-data.js")
+_SEARCH_DATA = "search-data.js"
+_OURS = ("early.js", "site.js", "run.js", "search.js", "site.css", "print.css", "icon.svg", _SEARCH_DATA)
 
 
 def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], site: Path) -> int:
     """Make `site` consist of these `pages` of `html` and these `files`: path -> content. Return the number of files."""
-    published = {Path(f"{page}.html"): (html / f"{page}.html").read_bytes() for page in pages}
+    scripts = {name: (html / "_static" / name).read_bytes() for name in _OURS}
+    # The search data changes with every sentence: it is no reason to load the rest again.
+    version = digest(run_version(files), *(data for name, data in scripts.items() if name != _SEARCH_DATA))[:16]
+    published = {Path(f"{page}.html"): _stamped((html / f"{page}.html").read_bytes(), version) for page in pages}
     used = b"\n".join(published.values())
     for image in (html / _IMAGES).glob("*"):
         # Sphinx keeps pictures of earlier builds: skip those that no page uses.
         if image.name.encode() in used:
             published[image.relative_to(html)] = image.read_bytes()
-    for name in _OURS:
-        published[Path("_static", name)] = (html / "_static" / name).read_bytes()
+    published |= {Path("_static", name): data for name, data in scripts.items()}
     for path, content in files.items():
         published[Path(path)] = content.encode("utf-8") if isinstance(content, str) else content
+    published[Path(_VERSION)] = version.encode()
+    published[Path(_OFFLINE)] = _for_offline(published)
     # Without this file, GitHub Pages leaves out folders that begin with an underscore.
     published[Path(".nojekyll")] = b""
     for relative, data in published.items():
         write_if_changed(site / relative, data)
     _remove_others(site, set(published))
     return len(published)
+
+
+#: For pages that are open while the course is updated; and what a page keeps for reading without a network.
+_VERSION, _OFFLINE = "version.txt", "offline.json"
+_OWN_FILE = re.compile(rb'(_static/(?:%s))"' % b"|".join(re.escape(name.encode()) for name in _OURS))
+
+
+def _stamped(page: bytes, version: str) -> bytes:
+    """Return a page that loads our scripts and styles by addresses with this version: no cache gives it older ones."""
+    return _OWN_FILE.sub(rb"\1?v=" + version.encode() + b'"', page)
+
+
+def _for_offline(published: Mapping[Path, bytes]) -> bytes:
+    """Return the pages, pictures and downloads of a site, each with a digest of its content."""
+    read = {path: data for path, data in published.items() if path.parts[0] != FOLDER}
+    listed = {
+        path.as_posix(): digest(data)[:16]
+        for path, data in sorted(read.items())
+        if path.suffix == ".html" or len(path.parts) > 1
+    }
+    return json.dumps(listed).encode()
 
 
 def _remove_others(site: Path, published: set[Path]) -> None:
@@ -196,7 +224,12 @@ def _settings(contents: SiteContents, course: Course) -> dict[str, Any]:
         "html_use_index": False,
         "html_permalinks_icon": "#",
         "html_additional_pages": {SEARCH: "search.html"},
-        "html_context": {"nav": nav, "repository": course.repository, "site": course.site},
+        "html_context": {
+            "nav": nav,
+            "repository": course.repository,
+            "site": course.site,
+            "package": course.package.name,
+        },
         "spinbook_terms": terms,
         "suppress_warnings": ["misc.highlighting_failure", "myst.xref_missing_ignored", "myst.strikethrough"],
     }

@@ -14,11 +14,12 @@ from rich.console import Console
 from grader.checking.verdict import Finding
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
+from grader.recording.printed_paths import without_paths
 from grader.report import terminal
 from grader.report.checks import ShownCheck, first_hints, public_total, shown_checks
 from grader.report.feedback import advice, described
 from grader.report.feedback_plot import feedback_plot
-from grader.report.printable import as_students_see_it, printable
+from grader.report.printable import printable
 from grader.report.terminal import show
 
 #: Columns of the plain text.
@@ -114,7 +115,7 @@ def _first_step(grade: Grade, exercise: Exercise) -> str:
 
 def _end(log: str) -> str:
     """Return the end of a log, which shows why the program ended."""
-    return as_students_see_it(log).strip()[-LONGEST:]
+    return without_paths(log).strip()[-LONGEST:]
 
 
 def _rows(grade: Grade, exercise: Exercise) -> list[CheckRow]:

@@ -38,6 +38,9 @@ def open_process(page: Any, identity: str) -> None:
     time.sleep = link.sleep  # type: ignore[assignment]
     logs.write = lambda line: print(line, file=sys.stderr)
     abort.end = _abort
+    # The names of the `ros2` command's nodes tell its processes apart, and Pyodide gives all the same number.
+    number = int(identity.lstrip("w"))
+    os.getpid = lambda: number
     # Browsers do not reveal the number reliably, and Pyodide's is 1: pools would have a single thread.
     os.cpu_count = lambda: _PROCESSORS
     rcl_python.install()

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
 from std_srvs.srv import Trigger
+
+from ros_in_python.turtlesim.world_picture import WorldPicture, caption
+from ros_in_python.turtlesim.world_svg import still_svg
 
 #: How often the picture is requested (s).
 _PERIOD_S = 0.25
@@ -33,7 +37,11 @@ class Window(Node):
             self._commands.publish(command)
         if (self._requested is None or self._requested.done()) and self._pictures.service_is_ready():
             self._requested = self._pictures.call_async(Trigger.Request())
-            self._requested.add_done_callback(lambda reply: self._page.picture(reply.result().message))
+            self._requested.add_done_callback(lambda reply: self._show(reply.result().message))
+
+    def _show(self, text: str) -> None:
+        world = WorldPicture.from_json(text)
+        self._page.picture(json.dumps({"svg": still_svg(world, "turtle"), "words": caption(world)}))
 
 
 def show(page: Any) -> None:

@@ -1,4 +1,4 @@
-// The bar below a page: which nodes run, Stop for each and for all, and their graph.
+// The bar below a page: what runs, with one Stop for each node, terminal and launch, Stop for all, and the node graph.
 import { button, element } from "./elements.js";
 import { follow } from "./graph.js";
 import { changes, running, working } from "./processes.js";
@@ -12,16 +12,30 @@ export function bar() {
   place.setAttribute("role", "region");
   place.setAttribute("aria-label", "Running nodes");
   const list = element("ul");
-  const every = button("Stop all", "Stop all nodes", () => Promise.all([...running(), ...working()].map((node) => node.stop())));
+  const every = button("Stop all", "Stop all nodes", () => Promise.all(entries().map((each) => each.stop())));
   const graph = follow();
   place.append(graph.panel, element("span", { className: "running-title", textContent: "Running" }), list, graph.toggle, every);
   changes.addEventListener("change", () => fill(list, graph));
-  const measure = () => document.documentElement.style.setProperty("--running", `${place.offsetHeight}px`);
+  const measure = () => {
+    document.documentElement.style.setProperty("--running", `${place.offsetHeight}px`);
+    uncover();
+  };
   new ResizeObserver(measure).observe(place);
 }
 
+// What runs, one entry for each launch, however many nodes it has.
+const entries = () => [...new Set([...running().map((process) => process.launch ?? process), ...working()])];
+
+// Scroll so that the bar does not cover the cell's head in which the reader has just pressed a button.
+function uncover() {
+  const head = document.activeElement?.closest(".cell-head, .check-tools");
+  if (!head || place.hidden) return;
+  const covered = head.getBoundingClientRect().bottom - place.getBoundingClientRect().top;
+  if (covered > 0) scrollBy({ top: covered + 8, behavior: "instant" });
+}
+
 function fill(list, graph) {
-  const nodes = [...running(), ...working()];
+  const nodes = entries();
   place.hidden = nodes.length === 0;
   document.body.classList.toggle("has-running", !place.hidden);
   // Buttons that stay are not replaced, so that they keep the focus.

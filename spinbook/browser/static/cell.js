@@ -1,8 +1,11 @@
 // A cell of the page: its code, its output, and its kind.
+import { Edits } from "./edits.js";
 import { createEditor } from "./editor.js";
-import { button, element } from "./elements.js";
+import { element } from "./elements.js";
+import { Now } from "./now.js";
 
 const LINES = 500;
+const SILENT = "computes without a pause, or waits for a thread, so it gets neither messages nor Ctrl-C. Stop ends it.";
 const KINDS = ["node", "shell", "snippet", "interface", "package_file"];
 
 export const cells = new Map();
@@ -17,20 +20,29 @@ class Cell {
     this.file = node.querySelector(".cell-file")?.textContent ?? "";
     this.kind = KINDS.find((kind) => node.classList.contains(`cell-${kind}`));
     this.name = this.file.replace(/\.py$/, "") || `cell ${cells.size + 1}`;
+    this.head = node.querySelector(".cell-head");
     // The code that completes a program shown in pieces, how to start it, and how long to wait for its output.
-    this.about = JSON.parse(node.querySelector(".cell-head").dataset.run ?? "{}");
-    this.code = node.querySelector(".cell_input pre, .highlight pre");
+    this.about = JSON.parse(this.head.dataset.run ?? "{}");
+    const code = node.querySelector(".cell_input pre, .highlight pre");
     this.recorded = node.querySelector(".cell_output");
-    this.links = node.querySelector(".cell-links");
     const language = this.kind === "node" || this.kind === "snippet" ? "python" : "";
+    this.editor = createEditor(code, this.file || "this cell", language);
+    this.written = this.editor.written;
     // A chapter may show a changed version of a program again: each keeps its own edits.
     const before = [...cells.values()].filter((cell) => cell.name === this.name).length;
-    const own = before ? `${this.name}-${before + 1}` : this.name;
-    this.editor = createEditor(this.code, `${location.pathname}#${own}`, this.file || "this cell", language);
-    this.reset = button("Reset", `Reset ${this.name}`, () => this.restore());
-    this.reset.hidden = !this.editor.changed;
-    this.editor.onchange = () => (this.reset.hidden = false);
-    this.links.prepend(this.reset);
+    this.key = `${location.pathname}#${before ? `${this.name}-${before + 1}` : this.name}`;
+    this.now = new Now(this.head, this.name);
+  }
+
+  // Show the reader's draft, if there is one, and follow it.
+  edit() {
+    this.edits = new Edits(this.editor, this.key, this.name, this.node.querySelector(".cell-links"), this.head);
+    this.edits.onrestore = () => this.#showRecorded();
+  }
+
+  // What it does now, in words.
+  get state() {
+    return this.now.state.textContent;
   }
 
   get source() {
@@ -43,13 +55,11 @@ class Cell {
     return before + this.source + call;
   }
 
-  // Restore the page's own code and its recorded output.
-  restore() {
-    this.editor.restore();
+  #showRecorded() {
     this.shown?.remove();
     this.shown = null;
+    if (!this.now.stop) this.now.clear();
     if (this.recorded) this.recorded.hidden = false;
-    this.reset.hidden = true;
   }
 
   // A new element for output, instead of the recorded one.
@@ -59,11 +69,11 @@ class Cell {
     this.output = element("pre", { tabIndex: 0 });
     this.output.setAttribute("role", "log");
     this.output.setAttribute("aria-label", `Output of ${this.name}`);
-    this.state = element("p", { className: "run-state" });
-    this.state.setAttribute("role", "status");
-    this.shown = element("div", { className: "ran" }, this.state, this.output);
+    this.shown = element("div", { className: "ran" }, this.output);
     this.node.append(this.shown);
-    this.reset.hidden = false;
+    this.edits.note("run");
+    this.edits.reset.hidden = false;
+    this.now.begin();
     this.turn = ++turns;
     this.count = 0;
     this.failed = false;
@@ -71,13 +81,14 @@ class Cell {
     this.seen = new Promise((resolve) => (this.see = resolve));
   }
 
-  say(text) {
-    if (this.state.textContent !== text) this.state.textContent = text;
+  say(text, phase) {
+    this.now.say(text, phase);
   }
 
   print(text, stream = "stdout") {
     const line = element("span", { className: `stream-${stream}`, textContent: `${text}\n` });
     this.output.append(line);
+    this.now.line(text);
     if (++this.count > LINES) this.output.firstChild.remove();
     this.output.scrollTop = this.output.scrollHeight;
     if (this.until && text.includes(this.until)) this.see();
@@ -91,6 +102,7 @@ class Cell {
 
   fail(text) {
     this.failed = true;
+    this.now.phase("failed");
     if (text) this.print(text, "stderr");
   }
 
@@ -102,13 +114,13 @@ class Cell {
   // What to do with the messages of a process.
   hears(name) {
     return {
-      progress: (part) => this.say(`Loading ${part} …`),
+      progress: (part) => this.say(`Starting: ${part} …`),
       output: (text, stream) => {
         logs.set(name, [...(logs.get(name) ?? []), text].slice(-LINES));
         this.print(text, stream);
       },
       silent: (is) =>
-        this.say(is ? `${name} computes without a pause, or waits for a thread, so it gets neither messages nor Ctrl-C. Stop ends it.` : `${name} runs.`),
+        this.say(is ? `${name} ${SILENT}` : `${name} runs.`, "running"),
     };
   }
 }
@@ -118,8 +130,11 @@ export function cellAt(node) {
   return cells.get(node);
 }
 
-// The cell that belongs to a module of the chapter, as `ros2 run` names it: if there are several, the one run last.
-export const cellOf = (name, full = "") =>
-  [...cells.values()]
-    .filter((cell) => cell.kind === "node" && (cell.name === name || cell.about.executables?.includes(full)))
-    .sort((a, b) => (b.turn ?? 0) - (a.turn ?? 0))[0];
+// The cell that belongs to a module of the chapter, as `ros2 run` in the cell `from` names it. A chapter may show several
+// versions of it: the newest above counts, and once that has run, the version that was run last.
+export function cellOf(from, name, full = "") {
+  const versions = [...cells.values()].filter((cell) => cell.kind === "node" && (cell.name === name || cell.about.executables?.includes(full)));
+  const isAbove = (cell) => cell.node.compareDocumentPosition(from.node) & Node.DOCUMENT_POSITION_FOLLOWING;
+  const newest = versions.filter(isAbove).at(-1) ?? versions[0];
+  return newest?.turn ? versions.reduce((last, cell) => ((cell.turn ?? 0) > last.turn ? cell : last), newest) : newest;
+}

@@ -1,48 +1,66 @@
 // The download that all nodes of a course share: shows its progress, and caches the files for use without a network.
+import { VERSION, addressOf } from "./address.js";
 
 const base = new URL("./", import.meta.url);
+const COURSE = new URL("../", base).href;
 const READY_MS = 4000;
 let done = null;
 
-// Load the files for nodes, once; `say` gets the progress. Without a service worker, each file loads when it is needed.
+// Load the files for nodes, once; `say` gets the progress in words, and from 0 to 1. Without a service worker, each file
+// loads when it is needed.
 export function download(say) {
-  done ??= load(say).catch(() => null);
+  done ??= load(say).catch(() => (done = null));
   return done;
 }
 
 async function load(say) {
   if (!(await serviceWorker())) return;
-  const { version, files } = await (await fetch(new URL("files.json", base))).json();
-  for (const name of await caches.keys()) if (name.startsWith("run-") && name !== `run-${version}`) await caches.delete(name);
-  const cache = await caches.open(`run-${version}`);
+  const { files } = await (await fetch(addressOf("files.json"))).json();
+  const earlier = (await caches.keys()).filter((name) => name.startsWith("run-") && name !== `run-${VERSION}`);
+  const cache = await caches.open(`run-${VERSION}`);
   const missing = [];
-  for (const [name, size] of Object.entries(files)) {
-    if (!(await cache.match(new URL(name, base).href))) missing.push([name, size]);
+  for (const [name, [size, digest]] of Object.entries(files)) {
+    if (!(await cache.match(addressOf(name))) && !(await taken(earlier, cache, name, digest))) missing.push([name, size, digest]);
   }
   const whole = missing.reduce((sum, [, size]) => sum + size, 0);
   let loaded = 0;
-  const report = (size) => say(`Loading ${megabytes((loaded += size))} of ${megabytes(whole)} MB, once for this course …`);
-  await Promise.all(missing.map(([name]) => fetchInto(cache, new URL(name, base), report)));
-  if (missing.length) keepPages();
+  const report = (size) => say(`Loading ${megabytes((loaded += size))} of ${megabytes(whole)} MB, once for this course …`, loaded / whole);
+  await Promise.all(missing.map(([name, , digest]) => fetchInto(cache, addressOf(name), digest, report)));
+  await Promise.all(earlier.map((name) => caches.delete(name)));
+  keepCourse();
 }
 
-// Cache this page with everything it shows, and the other pages of the course.
-async function keepPages() {
-  const shown = performance.getEntriesByType("resource").map((entry) => entry.name);
-  const others = [...document.querySelectorAll(".course-nav a")].map((link) => link.href);
-  const wanted = new Set([location.href, ...shown, ...others].map((address) => address.split("#")[0]));
+// Take a file that has not changed from the cache of an earlier version.
+async function taken(earlier, cache, name, digest) {
+  for (const each of earlier) {
+    const response = await (await caches.open(each)).match(new URL(name, base), { ignoreSearch: true });
+    if (response?.headers.get("digest") === digest) return cache.put(addressOf(name), response).then(() => true);
+  }
+  return false;
+}
+
+// Keep every page of the course, with its pictures and downloads, for reading without a network. Unchanged ones are not
+// loaded again.
+async function keepCourse() {
+  const files = await (await fetch(`${COURSE}offline.json`, { cache: "no-store" })).json();
   const pages = await caches.open("pages");
-  const ours = [...wanted].filter((address) => address.startsWith(new URL("../", base).href) && !address.startsWith(base.href));
-  await Promise.allSettled(ours.map((address) => pages.add(address)));
+  const known = (await (await pages.match(`${COURSE}offline.json`))?.json()) ?? {};
+  const changed = Object.keys(files).filter((path) => files[path] !== known[path]);
+  const kept = await Promise.allSettled(changed.map((path) => pages.add(new Request(COURSE + path, { cache: "reload" }))));
+  const there = { ...files };
+  changed.forEach((path, at) => kept[at].status === "fulfilled" || delete there[path]);
+  await pages.put(`${COURSE}offline.json`, new Response(JSON.stringify(there)));
 }
 
 const megabytes = (size) => (size / 1e6).toFixed(1);
 
-async function fetchInto(cache, address, report) {
+async function fetchInto(cache, address, digest, report) {
   const response = await fetch(address, { cache: "reload" });
   if (!response.ok) throw new Error(`${address}: ${response.status}`);
   const [counted, stored] = response.body.tee();
-  const storing = cache.put(address.href, new Response(stored, { headers: response.headers }));
+  const headers = new Headers(response.headers);
+  headers.set("digest", digest);
+  const storing = cache.put(address, new Response(stored, { headers }));
   const reader = counted.getReader();
   for (let part = await reader.read(); !part.done; part = await reader.read()) report(part.value.length);
   await storing;

@@ -1,27 +1,10 @@
-// Code that can be edited in place. Changes are kept in this browser.
+// Code that can be edited in place.
 import { colours } from "./highlight.js";
 
 const STEP = "    ";
 
-function stored(key) {
-  try {
-    return localStorage.getItem(`code:${key}`);
-  } catch {
-    return null; // Without storage, edits are lost when the page is closed.
-  }
-}
-
-function store(key, text) {
-  try {
-    if (text === null) localStorage.removeItem(`code:${key}`);
-    else localStorage.setItem(`code:${key}`, text);
-  } catch {
-    // See `stored`.
-  }
-}
-
 // Make the code in `place`, a <pre>, editable. Tab indents; Escape, then Tab, leaves it. Python code is highlighted.
-export function createEditor(place, key, name, language = "") {
+export function createEditor(place, name, language = "") {
   // A field of its own: the page gives the <pre> another role if it scrolls.
   const code = document.createElement("span");
   code.className = "editor";
@@ -31,30 +14,20 @@ export function createEditor(place, key, name, language = "") {
   const written = code.textContent;
   const colour = language === "python" ? colours(code) : () => {};
   let leaving = false;
-  const fill = (text) => {
-    if (language === "python" || text !== written) code.textContent = text;
-    else code.innerHTML = original;
-    colour();
-  };
   const field = {
+    written,
     onchange: () => {},
     focus: () => code.focus(),
     get text() {
       return code.textContent;
     },
-    get changed() {
-      return code.textContent !== written;
-    },
-    replace(text) {
-      code.textContent = text;
-      code.dispatchEvent(new Event("input"));
-    },
-    restore() {
-      store(key, null);
-      fill(written);
+    // Show another text; `onchange` is not called.
+    fill(text) {
+      if (language === "python" || text !== written) code.textContent = text;
+      else code.innerHTML = original;
+      colour();
     },
   };
-  fill(stored(key) ?? written);
   code.contentEditable = "plaintext-only";
   code.tabIndex = 0; // Editable elements can always be focused, but accessibility checkers look for a tabindex.
   code.spellcheck = false;
@@ -62,7 +35,6 @@ export function createEditor(place, key, name, language = "") {
   code.setAttribute("aria-multiline", "true");
   code.setAttribute("aria-label", `Code of ${name}. Escape, then Tab, leaves it.`);
   code.addEventListener("input", () => {
-    store(key, field.changed ? code.textContent : null);
     colour();
     field.onchange();
   });

@@ -5,6 +5,10 @@ const TOO_OLD =
   "Firefox 153 or newer have it. The outputs on this page are recorded from real nodes.";
 const FROM_FILE =
   "Nodes can't run in a page that is opened from a file. Open this course on its website, or put it on any web server.";
+export const UPDATED = "This course was updated: reload the page. Your code is kept.";
+const NOT_LOADED =
+  "It could not be loaded: there is no connection to this course's website, or the website does not answer. " +
+  "Check the network, reload the page, and try again.";
 const NO_MEMORY = "There is not enough memory for this. Stop a node, close other tabs, or reload the page.";
 
 // Return why this page can't run nodes, in one sentence; "" if it can.
@@ -17,7 +21,8 @@ export function hindrance() {
 export function failure(error) {
   const text = String(error?.message ?? error);
   if (/memory|RangeError|Maximum call stack/i.test(text)) return NO_MEMORY;
-  if (/fetch|NetworkError|: 404/i.test(text)) return "It could not be loaded. Is the website still there? Try again.";
+  if (/another version|: 404/.test(text)) return UPDATED;
+  if (/fetch|NetworkError|import|could not start it|: 5\d\d/i.test(text)) return NOT_LOADED;
   const words = text.split("\n").filter((line) => /^[\w.]+(Error|Exception|Fault)\b/.test(line));
   return `It could not run here: ${words.at(-1) ?? text.split("\n")[0]}`;
 }

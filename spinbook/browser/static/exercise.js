@@ -1,8 +1,10 @@
 // The editor of an exercise's page, and its Check button, which runs the public checks in this page.
 import { download as load } from "./download.js";
+import { Edits } from "./edits.js";
 import { createEditor } from "./editor.js";
 import { announce, button, element, failure, hindrance, style } from "./elements.js";
 import { Process } from "./processes.js";
+import { tellUpdate } from "./update.js";
 
 const LIMIT_S = 120;
 const SIGNS = { passed: "✓", failed: "✗", blocked: "–", error: "!", untested: "○" };
@@ -70,12 +72,22 @@ function download(name, text) {
   setTimeout(() => URL.revokeObjectURL(url), 1000);
 }
 
+let opened = null;
+
 // Turn the starter of an exercise's page into an editor with Check; return the editor.
 export function open(section) {
+  opened ??= opening(section);
+  return opened;
+}
+
+function opening(section) {
   style();
   const name = location.pathname.split("/").pop().replace(/\.html$/, "");
   const file = document.querySelector(".facts code").textContent;
-  const editor = createEditor(section.querySelector("pre"), location.pathname, file, "python");
+  const code = section.querySelector("pre");
+  const editor = createEditor(code, file, "python");
+  const buttons = element("span", { className: "draft-tools" });
+  const edits = new Edits(editor, location.pathname, file, buttons, code.closest('[class*="highlight-"]') ?? code);
   const state = element("p", { className: "run-state" });
   state.setAttribute("role", "status");
   const result = element("div", { className: "check-result" });
@@ -85,8 +97,10 @@ export function open(section) {
 
   const act = async () => {
     result.replaceChildren();
+    edits.note("checked");
     const hindered = hindrance();
     if (hindered) return say(hindered);
+    tellUpdate();
     say("Starting …");
     show(state);
     checking.disabled = true;
@@ -112,14 +126,14 @@ export function open(section) {
     if (!file) return;
     result.replaceChildren();
     const text = await file.text();
-    if (/\.py$/i.test(file.name) && !/^(\s*\{|PK)/.test(text)) return editor.replace(text);
+    if (/\.py$/i.test(file.name) && !/^(\s*\{|PK)/.test(text)) return edits.take(text, `Your program is from ${file.name}.`);
     const hindered = hindrance();
     if (hindered) return say(hindered);
     try {
       await load(say);
       const program = await read(name, file, say);
-      if (!program.problem) editor.replace(program.source);
-      say(program.problem ?? [`Your program is from ${file.name}.`, ...program.notes].join(" "));
+      say(program.problem ?? "");
+      if (!program.problem) edits.take(program.source, [`Your program is from ${file.name}.`, ...program.notes].join(" "));
     } catch (error) {
       say(failure(error));
     }
@@ -131,7 +145,7 @@ export function open(section) {
     checking,
     button("Download", `Download your ${file}`, () => download(file, editor.text)),
     button("Upload", "Continue with a file of yours", () => upload.click()),
-    button("Reset", "Back to the starter", () => editor.restore()),
+    buttons,
     upload,
   );
   section.append(tools, state, result);

@@ -6,9 +6,13 @@ import { files } from "./workspace.js";
 
 const SHOWN_S = 3;
 
+let count = 0;
+
 class Launch {
   constructor(name, cell) {
     this.name = name;
+    this.identity = `launch ${++count}`;
+    this.cell = cell;
     this.hears = cell.hears(name);
     this.parts = [];
     this.died = false;
@@ -39,8 +43,9 @@ class Launch {
   #start({ package: pack, executable, args, files: more }) {
     const number = this.parts.length + 1;
     const name = `${executable}-${number}`;
-    const { source, file } = programOf(pack, executable);
+    const { source, file } = programOf(this.cell, pack, executable);
     const part = new Process(name, { ...this.hears, output: (text) => this.print(`[${name}] ${text}`) });
+    part.launch = this;
     this.parts.push(part);
     this.print(`[INFO] [${name}]: process started with pid [${number}]`);
     part.program(source, file, args, files(more)).then(
@@ -70,22 +75,27 @@ class Launch {
 
 const FILE = /([^/\s]+?)[._]launch\.(py|ya?ml|xml)\b/;
 
-// Run `ros2 launch …`. Resolves when its output has been shown for as long as the chapter shows it.
+// Run `ros2 launch …`. Resolves when its output has been shown for as long as the chapter shows it. One of the same name
+// that runs is ended only when the new one can start.
 export async function launch(cell, process, line) {
   const name = FILE.exec(line)?.[1].split(".")[0] ?? "launch";
+  const { status, steps } = (await process.call("launch", { source: line, files: files() })) ?? { status: 1 };
+  if (status) return void cell.fail();
+  const unknown = steps.find((step) => step.executable && !programOf(cell, step.package, step.executable));
+  if (unknown) return cell.fail(`There is no node ${unknown.executable} on this page.`);
   await started.get(name)?.stop();
   logs.delete(name);
-  const { status, steps } = (await process.call("launch", { source: line, files: files() })) ?? { status: 1 };
-  if (status) return void (cell.failed = true);
-  const unknown = steps.find((step) => step.executable && !programOf(step.package, step.executable));
-  if (unknown) return cell.fail(`There is no node ${unknown.executable} on this page.`);
   const launched = new Launch(name, cell);
   started.set(name, launched);
+  cell.now.runs(() => launched.stop());
   launched.begin(steps);
   // Several start at once: the time for their output counts from when all have started.
   const allReady = Promise.allSettled(launched.parts.map(({ ready }) => ready));
   await Promise.race([allReady, launched.over]);
-  cell.say(`${name} runs.`);
-  launched.over.then(() => cell.say(`${name} ended with ${launched.status}.`));
+  if (launched.running) cell.say(`${name} runs.`, "running");
+  launched.over.then(() => {
+    cell.now.runs(null);
+    cell.say(`${name} ended with ${launched.status}.`, launched.status ? "failed" : "ended");
+  });
   await Promise.race([cell.shows(SHOWN_S), launched.over]);
 }

@@ -16,6 +16,7 @@ const LOG_S = 30;
 
 // Every node that was started and has not been stopped since, by name, in order.
 export const started = new Map();
+let starts = 0;
 
 // Start a program as a node, and wait until it runs. `into` is the cell that shows its output.
 async function start(name, into, program, file, args) {
@@ -24,15 +25,19 @@ async function start(name, into, program, file, args) {
   started.delete(name);
   const process = new Process(name, into.hears(name));
   started.set(name, process);
+  const turn = (into.started = ++starts);
+  // The cell may show another program by then.
+  const say = (text, phase) => into.started === turn && (into.now.runs(null), into.say(text, phase));
+  into.now.runs(() => process.stop());
   into.ended = process.program(program, file, args, files()).then(
     (status) => {
-      into.say(ending(name, status, process));
+      say(ending(name, status, process), status ? "failed" : "ended");
       if (status) into.failed = true;
     },
-    (error) => into.fail(into.say(failure(error))),
+    (error) => into.fail(say(failure(error), "failed")),
   );
   await process.ready;
-  if (process.running) into.say(`${name} runs.`);
+  if (process.running) into.say(`${name} runs.`, "running");
 }
 
 function ending(name, status, process) {
@@ -54,14 +59,14 @@ export async function runExecutable(cell, [, , pack, executable, ...args]) {
   if (executable === "turtlesim_node") {
     await start(name ?? executable, cell, TURTLESIM, "turtlesim_node.py", args);
     await cell.shows(SHOWN_S);
-    return cell.say("turtlesim_node runs. Show its window with %turtle.");
+    return cell.say("turtlesim_node runs. Show its window with %turtle.", "running");
   }
-  const demo = demoNode(pack, executable);
+  const demo = demoNode(cell, pack, executable);
   if (demo) {
     await start(name ?? executable, cell, demo.source, demo.file, args);
     return void (await Promise.race([cell.shows(SHOWN_S), cell.ended]));
   }
-  const wanted = cellOf(executable, `${pack}/${executable}`);
+  const wanted = cellOf(cell, executable, `${pack}/${executable}`);
   if (wanted && name) {
     await start(name, cell, wanted.program, wanted.file, args);
     return void (await Promise.race([cell.shows(SHOWN_S), cell.ended]));
@@ -80,19 +85,19 @@ export function showNodes(cell) {
 }
 
 // Return the program that a launch file names: its text and its file.
-export function programOf(pack, executable) {
+export function programOf(from, pack, executable) {
   if (executable === "turtlesim_node") return { source: TURTLESIM, file: "turtlesim_node.py" };
-  const demo = demoNode(pack, executable);
+  const demo = demoNode(from, pack, executable);
   if (demo) return demo;
-  const cell = cellOf(executable, `${pack}/${executable}`);
+  const cell = cellOf(from, executable, `${pack}/${executable}`);
   return cell && { source: cell.program, file: cell.file };
 }
 
 // Return the program of a node of demo_nodes_cpp or demo_nodes_py, which are part of Spinbook.
-function demoNode(pack, executable) {
+function demoNode(from, pack, executable) {
   const [, language, name] = DEMOS.exec(`${pack}/${executable}`) ?? [];
   // A chapter may have a program of its own with that name.
-  if (!name || cellOf("", `${pack}/${executable}`)) return undefined;
+  if (!name || cellOf(from, "", `${pack}/${executable}`)) return undefined;
   const source = `import sys\nfrom ros_in_python.demo_nodes import main\nsys.exit(main(["${language}", "${name}"]))\n`;
   return { source, file: `${name}.py` };
 }
@@ -145,6 +150,6 @@ function stopped({ name, status, forced }, hadEnded) {
 
 export function showTurtle(cell) {
   const node = named("turtlesim_node");
-  if (node) cell.shown?.append(turtle(node.ended));
+  if (node) cell.shown?.append(turtle(node));
   else cell.fail("turtlesim does not run: ros2 run turtlesim turtlesim_node");
 }

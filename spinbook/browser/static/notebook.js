@@ -1,10 +1,10 @@
-// Plain cells, terminals and interfaces. They share one process, which starts with the first of these cells.
+// Plain cells, terminals and interfaces. Plain cells share one process, one after another; each terminal has its own.
 import { runExecutable, showLog, showNodes, showTurtle, stop } from "./nodes.js";
 import { launch } from "./launch.js";
 import { graph, show } from "./picture.js";
 import { Process, environment } from "./processes.js";
 import { timeline } from "./timeline.js";
-import { files, keep } from "./workspace.js";
+import { files, keep, notWritten } from "./workspace.js";
 
 const SHOWN_S = 6;
 const GRAPH_S = 2.5;
@@ -15,46 +15,77 @@ const ENDLESS = /^ros2 (topic (echo|hz|bw|delay|pub)|service echo)\b/;
 const SHOWS_ONLY = / (-s|--show-arg(ument)?s|-h|--help)( |$)/;
 const BOUNDED = / (--once|-1|--times|-t) /;
 
+// The process of plain cells, which holds their variables, and the last cell that waits for it.
 let shared = null;
+let last = Promise.resolve();
+// Processes of terminals that have ended their commands: the next terminal takes one.
+const idle = [];
 
-// Return the shared process; its output goes to this cell.
-async function sharedProcess(cell) {
-  if (!shared || shared.gone) shared = new Process("notebook", { end: () => (shared.gone = true) });
-  const { progress } = cell.hears("");
-  Object.assign(shared.hears, { progress, output: (text, stream) => cell.print(text, stream) });
-  await shared.ready;
-  await shared.call("environment", { environment });
-  cell.say("");
-  return shared;
-}
-
-// Return the shared process, for drawing the graph. This works while a cell runs, too.
+// Return the process of plain cells.
 export async function observer() {
-  if (!shared || shared.gone) shared = new Process("notebook", { end: () => (shared.gone = true) });
+  if (!shared?.alive) shared = new Process("notebook", {});
   await shared.ready;
   return shared;
 }
 
-// Let the shared process do something for a cell; the bar can stop it.
-async function busy(cell, process, op, given) {
+// Let a process work for a cell: its output goes there, and the bar, the cell's head and Ctrl-C can end it.
+async function workFor(cell, process, act) {
+  const { progress } = cell.hears("");
+  Object.assign(process.hears, { progress, output: (text, stream) => cell.print(text, stream) });
   process.work(cell.name);
+  cell.now.runs(() => process.stop());
   try {
-    const status = await process.call(op, given);
-    if (status === null) cell.fail(cell.say("It was ended, so the variables of the cells above are lost. Run those cells again."));
-    else if (status) cell.failed = true;
-    return status;
+    await process.ready;
+    await process.call("environment", { environment });
+    return await act(process);
   } finally {
+    cell.now.runs(null);
     process.work("");
+    process.hears.output = () => {};
   }
+}
+
+// Let a process that no other cell uses work for this one.
+async function inTerminal(cell, act) {
+  const process = idle.pop() ?? new Process("terminal", {});
+  try {
+    return await workFor(cell, process, act);
+  } finally {
+    if (process.alive) idle.length ? process.end() : idle.push(process);
+  }
+}
+
+// Run Python in the process of plain cells, after the cells that were started before.
+function inNotebook(cell, act) {
+  const run = last.then(async () => workFor(cell, await observer(), act));
+  last = run.catch(() => {});
+  return run;
+}
+
+// Let a process do something; note in the cell how that ended.
+async function result(cell, process, op, given) {
+  const status = await process.call(op, given);
+  if (status === null) cell.fail(cell.say("It was ended."));
+  else if (status) cell.fail();
+  return status;
 }
 
 export async function runPlain(cell) {
-  const process = await sharedProcess(cell);
   for (const part of parts(cell.source)) {
-    if (part.magic) await magic(cell, process, part.magic);
-    else await busy(cell, process, "python", { source: part.python });
+    if (part.magic) await magic(cell, part.magic);
+    else await runPython(cell, part.python);
     if (cell.failed) return;
   }
+}
+
+async function runPython(cell, source) {
+  cell.say("Waiting for the cells before …");
+  const status = await inNotebook(cell, (process) => {
+    cell.say("Running …", "running");
+    return process.call("python", { source });
+  });
+  if (status === null) cell.fail(cell.say("It was ended, so the variables of the cells above are lost. Run those cells again."));
+  else if (status) cell.fail();
 }
 
 // Split a plain cell: lines such as `%stop left_toe` are for the page, the rest is Python.
@@ -80,14 +111,16 @@ function parts(source) {
 // The words of a line, quoted as in a shell.
 const wordsOf = (line) => (line.match(/"[^"]*"|'[^']*'|\S+/g) ?? []).map((word) => word.replace(/^(["'])(.*)\1$/, "$2"));
 
-async function magic(cell, process, [word, ...args]) {
+async function magic(cell, [word, ...args]) {
   const known = { nodes: showNodes, log: showLog, stop, turtle: showTurtle, env: setVariable };
   if (word in known) await known[word](cell, args);
-  else if (word === "timeline") await timeline(cell, process, args);
-  else if (word === "plot") await drawPlot(cell, process, args);
-  else if (word === "graph") await drawGraph(cell, process, args);
-  else if (word === "ros2") await runCommand(cell, process, { kind: "ros2", words: ["ros2", ...args], text: `ros2 ${args.join(" ")}` });
-  else cell.fail(`%${word} does not work in a page. It works in the notebook.`);
+  else if (word === "timeline") await inTerminal(cell, (process) => timeline(cell, process, args));
+  else if (word === "plot") await inTerminal(cell, (process) => drawPlot(cell, process, args));
+  else if (word === "graph") await inTerminal(cell, (process) => drawGraph(cell, process, args));
+  else if (word === "ros2") {
+    const command = { kind: "ros2", words: ["ros2", ...args], text: `ros2 ${args.join(" ")}` };
+    await inTerminal(cell, (process) => runCommand(cell, process, command));
+  } else cell.fail(`%${word} does not work in a page. It works in the notebook.`);
 }
 
 // `%env NAME=VALUE`, `%env NAME VALUE`, `%env NAME`, `%env`, and a terminal's `export`: for processes started later.
@@ -101,9 +134,8 @@ function setVariable(cell, args) {
 
 async function drawPlot(cell, process, args) {
   const { words: paths, seconds = cell.about.seconds ?? SHOWN_S, title = "" } = optionsOf(args);
-  cell.say(`Recording for ${seconds} s …`);
+  cell.say(`Recording for ${seconds} s …`, "running");
   const drawn = await process.call("plot", { paths, seconds: Number(seconds), title });
-  cell.say("");
   if (drawn) show(cell, drawn, "live-plot");
 }
 
@@ -119,56 +151,62 @@ function optionsOf(args) {
 
 async function drawGraph(cell, process, args) {
   const seconds = Number(optionsOf(args).seconds ?? GRAPH_S);
-  cell.say(`Counting messages for ${seconds} s …`);
+  cell.say(`Counting messages for ${seconds} s …`, "running");
   const counted = await process.call("count", { seconds });
-  cell.say("");
   if (counted?.pictures.length) cell.shown?.append(graph(counted));
   else cell.print("No node runs. Run one.");
 }
 
 export async function runTerminal(cell) {
-  const process = await sharedProcess(cell);
-  for (const command of await process.call("commands", { source: cell.source })) {
-    await runCommand(cell, process, command);
-    if (cell.failed) return;
-  }
+  await inTerminal(cell, async (process) => {
+    for (const command of (await process.call("commands", { source: cell.source })) ?? []) {
+      await runCommand(cell, process, command);
+      if (cell.failed) return;
+    }
+  });
 }
 
 async function runCommand(cell, process, command) {
   const { kind, words, text, why } = command;
   const exported = /^# export (\w+=.*)/.exec(text);
+  const missing = notWritten(text);
   if (why) cell.print(`${text}\n    does not run in a page: ${why}.`, "stderr");
   else if (exported) setVariable(cell, [exported[1]]);
   else if (kind === "rqt_plot") await drawPlot(cell, process, words.slice(1));
   else if (kind === "rqt_graph") await drawGraph(cell, process, []);
   else if (kind === "colcon") cell.print("colcon is not needed in a page: `ros2 run` finds the page's nodes without it.");
+  else if (missing) cell.fail(`Run ${missing} above first.`);
   else if (kind === "ros2" && words[1] === "run") await runExecutable(cell, words);
   else if (kind === "ros2" && words[1] === "launch" && !SHOWS_ONLY.test(text)) await launch(cell, process, text);
   else if (kind === "ros2") await bounded(cell, process, text);
 }
 
-// Run a command. Endless output ends after a while, as in the notebook, or once it contains the text that the chapter names.
-// The seconds count from the first line, so that a slow computer shows as much as a fast one.
+// Run a command. It is ended after a while, as in the notebook, or once its output contains the text that the chapter
+// names. The seconds of endless output count from the first line, so that a slow computer shows as much as a fast one.
 async function bounded(cell, process, line) {
   const endless = ENDLESS.test(line) && !BOUNDED.test(`${line} `);
   const seconds = cell.about.seconds ?? (endless ? SHOWN_S : LONGEST_S);
-  let interrupted = false;
+  let why = "";
   let over = false;
-  const interrupt = () => {
-    interrupted = true;
+  const interrupt = (reason) => {
+    why = reason;
     process.signal("SIGINT");
   };
+  const ended = endless ? `Ended after ${seconds} s of output, as Ctrl-C does.` : `Ended, because it took longer than ${seconds} s.`;
   const atMost = cell.about.seconds ? seconds + START_S : seconds;
-  let timer = setTimeout(interrupt, 1000 * atMost);
+  let timer = setTimeout(() => interrupt(ended), 1000 * atMost);
   cell.nextLine().then(() => {
     if (over) return;
     clearTimeout(timer);
-    timer = setTimeout(interrupt, 1000 * seconds);
+    timer = setTimeout(() => interrupt(ended), 1000 * seconds);
   });
-  if (cell.until) cell.seen.then(() => over || interrupt());
+  if (cell.until) cell.seen.then(() => over || interrupt("Ended, as all that the chapter shows is here."));
+  cell.say("Running …", "running");
   try {
-    const status = await busy(cell, process, "command", { source: line, files: files() });
-    if (interrupted && status !== null) cell.failed = false;
+    const status = await result(cell, process, "command", { source: line, files: files() });
+    if (!why || status === null) return;
+    cell.failed = false;
+    cell.say(why, "ended");
   } finally {
     over = true;
     clearTimeout(timer);
@@ -177,10 +215,8 @@ async function bounded(cell, process, line) {
 
 export async function runFile(cell) {
   cell.print(`Wrote ${keep(cell.file, cell.source)}`);
-  cell.say("");
 }
 
 export async function runInterface(cell) {
-  const process = await sharedProcess(cell);
-  await busy(cell, process, "define", { name: cell.file, text: cell.source });
+  await inTerminal(cell, (process) => result(cell, process, "define", { name: cell.file, text: cell.source }));
 }

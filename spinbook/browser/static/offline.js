@@ -9,13 +9,15 @@ self.addEventListener("activate", (event) => event.waitUntil(self.clients.claim(
 self.addEventListener("fetch", (event) => {
   const { request } = event;
   const { origin, pathname } = new URL(request.url);
-  if (request.method !== "GET" || origin !== self.location.origin) return;
+  if (request.method !== "GET" || origin !== self.location.origin || request.cache === "no-store") return;
   const large = LARGE.test(pathname) && request.cache !== "reload";
   event.respondWith(large ? cacheFirst(request) : networkFirst(request));
 });
 
+// Pyodide asks for its files without a version.
 async function cacheFirst(request) {
-  return (await caches.match(request)) ?? fetch(request);
+  const ignoreSearch = !new URL(request.url).search;
+  return (await caches.match(request, { ignoreSearch })) ?? fetch(request);
 }
 
 async function networkFirst(request) {
@@ -24,6 +26,13 @@ async function networkFirst(request) {
     if (response.ok && request.cache !== "reload") (await caches.open(PAGES)).put(request, response.clone());
     return response;
   } catch {
-    return (await caches.match(request, { ignoreSearch: true })) ?? Response.error();
+    return (await cached(request)) ?? Response.error();
   }
+}
+
+// The page that was kept, without the words of a search, or the file of another version.
+async function cached(request) {
+  const address = new URL(request.url);
+  if (address.pathname.endsWith("/")) address.pathname += "index.html";
+  return (await caches.match(address)) ?? (await caches.match(address, { ignoreSearch: true }));
 }

@@ -1,10 +1,12 @@
 // Runs the cells of a page: one, or all those above one.
 import { bar } from "./bar.js";
-import { cellAt } from "./cell.js";
+import { cellAt, cells } from "./cell.js";
 import { download } from "./download.js";
-import { announce, failure, hindrance, style } from "./elements.js";
+import { forget, settle } from "./drafts.js";
+import { announce, button, element, failure, hindrance, style } from "./elements.js";
 import { runFile, runInterface, runPlain, runTerminal } from "./notebook.js";
 import { runNode } from "./nodes.js";
+import { tellUpdate } from "./update.js";
 
 // How long a notebook shows a node's log before it goes on (s).
 const NODE_S = 3;
@@ -12,11 +14,25 @@ const RUNNABLE = "main .cell:is(.cell-node, .cell-shell, .cell-snippet, .cell-in
 
 const nodesOf = () => [...document.querySelectorAll(RUNNABLE)];
 
-// Prepare the cells of a page: each can be edited from now on.
+// Prepare the cells of a page: each shows the reader's draft, and can be edited from now on.
 export function open() {
+  if (cells.size) return;
   style();
   bar();
-  nodesOf().forEach(cellAt);
+  const all = nodesOf().map(cellAt);
+  const homeless = settle(`${location.pathname}#`, all);
+  for (const cell of all) cell.edit();
+  homeless.forEach(([key, draft]) => document.querySelector("main h1").after(offer(key, draft)));
+}
+
+// Return a note about a draft whose cell the course no longer has.
+function offer(key, { text }) {
+  const name = key.slice(key.indexOf("#") + 1);
+  const note = element("details", { className: "homeless" });
+  const remove = button("Delete", `Delete your ${name}`, () => (forget(key), note.remove()));
+  const words = element("summary", { textContent: `The course no longer has a cell that you have edited (${name}). Show your code` });
+  note.append(words, element("pre", { textContent: text, tabIndex: 0 }), remove);
+  return note;
 }
 
 const runs = { shell: runTerminal, snippet: runPlain, interface: runInterface, package_file: runFile };
@@ -25,20 +41,23 @@ const runs = { shell: runTerminal, snippet: runPlain, interface: runInterface, p
 export async function run(node) {
   open();
   const cell = cellAt(node);
-  cell.clear();
-  const hindered = hindrance();
-  if (hindered) return void cell.fail(cell.say(hindered));
-  cell.say("Starting …");
+  if (cell.kind !== "node") await cell.now.stop?.();
+  if (node.hasAttribute("aria-busy")) return;
   node.setAttribute("aria-busy", "true");
+  cell.clear();
+  cell.say("Starting …");
   try {
-    await download((text) => cell.say(text));
+    const hindered = hindrance();
+    if (hindered) return void cell.fail(cell.say(hindered));
+    tellUpdate();
+    await download((text, part) => (cell.say(text), cell.now.progress(part)));
     await (runs[cell.kind] ?? runNode)(cell);
   } catch (error) {
-    cell.say(failure(error));
-    cell.fail(error.message);
+    cell.fail(cell.say(failure(error)));
   } finally {
     node.removeAttribute("aria-busy");
-    announce(`${cell.name}: ${cell.state.textContent || "done"}`);
+    cell.now.close(cell.failed);
+    announce(`${cell.name}: ${cell.state}`);
   }
 }
 

@@ -1,11 +1,5 @@
-// Shows the SVG pictures that Spinbook draws, and makes SVG elements.
+// Shows the SVG pictures that Spinbook draws.
 import { element } from "./elements.js";
-
-export function draw(tag, attributes) {
-  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-  return made;
-}
 
 function dress(rules) {
   const sheet = new CSSStyleSheet();

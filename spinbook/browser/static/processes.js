@@ -1,4 +1,5 @@
 // The processes of a page, each a web worker, and the hub between them, which forwards each one's frames to the others.
+import { VERSION, addressOf } from "./address.js";
 
 const STOP_MS = 2000;
 // How often to check that a program still responds, and how long it may take before it counts as blocked.
@@ -8,7 +9,6 @@ const SILENT_MS = 10_000;
 export const environment = { RCUTILS_CONSOLE_OUTPUT_FORMAT: "[{severity}] [{name}]: {message}" };
 // Announces that a process has started or ended.
 export const changes = new EventTarget();
-const base = new URL("./", import.meta.url);
 const all = new Map();
 let count = 0;
 // The code that the first process has compiled: the others load it and start sooner.
@@ -42,11 +42,11 @@ export class Process {
     this.identity = `w${++count}`;
     this.running = false;
     this.calls = new Map();
-    this.worker = new Worker(new URL("worker.js", base), { type: "module", name });
+    this.worker = new Worker(addressOf("worker.js"), { type: "module", name });
     this.worker.onmessage = ({ data }) => this.#heard(data);
     this.worker.onerror = (event) => this.#broke(event.message || "The browser could not start it.");
     all.set(this.identity, this);
-    this.ready = this.call("start", { identity: this.identity, compiled });
+    this.ready = this.call("start", { version: VERSION, identity: this.identity, compiled });
     this.ready.catch(() => this.end());
   }
 
@@ -79,13 +79,17 @@ export class Process {
     this.end();
   }
 
+  get alive() {
+    return all.has(this.identity);
+  }
+
   signal(name) {
     this.worker.postMessage({ op: "signal", name });
   }
 
   // Interrupt it as Ctrl-C does, and kill it if it does not end.
   async stop() {
-    if (!all.has(this.identity)) return;
+    if (!this.alive) return;
     this.signal("SIGINT");
     const ended = this.ended ?? this.idle;
     if ((await Promise.race([ended, after(STOP_MS)])) !== "late") return;

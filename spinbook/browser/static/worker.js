@@ -1,4 +1,5 @@
 // A process of the page: one web worker, in which Pyodide runs one program, or the page's cells one after another.
+import { VERSION, addressOf } from "./address.js";
 import { loadPyodide } from "./pyodide.mjs";
 
 const inbox = [];
@@ -35,7 +36,7 @@ function arrived() {
 const print = (stream) => (text) => self.postMessage({ op: "output", stream, text });
 
 async function archive(py, name, part) {
-  const response = await fetch(new URL(name, import.meta.url));
+  const response = await fetch(addressOf(name));
   if (!response.ok) throw new Error(`${name}: ${response.status}`);
   py.FS.writeFile(`/${name}`, new Uint8Array(await response.arrayBuffer()));
   py.runPython(`import sys; sys.path.insert(0, "/${name}")`);
@@ -80,7 +81,8 @@ async function start(identity, known) {
 let ready = null;
 
 const does = {
-  start: ({ identity, compiled }) => {
+  start: ({ version, identity, compiled }) => {
+    if (version !== VERSION) throw new Error("another version");
     ready = start(identity, compiled);
     return ready.then(() => null);
   },
@@ -177,7 +179,7 @@ function shares(py) {
 }
 
 async function unpackShares(py) {
-  const response = await fetch(new URL("share.zip", import.meta.url));
+  const response = await fetch(addressOf("share.zip"));
   py.unpackArchive(await response.arrayBuffer(), "zip", { extractDir: "/opt/ros" });
   py.runPython('import os; os.environ["AMENT_PREFIX_PATH"] = "/opt/ros"');
 }

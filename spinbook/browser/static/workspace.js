@@ -2,24 +2,19 @@
 import { cells } from "./cell.js";
 
 const texts = {};
-
-const NAMED = /\bros2 (?:run|launch) ([a-z]\w+) [\w.]|\bsrc\/([a-z]\w+)\//g;
-
-// Packages that are part of Spinbook.
-const OTHERS = /^(turtlesim|demo_nodes_(cpp|py))$/;
-
-// Return the package of the page's nodes, as the chapter's commands name it.
-function pack() {
-  const text = [...cells.values()].filter((cell) => cell.kind === "shell").map((cell) => cell.source).join("\n");
-  const names = [...text.matchAll(NAMED)].map(([, run, path]) => run ?? path).filter((name) => !OTHERS.test(name));
-  return names[0] ?? "package";
-}
+const pack = document.documentElement.dataset.package;
 
 // Write a file; return its path in the workspace.
 export function keep(path, text) {
   texts[path] = `${text.trimEnd()}\n`;
-  return `src/${pack()}/${path}`;
+  return `src/${pack}/${path}`;
 }
 
 // Return all files, in the form that a process gets; `more` are files with full paths.
-export const files = (more = {}) => ({ pack: pack(), texts, more });
+export const files = (more = {}) => ({ pack, texts, more });
+
+// Return the name of a file that a command uses and whose cell has not been run; "" if there is none.
+export function notWritten(command) {
+  const names = [...cells.values()].filter((cell) => cell.kind === "package_file" && !(cell.file in texts)).map(({ file }) => file.split("/").at(-1));
+  return names.find((name) => command.includes(name)) ?? "";
+}

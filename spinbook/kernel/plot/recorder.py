@@ -58,9 +58,9 @@ class PlotRecorder(Node):
 
     def _subscribe(self, path: TopicPath, full_type: str) -> None:
         short = full_type.replace("/msg/", "/")
-        self.create_subscription(
-            message_class(full_type), path.topic, partial(self._on_message, path, short), _HEARS_ALL
-        )
+        kind = message_class(full_type)
+        list(quantities(path, kind(), short))  # raises if the type has no such field, before any message arrives
+        self.create_subscription(kind, path.topic, partial(self._on_message, path, short), _HEARS_ALL)
 
     def _on_message(self, path: TopicPath, type_name: str, message: Any) -> None:
         now = stamp_of(message) or time.time()

@@ -6,11 +6,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import plain_grades as plain
 import pytest
 from browser import opened
 from graded_class import EXTRA, LATE, WHEN, entry
 from playwright.sync_api import Browser, expect
 
+from grader.classroom.course_gradebook import GradedExercise, course_page, course_rows
 from grader.classroom.misconceptions import Signature, failures_of, grouped
 from grader.classroom.overview import overview_page
 from grader.exercise import Exercise
@@ -148,3 +150,22 @@ def test_times_are_shown_in_their_own_zone(browser: Browser, site: Path) -> None
     assert WHEN.utcoffset()
     with opened(browser, site / "index.html") as shown:
         expect(shown.page.get_by_role("row", name="Jörg Müller")).to_contain_text("20 Nov 2026, 23:41 +01:00")
+
+
+def test_a_printed_feedback_page_is_one_sheet(browser: Browser, site: Path) -> None:
+    with opened(browser, site / "index.html") as shown:
+        for page in site.glob("students/s-*/feedback.html"):
+            shown.show(page)
+            sheets = shown.page.pdf(format="A4").count(b"/Type /Page\n")
+            print(page.parent.name, sheets)
+            assert sheets <= 1, page.parent.name
+
+
+def test_the_table_of_nine_exercises_fits_on_a_desk(browser: Browser, tmp_path: Path) -> None:
+    names = "joint_velocity heartbeat go_to_goal motor_switch calibrate_joint move_joint motion_operator joint_filter"
+    graded = {"s1": plain.entry(plain.HALF, Student("s1", "Grace Brewster Murray Hopper"))}
+    exercises = [GradedExercise(name, name, 10.0, graded) for name in [*names.split(), "robot_description"]]
+    page = tmp_path / "index.html"
+    page.write_text(course_page("Humanoids", exercises, course_rows(exercises)), encoding="utf-8")
+    with opened(browser, page) as shown:
+        assert shown.page.locator(".scroll").evaluate("place => place.scrollWidth <= place.clientWidth")

@@ -161,7 +161,7 @@ def test_all_links_and_anchors_lead_somewhere(built: SmallCourse) -> None:
         for target in re.findall(r'\b(?:href|src)="([^"]*)"', built.page(page)):
             if re.match(r"https?:", target):
                 continue
-            path, anchor = urldefrag(unquote(target))
+            path, anchor = urldefrag(unquote(re.sub(r"\?v=\w+", "", target)))
             file = ((built.site / page).parent / path).resolve() if path else built.site / page
             assert file.is_file(), f"{page}: {target}"
             if anchor:

@@ -27,8 +27,9 @@ from std_srvs.srv import Trigger
 
 from ros_in_python.turtlesim.events import DT, PIXELS_PER_UNIT, SIDE, Pen
 from ros_in_python.turtlesim.messages import Pose
-from ros_in_python.turtlesim.moving import moving_svg, turtle_shapes
+from ros_in_python.turtlesim.moving import moving_svg
 from ros_in_python.turtlesim.trail import Point, Track, Trail
+from ros_in_python.turtlesim.turtle_shapes import turtle_shapes
 from ros_in_python.turtlesim.world_picture import BLUE, Color, TurtlePicture, WorldPicture, caption, strokes, tracks
 
 #: The world's side on paper, and the margin around it, in inches.

@@ -13,10 +13,10 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from ros_in_python.turtlesim.events import SIDE, TICK_NS, Pen
-from ros_in_python.turtlesim.moving import COATS
 from ros_in_python.turtlesim.picture import draw, save
 from ros_in_python.turtlesim.world import TurtleWorld
 from ros_in_python.turtlesim.world_picture import BLUE, StrokePicture, TurtlePicture, WorldPicture, picture_of
+from ros_in_python.turtlesim.world_svg import COATS
 
 RED = (255, 0, 0)
 

@@ -1,9 +1,19 @@
-// Adds a Run button to each cell that can run. Everything else is loaded when the first one is pressed.
+// Adds a Run button to each cell that can run. Everything else is loaded when the first one is pressed, or at once if
+// the reader has edited something on this page, so that what is shown is what runs.
 "use strict";
 
 (() => {
   const places = [...document.querySelectorAll("main .cell:is(.cell-node, .cell-shell, .cell-snippet, .cell-interface, .cell-package_file)")];
-  const load = (name) => import(new URL(`${document.documentElement.dataset.root}run/${name}`, location.href));
+  const version = new URL(document.currentScript.src).search;
+  const load = (name) => import(new URL(`${document.documentElement.dataset.root}run/${name}${version}`, location.href));
+
+  // Return why a script can't be loaded.
+  async function why() {
+    if (location.protocol === "file:") return ["Only on a website", "Nodes can't run in a page that is opened from a file."];
+    const answer = await fetch(new URL(`${document.documentElement.dataset.root}version.txt`, location.href), { cache: "no-store" }).catch(() => null);
+    if (answer?.ok && `?v=${await answer.text()}` !== version) return ["Reload the page", "This course was updated: reload the page."];
+    return ["No connection", "It could not be loaded: this course's website does not answer. Check the network, and reload the page."];
+  }
 
   function add(place, module, text, label, act) {
     const button = document.createElement("button");
@@ -12,14 +22,16 @@
     button.textContent = text;
     button.setAttribute("aria-label", label);
     button.addEventListener("click", async () => {
+      let loaded = null;
       try {
-        await act(await load(module), button);
+        loaded = await load(module);
       } catch {
-        document.getElementById("said").textContent = "Nodes can't run in a page that is opened from a file.";
-        button.textContent = "Only on a website";
+        [button.textContent, document.getElementById("said").textContent] = await why();
       }
+      if (loaded) await act(loaded, button);
     });
     place?.prepend(button);
+    return button;
   }
 
   for (const [index, cell] of places.entries()) {
@@ -40,5 +52,18 @@
       button.remove();
       page.open(starter).focus();
     });
+  }
+
+  function hasDraft() {
+    try {
+      return Object.keys(localStorage).some((key) => key.startsWith(`code:${location.pathname}`));
+    } catch {
+      return false; // Nothing can be stored.
+    }
+  }
+
+  if (hasDraft()) {
+    if (starter) load("exercise.js").then((page) => page.open(starter), () => {});
+    else if (places.length) load("page.js").then((page) => page.open(), () => {});
   }
 })();

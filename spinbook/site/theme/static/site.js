@@ -3,6 +3,8 @@
 
 const root = document.documentElement;
 const said = document.getElementById("said");
+// As in this script's own address, so that no cache gives others that are older.
+const version = new URL(document.currentScript.src).search;
 
 function colours() {
   const button = document.querySelector(".theme-button");
@@ -144,7 +146,7 @@ function searching() {
   const load = (name) =>
     new Promise((done) => {
       const script = document.createElement("script");
-      script.src = `${root.dataset.root}_static/${name}`;
+      script.src = `${root.dataset.root}_static/${name}${version}`;
       script.addEventListener("load", done);
       document.head.append(script);
     });

@@ -1,0 +1,98 @@
+"""The turtles' world as SVG: the ground, the trails, the turtles and the axes; as it is now, or to be set in motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from html import escape
+from itertools import pairwise
+
+from ros_in_python.animation import coord
+from ros_in_python.turtlesim.events import PIXELS_PER_UNIT
+from ros_in_python.turtlesim.world_picture import Color, TurtlePicture, WorldPicture, caption
+
+#: Shell, its plates, skin: one set for each turtle in turn.
+COATS = (
+    ("#2c7a46", "#57b368", "#a5dc8c"),
+    ("#a8541b", "#e2914a", "#f5cf92"),
+    ("#5d3f8f", "#9474c8", "#cdb9ec"),
+    ("#9c2f4b", "#d86a81", "#f3b6c0"),
+    ("#20707c", "#4fb0b6", "#a9e0dd"),
+)
+
+#: Space around the world for its axes and caption (px).
+LEFT, TOP, RIGHT, BOTTOM = 26, 30, 10, 26
+LINE = "#16301f"
+
+
+def still_svg(world: WorldPicture, key: str) -> str:
+    """Return the world as it is now: an SVG element for a page that gives the class `key` + "i" the colour of text."""
+    side = round(world.size * PIXELS_PER_UNIT)
+    trails = "".join(path(stroke.points, stroke.color, stroke.width, "", world.size) for stroke in world.trails)
+    turtles = "".join(turtle_mark(turtle, coat, "", world.size) for coat, turtle in enumerate(world.turtles))
+    return (
+        f'<svg viewBox="0 0 {LEFT + side + RIGHT} {TOP + side + BOTTOM}">{axes(world, key)}'
+        f'<svg x="{LEFT}" y="{TOP}" width="{side}" height="{side}">{ground(world)}{trails}{turtles}</svg></svg>'
+    )
+
+
+def position(x: float, y: float, size: float) -> tuple[float, float]:
+    """Pixels from the upper left corner."""
+    return x * PIXELS_PER_UNIT, (size - y) * PIXELS_PER_UNIT
+
+
+def path(points: Sequence[tuple[float, float]], color: Color, width: int, more: str, size: float) -> str:
+    """A polyline, each point relative to the one before it."""
+    places = [tuple(round(part, 1) for part in position(x, y, size)) for x, y in points]
+    steps = "".join(
+        f"l{coord(b[0] - a[0])} {coord(b[1] - a[1])}".replace(" -", "-") for a, b in pairwise(places) if a != b
+    )
+    start = " ".join(map(coord, places[0])) if places else "0 0"
+    look = 'fill="none" stroke="#{:02x}{:02x}{:02x}" stroke-linejoin="round"'.format(*color)
+    return f'<path d="M{start}{steps}" {look} stroke-width="{width}"{more}/>'
+
+
+def turtle_mark(turtle: TurtlePicture, coat: int, name: str, size: float) -> str:
+    """A turtle around its centre, looking along +x, put to its place; `name` is the class that moves it."""
+    shell, plate, skin = COATS[coat % len(COATS)]
+    limbs = "".join(
+        f'<path d="M12 {s * 5}C20 {s * 21} 5 {s * 30} 1 {s * 11}zM-5 {s * 9}C-9 {s * 23}-23 {s * 19}-14 {s * 4}z"/>'
+        for s in (1, -1)
+    )
+    eyes = "".join(
+        f'<circle cx="22" cy="{s * 3.5}" r="1.9" fill="#fff"/><circle cx="22.6" cy="{s * 3.6}" r="1.1"/>'
+        for s in (1, -1)
+    )
+    x, y = position(turtle.x, turtle.y, size)
+    place = f"translate({coord(x)} {coord(y)})rotate({coord(-math.degrees(turtle.theta), 0)})"
+    moving = f' class="{name}"' if name else ""
+    return (
+        f'<g{moving} transform="{place}" fill="{LINE}">'
+        f'<g fill="{skin}" stroke="{LINE}" stroke-width=".8"><path d="M-14 3L-22 0L-14-3z"/>{limbs}'
+        f'<ellipse cx="19.5" rx="7.2" ry="6"/><ellipse rx="15.3" ry="13" fill="{shell}"/></g>'
+        f'<path d="M6 0L3 4.6H-3L-6 0L-3-4.6H3z" fill="{plate}"/>{eyes}</g>'
+    )
+
+
+def ground(world: WorldPicture) -> str:
+    side = round(world.size * PIXELS_PER_UNIT)
+    lines = "".join(
+        f"M0 {coord(side - n * PIXELS_PER_UNIT)}H{side}M{coord(n * PIXELS_PER_UNIT)} 0V{side}" for n in _marks(world)
+    )
+    ground = "#{:02x}{:02x}{:02x}".format(*world.background)
+    return f'<path d="M0 0H{side}V{side}H0z" fill="{ground}"/><path d="{lines}" stroke="#fff" stroke-opacity=".13"/>'
+
+
+def _marks(world: WorldPicture) -> range:
+    return range(0, math.floor(world.size) + 1, 2 if world.size < 30 else 10)
+
+
+def axes(world: WorldPicture, key: str) -> str:
+    side = round(world.size * PIXELS_PER_UNIT)
+    texts = []
+    for n in _marks(world):
+        at = n * PIXELS_PER_UNIT
+        texts.append(f'<text x="{LEFT + at}" y="{TOP + side + 18}" text-anchor="middle">{n}</text>')
+        texts.append(f'<text x="{LEFT - 6}" y="{TOP + side - at + 5}" text-anchor="end">{n}</text>')
+    text = escape(caption(world))
+    return f'<g class="{key}i" font-size="14">{"".join(texts)}<text x="{LEFT}" y="20" font-size="15">{text}</text></g>'

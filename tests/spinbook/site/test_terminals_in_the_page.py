@@ -1,0 +1,148 @@
+"""Terminals, launches and versions of a node in a page: each its own process, output and Stop. In a real Chromium."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from browser import Opened, opened
+from course_folder import CourseFolder
+from playwright.sync_api import Browser, Locator, expect
+from small_course import served
+
+from spinbook.browser.files import can_run
+
+pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
+
+#: Pyodide starts in a few seconds; on a busy machine, in many.
+DEADLINE_MS = 120_000
+
+_TALKER = """
+```python title="talker.py"
+import rclpy
+from rclpy.node import Node
+
+
+def main():
+    rclpy.init()
+    node = Node('talker')
+    node.get_logger().info('version {version}')
+    try:
+        rclpy.spin(node)
+    except KeyboardInterrupt:
+        pass
+
+
+if __name__ == '__main__':
+    main()
+```
+"""
+CHAPTER = f"""\
+# Terminals
+
+{_TALKER.format(version="one")}
+
+{_TALKER.format(version="two")}
+
+```bash
+ros2 run robot talker
+```
+
+```bash seconds=60
+ros2 topic pub /count std_msgs/msg/Int32 "data: 5"
+```
+
+```bash seconds=60 until="data: 5"
+ros2 topic echo /count
+```
+
+```python title="launch/talkers.launch.py"
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument('rate', choices=['slow', 'fast'], default_value='slow'),
+        Node(package='robot', executable='talker', name='a'),
+        Node(package='robot', executable='talker', name='b'),
+    ])
+```
+
+```bash
+ros2 launch robot talkers.launch.py
+```
+
+```bash
+ros2 launch robot talkers.launch.py rate:=sideways
+```
+"""
+
+
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Opened]:
+    """The page of one chapter, for all tests."""
+    root = tmp_path_factory.mktemp("course")
+    made = CourseFolder(root).write(terminals=CHAPTER).spinbook("site")
+    assert made.returncode == 0, made.stdout + made.stderr
+    with served(root / "build" / "site") as address, opened(browser, f"{address}/chapters/terminals.html") as page:
+        yield page
+
+
+def cell(shown: Opened, number: int) -> Locator:
+    """The chapter's block with this number, from 1."""
+    return shown.page.locator("main .cell").nth(number - 1)
+
+
+def run(shown: Opened, number: int) -> Locator:
+    """Press Run; return the block's output."""
+    place = cell(shown, number)
+    place.locator(".run-button", has_text="Run").filter(has_not_text="all").click()
+    return place.get_by_role("log")
+
+
+def stop_all(shown: Opened) -> None:
+    shown.page.get_by_role("button", name="Stop all nodes").click()
+    expect(shown.page.get_by_role("region", name="Running nodes")).to_be_hidden(timeout=DEADLINE_MS)
+
+
+def test_ros2_run_starts_the_newest_version_above(shown: Opened) -> None:
+    expect(run(shown, 3)).to_contain_text("[talker]: version two", timeout=DEADLINE_MS)
+    expect(run(shown, 1)).to_contain_text("[talker]: version one", timeout=DEADLINE_MS)
+    stop_all(shown)
+
+
+def test_two_terminals_at_once_have_their_own_output_and_stop(shown: Opened) -> None:
+    bar = shown.page.get_by_role("region", name="Running nodes").get_by_role("listitem")
+    publishing = run(shown, 4)
+    expect(publishing).to_contain_text("publishing #2", timeout=DEADLINE_MS)
+    echoing = run(shown, 5)
+    expect(echoing).to_contain_text("data: 5", timeout=DEADLINE_MS)
+    expect(cell(shown, 5).get_by_role("status")).to_contain_text("all that the chapter shows", timeout=DEADLINE_MS)
+    expect(bar).to_have_text(["cell 4Stop"])
+    assert "publishing" not in echoing.inner_text()
+    assert "---" not in publishing.inner_text()
+    assert "does not appear to be published" not in echoing.inner_text()
+    publishing.press("Control+c")
+    expect(bar).to_have_count(0, timeout=DEADLINE_MS)
+    assert shown.faults == []
+
+
+def test_a_launch_is_one_entry_and_bad_words_leave_it_alone(shown: Opened) -> None:
+    bar = shown.page.get_by_role("region", name="Running nodes").get_by_role("listitem")
+    expect(run(shown, 7)).to_contain_text("Run talkers.launch.py above first.", timeout=DEADLINE_MS)
+    run(shown, 6)
+    launched = run(shown, 7)
+    for name in ("[a]", "[b]"):
+        expect(launched).to_contain_text(f"{name}: version two", timeout=DEADLINE_MS)
+    expect(bar).to_have_text(["talkersStop"])
+
+    expect(run(shown, 8)).to_contain_text("sideways", timeout=DEADLINE_MS)
+    expect(cell(shown, 7).get_by_role("status")).to_have_text("talkers runs.")
+    expect(bar).to_have_text(["talkersStop"])
+    shown.page.get_by_role("button", name="Stop talkers").click()
+    expect(cell(shown, 7).get_by_role("status")).to_have_text("talkers ended with 0.", timeout=DEADLINE_MS)
+    expect(bar).to_have_count(0)
+    assert shown.violations() == []
+    assert shown.faults == []
