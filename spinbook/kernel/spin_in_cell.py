@@ -62,7 +62,12 @@ class SpinInCell:
             while executor.context.ok() and not future.done() and not executor._is_shutdown:
                 until(executor, future, _SLICE_S)
 
-        Executor.spin, Executor.spin_until_future_complete, rclpy.spin = spin, spin_until, spin_node
+        for place, name, ours in (
+            (Executor, "spin", spin),
+            (Executor, "spin_until_future_complete", spin_until),
+            (rclpy, "spin", spin_node),
+        ):
+            setattr(place, name, ours)
 
     def _say(self) -> None:
         if self._said:
