@@ -7,8 +7,8 @@ import errno
 import linecache
 import os
 import sys
+import threading
 import time
-import traceback
 import types
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -19,6 +19,7 @@ import rmw_lockstep
 from rcl_python import abort, logs, participant
 from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.link import PageLink
+from spinbook.browser.in_page.own_frames import print_error
 
 _FAILED, _INTERRUPTED = 1, 130
 #: How many threads `MultiThreadedExecutor` and other pools have.
@@ -46,10 +47,18 @@ def open_process(page: Any, identity: str) -> None:
     rcl_python.install()
     program_imports.watch()
     builtins.input = _refuse_input
+    threading.excepthook = _show_error_of_thread
 
 
 def _abort(text: str) -> None:
     raise SystemExit(text)
+
+
+def _show_error_of_thread(ended: threading.ExceptHookArgs) -> None:
+    """Print what ended a thread, as Python does."""
+    if ended.exc_value is not None and not isinstance(ended.exc_value, SystemExit):
+        print(f"Exception in thread {ended.thread.name if ended.thread else '?'}:", file=sys.stderr)
+        print_error(ended.exc_value)
 
 
 def _refuse_input(prompt: object = "") -> str:
@@ -96,11 +105,11 @@ def status_of(program: Any) -> int:
         program()
     except SystemExit as error:
         return _exit_status(error)
-    except KeyboardInterrupt:
-        _show_traceback()
+    except KeyboardInterrupt as error:
+        print_error(error)
         return _INTERRUPTED
     except BaseException as error:
-        _show_traceback()
+        print_error(error)
         _explain(error)
         return _FAILED
     finally:
@@ -114,14 +123,6 @@ def _exit_status(error: SystemExit) -> int:
         return error.code or 0
     print(error.code, file=sys.stderr)
     return _FAILED
-
-
-def _show_traceback() -> None:
-    """Print the traceback without the frames around the program."""
-    kind, error, trace = sys.exc_info()
-    while trace is not None and trace.tb_frame.f_code.co_filename.startswith(("/ros.zip/spinbook/browser", "/lib/")):
-        trace = trace.tb_next
-    traceback.print_exception(kind, error, trace)
 
 
 def _explain(error: BaseException) -> None:

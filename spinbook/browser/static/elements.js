@@ -22,7 +22,7 @@ export function failure(error) {
   const text = String(error?.message ?? error);
   if (/memory|RangeError|Maximum call stack/i.test(text)) return NO_MEMORY;
   if (/another version|: 404/.test(text)) return UPDATED;
-  if (/fetch|NetworkError|import|could not start it|: 5\d\d/i.test(text)) return NOT_LOADED;
+  if (/^(\w+Error: )?(Failed to fetch|NetworkError|Load failed)|dynamically imported|: 5\d\d$|could not start it/i.test(text)) return NOT_LOADED;
   const words = text.split("\n").filter((line) => /^[\w.]+(Error|Exception|Fault)\b/.test(line));
   return `It could not run here: ${words.at(-1) ?? text.split("\n")[0]}`;
 }

@@ -94,6 +94,8 @@ def test_a_course_that_was_run_once_runs_without_a_network(browser: Browser, add
 
         assert shown.faults == []
 
+        kept = "async (list) => Boolean(await (await caches.open('pages')).match(list))"
+        page.wait_for_function(kept, arg=f"{address}/offline.json", timeout=DEADLINE_MS)
         page.context.set_offline(True)
         page.reload()
         assert "A publisher sends messages." in page.inner_text("main")
@@ -101,6 +103,32 @@ def test_a_course_that_was_run_once_runs_without_a_network(browser: Browser, add
         expect(log).to_contain_text("[talker]: number 3", timeout=DEADLINE_MS)
         page.goto(f"{address}/chapters/02-more.html")
         assert "Words only." in page.inner_text("main")
+        page.goto(f"{address}/")
+        expect(page.get_by_role("heading", level=1)).to_have_text("A small course")
+        pictures = page.locator("main img:visible")
+        assert pictures.count() > 0
+        assert pictures.evaluate_all("images => images.every(image => image.complete && image.naturalWidth > 0)")
+        page.goto(f"{address}/search.html?q=publisher")
+        expect(page.locator("#search-results li").first).to_be_visible()
+        assert page.evaluate("async () => (await fetch('downloads/talker.py')).ok")
+
+
+def test_a_page_from_before_an_update_says_so(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html") as shown:
+        shown.page.route("**/version.txt", lambda route: route.fulfill(body="newer"))
+        shown.page.get_by_role("button", name="Run talker.py").click()
+        expect(shown.page.get_by_role("alert")).to_contain_text("This course was updated: reload", timeout=DEADLINE_MS)
+        log = shown.page.locator(".cell-node").get_by_role("log")
+        expect(log).to_contain_text("[talker]: number 1", timeout=DEADLINE_MS)
+
+
+def test_a_failure_of_the_network_is_called_that(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/01-talk.html") as shown:
+        shown.page.context.set_offline(True)
+        run = shown.page.get_by_role("button", name="Run talker.py")
+        run.click()
+        expect(run).to_have_text("No connection")
+        expect(shown.page.locator("#said")).to_contain_text("this course's website does not answer")
 
 
 def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str, tmp_path: Path) -> None:
