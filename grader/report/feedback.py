@@ -6,13 +6,16 @@ import base64
 import re
 from dataclasses import dataclass
 from html import unescape
+from typing import TYPE_CHECKING
 
 from grader.exercise.exercise import Exercise
-from grader.grading.grade import Adjustment, Entry, Grade, Outcome
 from grader.recording.printed_paths import without_paths
 from grader.report.checks import shown_checks
 from grader.report.pages import render
 from grader.report.printable import printable
+
+if TYPE_CHECKING:  # which needs a sandbox, and a web page has none
+    from grader.grading.grade import Adjustment, Entry, Grade, Outcome
 
 
 @dataclass(frozen=True)

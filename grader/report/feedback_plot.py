@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
@@ -11,10 +12,12 @@ from grader.checking.comparator import equal
 from grader.checking.message import Message
 from grader.checking.run import Run
 from grader.exercise.exercise import Exercise
-from grader.grading.grade import Grade
 from grader.report.pages import template
 from grader.report.path_plot import path_of, path_plot
 from grader.scenario.times import SECOND, START
+
+if TYPE_CHECKING:
+    from grader.grading.grade import Grade
 
 #: (seconds after the scenario's start, value)
 Point = tuple[float, float]

@@ -6,15 +6,13 @@ import base64
 import hashlib
 from datetime import datetime
 from functools import cache
-from pathlib import Path
+from importlib import resources
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
+from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from grader.report.printable import printable
-
-GRADER = Path(__file__).parents[1]
 
 #: The longest text that is shown: a student can publish a name of a megabyte.
 LONGEST_TEXT = 4000
@@ -52,7 +50,7 @@ def template(name: str) -> Template:
 @cache
 def _environment() -> Environment:
     environment = Environment(
-        loader=FileSystemLoader(GRADER),
+        loader=FunctionLoader(_source),
         autoescape=True,
         undefined=StrictUndefined,
         finalize=_harmless,
@@ -64,6 +62,12 @@ def _environment() -> Environment:
     return environment
 
 
+def _source(name: str) -> str:
+    """Return the text of a template. In a web page, it is in an archive."""
+    folder, _, file = name.rpartition("/")
+    return (resources.files(f"grader.{folder.replace('/', '.')}") / file).read_text(encoding="utf-8")
+
+
 def _harmless(value: Any) -> Any:
     if isinstance(value, str) and not isinstance(value, Markup):
         return printable(value, LONGEST_TEXT)
@@ -72,7 +76,7 @@ def _harmless(value: Any) -> Any:
 
 @cache
 def _style() -> str:
-    return (GRADER / "report" / "style.css").read_text(encoding="utf-8")
+    return _source("report/style.css")
 
 
 def _allowed(text: str) -> str:

@@ -24,7 +24,7 @@ from interface_compiler import prefixes
 
 #: Modules of the environment that rclpy and `ros2` need, besides the interface packages.
 _ROS = ("rclpy", "rpyutils", "rosidl_parser", "rosidl_generator_py", "ament_index_python", "yaml", "click")
-_CHECKS = ("pytest", "_pytest", "py", "pluggy", "iniconfig", "packaging", "pygments")
+_CHECKS = ("pytest", "_pytest", "py", "pluggy", "iniconfig", "packaging", "pygments", "jinja2", "markupsafe")
 #: The lexers of Pygments that pytest needs, out of hundreds.
 _LEXERS = ("__init__.py", "_mapping.py", "python.py", "diff.py")
 _SPINBOOK = (
@@ -147,7 +147,7 @@ def _part(path: Path, name: str) -> dict[str, bytes]:
 def _python_files(folder: Path, name: str) -> Iterator[tuple[str, bytes]]:
     for file in sorted(folder.rglob("*")):
         inside = file.relative_to(folder)
-        if file.suffix in (".py", ".html", ".json", ".lark") and "__pycache__" not in inside.parts:
+        if file.suffix in (".py", ".html", ".j2", ".json", ".lark") and "__pycache__" not in inside.parts:
             yield f"{name}/{inside.as_posix()}", file.read_bytes()
 
 

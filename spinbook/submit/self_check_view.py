@@ -11,13 +11,13 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from rich.console import Console
 
-from grader.checking.verdict import Finding
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
 from grader.recording.printed_paths import without_paths
 from grader.report import terminal
 from grader.report.checks import ShownCheck, first_hints, public_total, shown_checks
-from grader.report.feedback import advice, described
+from grader.report.facts import facts, plot_says
+from grader.report.feedback import advice
 from grader.report.feedback_plot import feedback_plot
 from grader.report.printable import printable
 from grader.report.terminal import show
@@ -95,7 +95,7 @@ def as_html(grade: Grade, exercise: Exercise) -> str:
         fold_hints=not exercise.count_hints,
         # In an <img>, an SVG can neither run nor load anything.
         plot=Markup("data:image/svg+xml;base64,") + base64.b64encode(plot.encode()).decode() if plot else "",
-        plot_says=_plot_says(grade, plot) if plot else "",
+        plot_says=plot_says(shown_checks(grade), plot) if plot else "",
         more_help=more_help(exercise) if first_hints(grade)[1] else "",
         next_step=next_step(grade, exercise),
         to_come=terminal.hidden_checks_to_come(grade),
@@ -125,31 +125,4 @@ def _rows(grade: Grade, exercise: Exercise) -> list[CheckRow]:
 def _row(check: ShownCheck, grade: Grade, exercise: Exercise) -> CheckRow:
     if not check.finding:
         return CheckRow(check)
-    return CheckRow(check, *_facts(check.finding, grade, exercise.element_name))
-
-
-def _facts(finding: Finding, grade: Grade, element: str) -> tuple[tuple[tuple[str, str], ...], str]:
-    """Return what is wrong as (label, value), and the rest of the finding's text."""
-    phrase = f"got {finding.got}."
-    if not (finding.expected and finding.got and phrase in finding.text):
-        return (), finding.text
-    before, _, after = finding.text.partition(phrase)
-    facts = [("expected", finding.expected), ("got", finding.got)]
-    if finding.message is not None:
-        recording = grade.recordings.get(finding.scenario)
-        of = f" of {len(recording.sent)}" if recording else ""
-        facts.append(("when", f"{finding.at or 0.0:.2f} s after the start (message {finding.message}{of})"))
-        before = ""
-    if finding.part:
-        facts.append((element, finding.part))
-    # "Your subscription has another type. Expected …" keeps its first sentence.
-    remark = f"{before.rpartition('Expected ')[0].strip()} {after.strip()}".strip()
-    return tuple(facts), remark
-
-
-def _plot_says(grade: Grade, plot: str) -> str:
-    for check in shown_checks(grade):
-        if check.finding and check.finding.message is not None:
-            where = f", {check.finding.part}" if check.finding.part else ""
-            return f"Yours over the solution's. First wrong: {check.finding.at or 0.0:.2f} s{where}."
-    return described(plot)
+    return CheckRow(check, *facts(check.finding, grade.recordings, exercise.element_name))

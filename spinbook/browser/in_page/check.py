@@ -9,6 +9,8 @@ import ast
 import json
 import sys
 import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +18,12 @@ from grader.checking.ending_message import message_of
 from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load
-from grader.recording.recording import Recording, from_plain, not_run_because
+from grader.recording.recording import Ending, Recording, from_plain, not_run_because
 from grader.report.checks import ShownCheck, public_total, shown_verdicts
 from grader.scenario.scenario import Message, Scenario
 from grader.scenario.store import from_plain as scenario_from_plain
 from spinbook.browser.in_page import runner
+from spinbook.browser.in_page.own_frames import with_own_frames
 from spinbook.browser.in_page.runner import ProgramText
 
 _ARCHIVE = Path("/check.zip")
@@ -44,7 +47,8 @@ def check(name: str, source: str) -> str:
     if exercise.programs or any(scenario.companions for scenario in scenarios):
         return json.dumps({"problem": _SEVERAL})
     recordings = record(exercise, scenarios, ProgramText(exercise.file_name, source))
-    return json.dumps(shown(exercise, verdicts(exercise, scenarios, recordings, references), recordings, hidden))
+    judged = Judged(verdicts(exercise, scenarios, recordings, references), recordings, references)
+    return json.dumps(shown(exercise, judged, hidden))
 
 
 def read(name: str, file: str, content: memoryview) -> str:
@@ -132,32 +136,75 @@ def _forget_modules_of(folder: Path) -> None:
             del sys.modules[name]
 
 
-def shown(
-    exercise: Exercise, found: tuple[Verdict, ...], recordings: dict[str, Recording], hidden: dict[str, Any]
-) -> dict[str, Any]:
-    """Return the result in the page's form."""
-    first = next(iter(recordings.values()))
-    broken = next((r for r in recordings.values() if r.ending.outcome != "completed"), None)
-    checks = shown_verdicts(found, telling=first.ending.outcome == "completed", self_check=True)
-    message = message_of(broken.ending, exercise) if broken else ""
+@dataclass(frozen=True)
+class Judged:
+    """What the checks say of one program: the part of a `Grade` that is shown, which itself needs a sandbox."""
+
+    verdicts: tuple[Verdict, ...]
+    recordings: dict[str, Recording]
+    references: dict[str, Recording]
+
+    @property
+    def ending(self) -> Ending:
+        """How the program ended in the first scenario."""
+        return next(iter(self.recordings.values())).ending
+
+    @property
+    def outcome(self) -> str:
+        """The outcome, as in a grade."""
+        return "graded" if self.ending.outcome == "completed" else self.ending.outcome
+
+    @property
+    def line(self) -> int | None:
+        """The line that is to blame, if it is known."""
+        return self.ending.line
+
+    @property
+    def log(self) -> str:
+        """What the program printed in the first scenario, without the frames of libraries."""
+        return with_own_frames(next(iter(self.recordings.values())).log)
+
+    @property
+    def full_marks(self) -> bool:
+        """Whether all checks passed."""
+        return all(verdict.status == "passed" for verdict in self.verdicts)
+
+
+def shown(exercise: Exercise, judged: Any, hidden: dict[str, Any]) -> dict[str, Any]:
+    """Return the result in the page's form: what the notebook's `%check` shows. `judged` is a `Judged`."""
+    from grader.report.facts import plot_says
+    from grader.report.feedback import advice
+    from grader.report.feedback_plot import picture
+
+    broken = next((r for r in judged.recordings.values() if r.ending.outcome != "completed"), None)
+    checks = shown_verdicts(judged.verdicts, telling=judged.outcome == "graded", self_check=True)
+    advised = advice(judged, exercise)
+    plot = picture(judged, exercise) or ""
     return {
-        "total": public_total(found),
-        "full": all(verdict.status == "passed" for verdict in found),
-        "message": message,
-        "log": broken.log[-4000:] if broken else "",
+        "total": public_total(judged.verdicts),
+        "full": judged.full_marks,
+        "message": message_of(broken.ending, exercise) if broken else "",
+        "step": advised.steps[0] if advised else "",
+        "log": judged.log.strip()[-4000:],
         "hidden": hidden,
-        "rows": [_row(check, exercise.count_hints) for check in checks],
+        "rows": [_row(check, exercise, judged.recordings) for check in checks],
+        "plot": plot,
+        "plot_says": plot_says(checks, plot) if plot else "",
     }
 
 
-def _row(check: ShownCheck, count_hints: bool) -> dict[str, Any]:
+def _row(check: ShownCheck, exercise: Exercise, recordings: Mapping[str, Recording]) -> dict[str, Any]:
     """Return a check in the page's form. A page does not count hints: then they are only in the notebook."""
+    from grader.report.facts import facts
+
+    table, remark = facts(check.finding, recordings, exercise.element_name) if check.finding else ((), "")
     return {
         "title": check.title,
         "status": "untested" if check.untested else check.status,
         "earned": check.earned,
         "points": check.points,
-        "text": check.finding.text if check.finding else "",
-        "hints": () if count_hints else check.labelled_hints,
+        "text": remark,
+        "facts": table,
+        "hints": () if exercise.count_hints else check.labelled_hints,
         "note": check.note,
     }

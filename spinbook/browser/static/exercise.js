@@ -3,6 +3,7 @@ import { download as load } from "./download.js";
 import { Edits } from "./edits.js";
 import { createEditor } from "./editor.js";
 import { announce, button, element, failure, hindrance, style } from "./elements.js";
+import { fill } from "./picture.js";
 import { Process } from "./processes.js";
 import { tellUpdate } from "./update.js";
 
@@ -37,10 +38,7 @@ async function check(exercise, source, say) {
 }
 
 function row(check) {
-  const { status, title, earned, points, text, hints, note } = check;
-  const folded = hints.map(([label, hint]) =>
-    element("details", {}, element("summary", { textContent: label }), element("p", { textContent: hint })),
-  );
+  const { status, title, earned, points, text, facts, hints, note } = check;
   return element(
     "li",
     { className: `check-${status}` },
@@ -48,9 +46,28 @@ function row(check) {
     element("span", { className: "check-title", textContent: title }),
     element("span", { className: "check-points", textContent: `${earned} of ${points}` }),
     ...(text ? [element("p", { textContent: text })] : []),
-    ...folded,
+    ...(facts.length ? [table(facts)] : []),
+    ...hints.map(([label, hint]) => folded(label, false, element("p", { textContent: hint }))),
     ...(note ? [element("p", { className: "check-note", textContent: note })] : []),
   );
+}
+
+function table(facts) {
+  const rows = facts.map(([label, value]) => {
+    const head = element("th", { scope: "row", textContent: label });
+    return element("tr", {}, head, element("td", {}, element("code", { textContent: value })));
+  });
+  return element("table", { className: "check-facts" }, ...rows);
+}
+
+function folded(words, open, ...children) {
+  return element("details", { open }, element("summary", { textContent: words }), ...children);
+}
+
+// The values that the node published, drawn over the solution's.
+function plotted({ plot, plot_says: words, full }) {
+  const figure = fill(element("figure", { className: "check-plot" }), plot, ".check-plot");
+  return folded(words, !full, figure);
 }
 
 function panel(result) {
@@ -60,8 +77,10 @@ function panel(result) {
   return [
     element("p", { className: "check-total", textContent: result.total }),
     ...(result.message ? [element("p", { className: "check-message", textContent: result.message })] : []),
-    ...(result.log && result.message ? [element("pre", { textContent: result.log, tabIndex: 0 })] : []),
+    ...(result.step ? [element("p", { textContent: result.step })] : []),
+    ...(result.log ? [folded("What your program printed", Boolean(result.message), element("pre", { textContent: result.log, tabIndex: 0 }))] : []),
     element("ul", {}, ...result.rows.map(row)),
+    ...(result.plot ? [plotted(result)] : []),
     element("p", { textContent: `${later}This is a preview, not your grade: the grade is the grader's.` }),
   ];
 }

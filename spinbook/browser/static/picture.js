@@ -1,10 +1,25 @@
 // Shows the SVG pictures that Spinbook draws.
 import { element } from "./elements.js";
 
-function dress(rules) {
+const DARK = /@media[^{]*\(prefers-color-scheme:\s*dark\)\s*\{/g;
+const dressed = new Set();
+
+// Adopt the rules of a picture, once, for the elements in `scope` if it is given. Colours follow the page's own switch.
+function dress(rules, scope) {
+  const own = rules.replace(DARK, scope ? ':root[data-colours="dark"] & {' : ':root[data-colours="dark"] {');
+  const whole = scope ? `${scope} {${own}}` : own;
+  if (dressed.has(whole)) return;
+  dressed.add(whole);
   const sheet = new CSSStyleSheet();
-  sheet.replaceSync(rules);
+  sheet.replaceSync(whole);
   document.adoptedStyleSheets.push(sheet);
+}
+
+// Put an SVG into an element. Names in it are escaped. The page's policy forbids <style>, so its rules go into a
+// constructed style sheet.
+export function fill(place, svg, scope = "") {
+  place.innerHTML = svg.replace(/<style>(.*?)<\/style>/gs, (_, rules) => (dress(rules, scope), ""));
+  return place;
 }
 
 // Show a picture in a cell, or its words if there is nothing to draw, or the problem.
@@ -12,8 +27,7 @@ export function show(cell, { picture, words, problem }, className) {
   if (problem) return cell.fail(problem);
   if (!picture) return cell.print(words);
   const figure = element("figure", { className: `live-picture ${className}` });
-  // Names in it are escaped. The page's policy forbids <style>, so its rules go into a constructed style sheet.
-  figure.innerHTML = picture.replace(/<style>(.*?)<\/style>/gs, (_, rules) => (dress(rules), ""));
+  fill(figure, picture);
   figure.dataset.words = words;
   cell.shown?.append(figure);
 }

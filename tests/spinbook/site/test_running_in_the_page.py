@@ -19,6 +19,11 @@ ROOT = Path(__file__).parents[3]
 #: Pyodide starts in a few seconds; on a busy machine, in many.
 DEADLINE_MS = 120_000
 
+#: Resolves when the page has kept the whole course for reading without a network.
+KEPT = """async (list) => {
+  while (!(await (await caches.open('pages')).match(list))) await new Promise((resolve) => setTimeout(resolve, 50));
+}"""
+
 
 def requested(shown: Opened, address: str) -> list[str]:
     """Return what loading the page again requests from the server."""
@@ -94,8 +99,7 @@ def test_a_course_that_was_run_once_runs_without_a_network(browser: Browser, add
 
         assert shown.faults == []
 
-        kept = "async (list) => Boolean(await (await caches.open('pages')).match(list))"
-        page.wait_for_function(kept, arg=f"{address}/offline.json", timeout=DEADLINE_MS)
+        page.evaluate(KEPT, f"{address}/offline.json")
         page.context.set_offline(True)
         page.reload()
         assert "A publisher sends messages." in page.inner_text("main")
