@@ -47,7 +47,7 @@ def check(name: str, source: str) -> str:
     if exercise.programs or any(scenario.companions for scenario in scenarios):
         return json.dumps({"problem": _SEVERAL})
     recordings = record(exercise, scenarios, ProgramText(exercise.file_name, source))
-    judged = Judged(verdicts(exercise, scenarios, recordings, references), recordings, references)
+    judged = CheckedProgram(verdicts(exercise, scenarios, recordings, references), recordings, references)
     return json.dumps(shown(exercise, judged, hidden))
 
 
@@ -137,7 +137,7 @@ def _forget_modules_of(folder: Path) -> None:
 
 
 @dataclass(frozen=True)
-class Judged:
+class CheckedProgram:
     """What the checks say of one program: the part of a `Grade` that is shown, which itself needs a sandbox."""
 
     verdicts: tuple[Verdict, ...]
@@ -171,7 +171,7 @@ class Judged:
 
 
 def shown(exercise: Exercise, judged: Any, hidden: dict[str, Any]) -> dict[str, Any]:
-    """Return the result in the page's form: what the notebook's `%check` shows. `judged` is a `Judged`."""
+    """Return the result in the page's form: what the notebook's `%check` shows. `judged` is a `CheckedProgram`."""
     from grader.report.facts import plot_says
     from grader.report.feedback import advice
     from grader.report.feedback_plot import picture
