@@ -9,15 +9,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
 from grader.exercise.exercise import Exercise, Topic
-from grader.grading.grade import Grade
 from grader.recording.recording import ReceivedMessage, Recording, SentMessage
 from grader.report.pages import template
 from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import NoSuchField, field_of
+
+if TYPE_CHECKING:
+    from grader.grading.grade import Grade
 
 Place = tuple[float, float]
 

@@ -105,13 +105,13 @@ def test_a_course_that_was_run_once_runs_without_a_network(browser: Browser, add
         assert "A publisher sends messages." in page.inner_text("main")
         page.get_by_role("button", name="Run talker.py").click()
         expect(log).to_contain_text("[talker]: number 3", timeout=DEADLINE_MS)
+        pictures = page.locator("main img:visible")
+        assert pictures.count() > 0
+        assert pictures.evaluate_all("images => images.every(image => image.complete && image.naturalWidth > 0)")
         page.goto(f"{address}/chapters/02-more.html")
         assert "Words only." in page.inner_text("main")
         page.goto(f"{address}/")
         expect(page.get_by_role("heading", level=1)).to_have_text("A small course")
-        pictures = page.locator("main img:visible")
-        assert pictures.count() > 0
-        assert pictures.evaluate_all("images => images.every(image => image.complete && image.naturalWidth > 0)")
         page.goto(f"{address}/search.html?q=publisher")
         expect(page.locator("#search-results li").first).to_be_visible()
         assert page.evaluate("async () => (await fetch('downloads/talker.py')).ok")
