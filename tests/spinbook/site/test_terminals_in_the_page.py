@@ -146,3 +146,25 @@ def test_a_launch_is_one_entry_and_bad_words_leave_it_alone(shown: Opened) -> No
     expect(bar).to_have_count(0)
     assert shown.violations() == []
     assert shown.faults == []
+
+
+@pytest.mark.parametrize("size", [(1280, 900), (390, 844)], ids=["desk", "phone"])
+def test_run_answers_in_the_head_of_its_block_and_the_bar_does_not_cover_it(
+    shown: Opened, size: tuple[int, int]
+) -> None:
+    width, height = size
+    shown.page.set_viewport_size({"width": width, "height": height})
+    head = cell(shown, 1).locator(".cell-head")
+    head.evaluate("head => head.scrollIntoView({ block: 'end', behavior: 'instant' })")
+    run(shown, 1)
+    expect(head.get_by_role("status")).not_to_be_empty()
+    expect(head.locator(".run-last")).to_have_text("[INFO] [talker]: version one", timeout=DEADLINE_MS)
+    expect(head.get_by_role("status")).to_have_text("talker runs.")
+    bar = shown.page.get_by_role("region", name="Running nodes").bounding_box()
+    shown_head = head.bounding_box()
+    assert bar
+    assert shown_head
+    assert shown_head["y"] + shown_head["height"] <= bar["y"]
+    assert not shown.scrolls_sideways()
+    head.get_by_role("button", name="Ctrl-C").click()
+    expect(head.get_by_role("status")).to_have_text("talker ended with 0.", timeout=DEADLINE_MS)
