@@ -110,11 +110,11 @@ def test_a_course_that_was_run_once_runs_without_a_network(browser: Browser, add
         assert pictures.evaluate_all("images => images.every(image => image.complete && image.naturalWidth > 0)")
         page.goto(f"{address}/chapters/02-more.html")
         assert "Words only." in page.inner_text("main")
+        assert page.evaluate("async () => (await fetch('../downloads/talker.py')).ok")
         page.goto(f"{address}/")
         expect(page.get_by_role("heading", level=1)).to_have_text("A small course")
         page.goto(f"{address}/search.html?q=publisher")
         expect(page.locator("#search-results li").first).to_be_visible()
-        assert page.evaluate("async () => (await fetch('downloads/talker.py')).ok")
 
 
 def test_a_page_from_before_an_update_says_so(browser: Browser, address: str) -> None:
