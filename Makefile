@@ -61,6 +61,7 @@ wheel: setup   ## Write wheels of Spinbook, its middleware and the interfaces in
 	@rm -rf build/wheels build/lib build/bdist.*
 	@$(BIN)/python -m pip --disable-pip-version-check wheel --quiet --no-deps --no-build-isolation --wheel-dir build/wheels .
 	@rm -rf build/lib build/bdist.*
+	@$(BIN)/spinbook interfaces build
 	@$(BIN)/python -m grader.wheels build/wheels
 
 lock:    ## Pin the newest versions of every dependency (needs uv).

@@ -1,6 +1,6 @@
 """Wheels of what was compiled here, the middleware and interfaces: with them, other machines need no compiler.
 
-`python -m grader.wheels FOLDER` writes those of this environment.
+`python -m grader.wheels FOLDER` writes those of this environment, and of the course here as compiled last.
 """
 
 from __future__ import annotations
@@ -9,8 +9,10 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from grader.exercise.loading import COURSE
 from grader.sandbox.middleware import MiddlewareUnavailable, require_middleware
 from interface_compiler import activation, prefixes
+from interface_compiler.near import use_near
 from interface_compiler.wheel import wheel
 from interface_compiler.wheel_file import wheel_file
 from rmw_lockstep.library import DESCRIPTION, PREBUILT, Library, library, sources_digest
@@ -63,6 +65,7 @@ def _interface_wheels() -> Iterator[tuple[str, bytes]]:
 
 def main() -> None:
     """Write the wheels and print their paths; or print why that is impossible and exit with 1."""
+    use_near(Path.cwd(), COURSE)
     folder = Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
     try:
