@@ -61,12 +61,12 @@ def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[E
         middle = (finals[(len(finals) - 1) // 2] + finals[len(finals) // 2]) / 2
         full = sum(final >= points for final in finals)
         say(console, f"{len(finals)} grades: median {middle:g} of {points:g} points, {full} with full marks.", "bold")
-    if entries and (unknown := unknown_to_moodle(entries)):
-        who = "any student" if unknown == len(entries) else f"{unknown} of the {len(entries)} students"
+    unknown = unknown_to_moodle(entries)
+    if 0 < unknown < len(entries):  # a class that Moodle knows
         say(
             console,
-            f"moodle.csv has no Identifier for {who}, so Moodle can't match them. If you use Moodle, grade the folder "
-            "that you downloaded from it, or give its grading worksheet with --roster.",
+            f"moodle.csv has no Identifier for {unknown} of the {len(entries)} students, so Moodle can't match them. "
+            "Give its grading worksheet with --roster.",
             "dim",
         )
     for entry in (entry for entry in unscored if entry.grade.outcome == "undecided"):

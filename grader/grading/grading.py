@@ -14,6 +14,7 @@ from grader.grading.reference import reference, solution_file, versions
 from grader.grading.scenario_runner import ScenarioRunner
 from grader.recording.printed_paths import without_paths
 from grader.recording.recording import Ending, Recording
+from grader.runner.tracebacks import in_cells
 from grader.sandbox.isolation import choose
 from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.scenario.declared import declared
@@ -103,7 +104,7 @@ class Grading:
             hidden_checks=self.public.hidden_checks if self.public else 0,
             hidden_points=self.public.hidden_points if self.public else 0.0,
             line=first.ending.line if first else None,
-            log=first.log if first else "",
+            log=in_cells(first.log, submission.sources) if first else "",
             seconds=time.monotonic() - began,
             recordings=recordings,
             references=self.references,

@@ -85,6 +85,23 @@ def first_error(log: str, sources: Mapping[str, str]) -> LastError | None:
     return None
 
 
+#: A place in a traceback or in a warning: `File "heartbeat.py", line 5`, `heartbeat.py:5: DeprecationWarning`.
+_PLACES = re.compile(
+    r'File "(?P<file>[^"\n]+)", line (?P<line>\d{1,9})|^(?P<path>\S+\.py):(?P<number>\d{1,9})(?=: )', re.MULTILINE
+)
+
+
+def in_cells(log: str, sources: Mapping[str, str]) -> str:
+    """Return what a program printed, with the lines of a notebook's cells in place of an assembled program's lines."""
+
+    def in_cell(place: re.Match[str]) -> str:
+        file = _own(place["file"] or place["path"], sources)
+        cell, line = place_of(sources[file], int(place["line"] or place["number"])) if file else (0, 0)
+        return f"code cell {cell}, line {line}" if cell else place[0]
+
+    return _PLACES.sub(in_cell, log)
+
+
 def _own(path: str, sources: Mapping[str, str]) -> str:
     """Return which of the student's files a path means; "" if none."""
     parts = path.rsplit("/", _DEEPEST)

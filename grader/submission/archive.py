@@ -169,8 +169,9 @@ def _unpack(content: bytes, prefix: str, contents: Contents, depth: int) -> None
             with zipfile.ZipFile(io.BytesIO(content)) as archive:
                 _keep(list(_of_zip(archive, contents)), prefix, contents, depth)
     except (*_BROKEN, ValueError) as error:
-        kind = "archive" if is_tar else "zip file"
-        raise Unreadable(f"It is not a valid {kind}: {error}. Was the upload cut off? Hand it in again.") from None
+        why = f": {error}" if is_tar or content.startswith(b"PK") else ""
+        kind = "archive" if is_tar else "zip file" if why else "archive (.zip, .tar.gz, .tar)"
+        raise Unreadable(f"It is not a valid {kind}{why}. Was the upload cut off? Hand it in again.") from None
 
 
 def _add(name: str, data: bytes | None, contents: Contents, depth: int) -> None:

@@ -355,21 +355,32 @@ def _decided(options: Sequence[_Option], reading: _ReadState, target: ProgramFil
 
 
 def _notes(option: _Option, reading: _ReadState) -> tuple[str, ...]:
-    """Return notes on the choice; none if there was only one program."""
+    """Return notes on the choice; none if there was only one program. Raises `AmbiguousProgram`."""
+    _refuse_own_interfaces(option, reading)
     notes = []
     others = [name for name in packages.programs(reading.files) if name != option.file]
     notebooks = [name for name in reading.files if kind_of(name) == "notebook" and name != option.file]
     called = any(_is_called(option.file, one.file) for one in targets(reading.exercise))
     if notebooks or ((others or option.function) and not called):
         notes.append(f"Taken: {option.title}.")
-    used = python_code.imported(option.source)
-    for package in sorted(packages.own_interfaces(reading.files)):
-        if any(module.partition(".")[0] == package for module in used):
-            notes.append(
-                f"Your program imports {package}, your own package of messages. The grader does not build it. Use "
-                "the types that the task names."
-            )
+    if settings := packages.launch_settings(reading.files, option.file):
+        found = ", ".join(settings)
+        notes.append(f"Not applied from your launch file: {found}. The grader starts the program as the task says.")
     return tuple(notes)
+
+
+def _refuse_own_interfaces(option: _Option, reading: _ReadState) -> None:
+    """Raise `AmbiguousProgram` if a program needs messages of the submission's own, unless they are installed here.
+
+    Compiling what a student defines would run a compiler on it, so it is for the instructor to decide.
+    """
+    used = {module.partition(".")[0] for module in python_code.imported(option.source)}
+    for package in sorted(packages.own_interfaces(reading.files) & used):
+        raise AmbiguousProgram(
+            f"The program imports {package}, a package of messages that was handed in with it, and the grader does not "
+            "build it. Use the types that the task names. To the instructor: if it is to be graded as it is, put its "
+            f"definitions into the course's folder interfaces/{package}/ first."
+        )
 
 
 def _nothing(reading: _ReadState, target: ProgramFile) -> str:

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import ast
 import configparser
+import importlib.util
 import posixpath
 import re
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from grader.submission import python_code
@@ -42,6 +43,15 @@ class LaunchFileNode:
 
     executable: str
     name: str
+    settings: tuple[str, ...] = ()
+    """What the launch file sets for it, by its keywords: see `SETTINGS`."""
+
+
+#: What a launch file can set for a node, as "Node" in the documentation of launch_ros has it, and in words.
+SETTINGS = {
+    **{"remappings": "remappings", "remap": "remappings", "parameters": "parameters", "param": "parameters"},
+    **{"namespace": "namespace", "arguments": "arguments", "args": "arguments", "ros_arguments": "arguments"},
+}
 
 
 def programs(files: Mapping[str, bytes]) -> list[str]:
@@ -120,7 +130,8 @@ def launched(files: Mapping[str, bytes]) -> list[LaunchFileNode]:
         elif re.search(r"launch\.(xml|ya?ml)$|\.launch$", name):
             for node in re.findall(r"<node\b[^>]*>|^\s*-\s*node:.*?(?=^\s*-|\Z)", text, re.DOTALL | re.MULTILINE):
                 values = dict(re.findall(r"""\b(exec|name)\s*[=:]\s*["']?([\w.-]+)""", node))
-                found.append(LaunchFileNode(values.get("exec", ""), values.get("name", "")))
+                keys = [key for key in SETTINGS if re.search(rf"\b{key}\b\s*[=:]|<{key}\b", _element(text, node))]
+                found.append(LaunchFileNode(values.get("exec", ""), values.get("name", ""), _in_words(keys)))
     return [one for one in found if one.executable]
 
 
@@ -133,7 +144,27 @@ def _launched_by_python(text: str) -> Iterator[LaunchFileNode]:
                 for keyword in node.keywords
                 if isinstance(keyword.value, ast.Constant) and isinstance(keyword.value.value, str)
             }
-            yield LaunchFileNode(values.get("executable", ""), values.get("name", ""))
+            keys = [keyword.arg or "" for keyword in node.keywords]
+            yield LaunchFileNode(values.get("executable", ""), values.get("name", ""), _in_words(keys))
+
+
+def _element(text: str, tag: str) -> str:
+    """Return an XML element with what is in it, given its first tag; any other text as it is."""
+    if not tag.startswith("<node") or tag.endswith("/>"):
+        return tag
+    return tag + text.partition(tag)[2].partition("</node>")[0]
+
+
+def _in_words(keys: Iterable[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(SETTINGS[key] for key in keys if key in SETTINGS))
+
+
+def launch_settings(files: Mapping[str, bytes], file: str) -> list[str]:
+    """Return what launch files set for the program in `file`, in words."""
+    stem = posixpath.basename(file).removesuffix(".py")
+    names = {stem, f"{stem}.py"} | {entry.name for entry in entry_points(files) if entry.file == file}
+    nodes = [node for node in launched(files) if node.executable in names]
+    return list(dict.fromkeys(setting for node in nodes for setting in node.settings))
 
 
 @dataclass(frozen=True)
@@ -226,14 +257,21 @@ def _has_package(root: str, files: Mapping[str, bytes]) -> bool:
 
 
 def own_interfaces(files: Mapping[str, bytes]) -> set[str]:
-    """Return the packages that define messages, services or actions."""
+    """Return the packages that define messages, services or actions, and are not installed here as well."""
     found = set()
     for root in roots(files):
         manifest = _PACKAGE_NAME.search(files.get(posixpath.join(root, "package.xml"), b""))
         kinds = [name for name in files if _below(name, root) and re.search(r"\.(msg|srv|action)$", name)]
-        if manifest and kinds:
+        if manifest and kinds and not _is_installed(manifest[1].decode()):
             found.add(manifest[1].decode())
     return found
+
+
+def _is_installed(package: str) -> bool:
+    try:
+        return importlib.util.find_spec(package) is not None
+    except (ImportError, ValueError):
+        return False
 
 
 #: Runs a module as `python -m` would, or its function as an installed executable does.

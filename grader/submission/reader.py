@@ -39,6 +39,12 @@ class Submission:
     question: str = ""
     newer_python: str = ""
 
+    @property
+    def sources(self) -> dict[str, str]:
+        """The Python files of the program, by name."""
+        files = self.program.files if self.program else {}
+        return {name: data.decode("utf-8", errors="replace") for name, data in files.items() if name.endswith(".py")}
+
 
 @dataclass(frozen=True)
 class Executable:

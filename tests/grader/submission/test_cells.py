@@ -216,3 +216,13 @@ def test_two_programs_are_two_cells(pair: Exercise) -> None:
 def test_an_exercise_that_nobody_has_begun_is_reported(cells: list[str], exercise: Exercise) -> None:
     with pytest.raises(Unreadable, match=r"empty|None of the notebook's 1 code cells"):
         code_in(notebook(*cells), exercise)
+
+
+def test_what_a_program_in_pieces_prints_has_its_cells_and_their_lines(exercise: Exercise, grading: Grading) -> None:
+    broken = BEAT.replace("message = Header", "import warnings; warnings.warn('odd'); message = Head")
+    content = notebook(IMPORTS, "x = 1\n", f"{INIT}\n{broken}", f"%%node heartbeat\n{MAIN}\n{GUARD}")
+    grade = grading.grade(of_code("week3.ipynb", code_of("week3.ipynb", content, exercise), exercise))
+    line = f"{INIT}\n{broken}".split("\n").index(next(one for one in broken.split("\n") if "Head(" in one)) + 1
+    assert f"code cell 3, line {line}, in beat" in grade.log
+    assert f"code cell 3, line {line}: UserWarning: odd" in grade.log
+    assert "heartbeat.py" not in grade.log

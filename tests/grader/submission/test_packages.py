@@ -193,10 +193,10 @@ def test_a_package_of_a_file_called_as_the_exercise_needs_no_word(exercise: Exer
 def test_an_error_has_the_file_and_the_line_of_that_file(exercise: Exercise, grading: Grading) -> None:
     broken = {**inside("p"), "p/my_robot/rates.py": "# the rates\n\nRATE = 1 / 0\n"}
     message = grading.grade(of_content("p.zip", zipped(broken), exercise)).message
-    assert "ZeroDivisionError: division by zero in line 3 of my_robot/rates.py: RATE = 1 / 0" in message
+    assert "ZeroDivisionError: division by zero in line 3 of my_robot/rates.py: `RATE = 1 / 0`" in message
     unreadable = {**inside("p"), "p/my_robot/rates.py": "RATE = 0.25\n\nRATE = = 1\n"}
     message = grading.grade(of_content("p.zip", zipped(unreadable), exercise)).message
-    assert "SyntaxError: invalid syntax in line 3 of my_robot/rates.py: RATE = = 1" in message
+    assert "SyntaxError: invalid syntax in line 3 of my_robot/rates.py: `RATE = = 1`" in message
 
 
 COUNTER = """\
@@ -300,12 +300,45 @@ def test_an_upload_made_to_do_harm_does_none(content: bytes, exercise: Exercise)
         assert digest_of(submission.source) == digest_of(PROGRAM)
 
 
-def test_messages_of_their_own_are_named(exercise: Exercise) -> None:
+def test_messages_of_their_own_are_a_question_unless_they_are_the_courses(
+    exercise: Exercise, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     files = {
         **inside("src/my_robot"),
         "src/my_msgs/package.xml": MANIFEST.replace("my_robot", "my_msgs"),
         "src/my_msgs/msg/Beat.msg": "float64 rate\n",
     }
-    assert "my_msgs" not in str(of_content("ws.zip", zipped(files), exercise).notes)
+    assert of_content("ws.zip", zipped(files), exercise).program
     files["src/my_robot/my_robot/beat_node.py"] = f"from my_msgs.msg import Beat\n{IN_PACKAGE}"
-    assert "imports my_msgs, your own package of messages" in str(of_content("ws.zip", zipped(files), exercise).notes)
+    question = of_content("ws.zip", zipped(files), exercise).question
+    assert "imports my_msgs" in question
+    assert "the course's folder interfaces/my_msgs/" in question
+    (tmp_path / "my_msgs").mkdir()
+    (tmp_path / "my_msgs" / "__init__.py").touch()
+    monkeypatch.syspath_prepend(tmp_path)
+    assert of_content("ws.zip", zipped(files), exercise).program
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("a.launch.py", "Node(executable='beat', remappings=[('a', 'b')], namespace='x')", "remappings, namespace"),
+        ("a.launch.py", "Node(executable='beat', parameters=[{'rate': 4.0}])", "parameters"),
+        ("a.launch.py", "Node(executable='another', namespace='x')", ""),
+        ("a.launch.py", "Node(package='my_robot', executable='beat', output='screen')", ""),
+        ("a.launch.xml", '<launch><node exec="beat" namespace="x"/><node exec="y" args="z"/></launch>', "namespace"),
+        ("a.launch.xml", '<launch><node exec="beat"><remap from="a" to="b"/></node></launch>', "remappings"),
+        (
+            "a.launch.yaml",
+            "launch:\n- node:\n    exec: beat\n    param:\n    - name: r\n- node:\n    exec: y\n",
+            "parameters",
+        ),
+    ],
+)
+def test_what_a_launch_file_sets_is_said_not_to_be_applied(
+    exercise: Exercise, name: str, text: str, words: str
+) -> None:
+    files = {**inside("src/my_robot"), f"src/my_robot/launch/{name}": text}
+    notes = [note for note in of_content("ws.zip", zipped(files), exercise).notes if "launch file" in note]
+    assert len(notes) == bool(words)
+    assert all(note.startswith(f"Not applied from your launch file: {words}.") for note in notes)
