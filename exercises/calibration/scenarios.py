@@ -60,7 +60,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             wanted(ELBOW, 0.55, 0.95),
             duration=3.0,
             rate=20.0,
-            servers=server(found(0.01, 0.8), found(0.0, 0.8)),
+            servers=server(found(0.01, 1.2), found(0.0, 1.2)),
         ),
         Scenario(
             "failing",

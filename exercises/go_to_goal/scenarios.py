@@ -20,6 +20,20 @@ class CarriedTurtle(Turtle):
             self.x = self.y = 5.5
 
 
+class PushedTurtle(Turtle):
+    """A turtle that is pushed aside, and turned, 2.5 s after the start."""
+
+    seconds = 0.0
+
+    def step(self, seconds: float) -> None:
+        """Move on, by itself or because somebody pushes it."""
+        before, self.seconds = self.seconds, self.seconds + seconds
+        super().step(seconds)
+        if before < 2.5 <= self.seconds:
+            self.y += 1.5
+            self.theta -= 0.6
+
+
 def scenarios(seed: int) -> tuple[Scenario, ...]:
     """Every scenario. The first one must be passed by any node that works at all."""
     return (
@@ -41,10 +55,10 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         ),
         Scenario(
             "short_way",
-            "the shorter way to turn goes past 180 degrees, and the turtle is carried away from the goal at 11 s",
-            (at(0.5).publish(GOAL, x=3.0, y=4.0),),
+            "the shorter way to turn goes past 180 degrees; carried away at 11 s, and sent back at 12.5 s",
+            (at(0.5, 12.5).publish(GOAL, x=3.0, y=4.0),),
             world=World(CarriedTurtle, period=0.016, x=8.0, y=5.5, theta=2.6),
-            duration=12.5,
+            duration=22.6,
             rate=10.0,
         ),
         Scenario(
@@ -67,8 +81,16 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             "new_goal",
             "a second goal, while the turtle is on its way to the first",
             (at(0.5).publish(GOAL, x=10.0, y=5.5), at(2.0).publish(GOAL, x=3.0, y=3.0)),
-            world=World(Turtle, period=0.016, x=5.5, y=5.5, theta=0.0),
+            world=World(Turtle, period=0.016, x=1.0, y=5.5, theta=0.0),
             duration=12.5,
+            rate=10.0,
+        ),
+        Scenario(
+            "pushed",
+            "the turtle is pushed aside on its way",
+            (at(0.5).publish(GOAL, x=9.0, y=4.0),),
+            world=World(PushedTurtle, period=0.016, x=2.0, y=3.0, theta=0.0),
+            duration=11.0,
             rate=10.0,
         ),
     )

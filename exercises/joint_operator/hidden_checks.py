@@ -3,14 +3,37 @@
 from __future__ import annotations
 
 from grader.checking import Run, check, fail
+from grader.recording.events import Goal
 
 OUTCOMES = "/outcomes"
-OUTCOME, ORDER = ["test_publishes_the_outcome"], ["test_every_target_in_order"]
+ENDS = ("succeeded", "canceled", "aborted")
+SENDS, OUTCOME = ["test_sends_a_goal"], ["test_publishes_the_outcome"]
 
 
-def outcomes(run: Run) -> None:
-    """The outcomes must be the solution's, and about when it publishes them."""
-    run.must_match_series("data", OUTCOMES, time=0.3)
+def must_report_every_end(run: Run) -> None:
+    """Fail unless each of the node's goals has its outcome, as it ended, within 0.3 s after its end."""
+    ended = []
+    for goal in run.goals(by="node"):
+        last = goal.states[-1] if goal.states else None
+        if goal.accepted is False:
+            ended.append(("rejected", goal.answered or goal.at))
+        elif last and last.state in ENDS:
+            ended.append((last.state, last.at))
+    published = run.messages_on(OUTCOMES)
+    for number, (outcome, at) in enumerate(ended, start=1):
+        if number > len(published):
+            run.wrong_at(at, f"expected {outcome} on {OUTCOMES}, got nothing.", f"goal {number}", outcome, "nothing")
+        message = published[number - 1]
+        if (got := message.fields["data"]) != outcome:
+            run.wrong_at(at, f"expected {outcome} on {OUTCOMES}, got {got}.", f"goal {number}", outcome, got)
+        late = (message.at - at) / 1_000_000_000
+        if abs(late) > 0.3:
+            text = f"the outcome was expected when the goal had ended, got it {abs(late):.2f} s "
+            text += "later." if late > 0 else "too early."
+            run.wrong_at(message.at, text, f"goal {number}", "when it had ended", f"{late:.2f} s later")
+    if len(published) > len(ended):
+        text = f"{len(ended)} goals have ended: expected {len(ended)} outcomes, got {len(published)}."
+        run.wrong_at(None, text, "", len(ended), len(published))
 
 
 def must_not_cancel(run: Run) -> None:
@@ -21,94 +44,114 @@ def must_not_cancel(run: Run) -> None:
             run.wrong_at(cancel.at, text, f"goal {goal.number}", "no request to cancel", "one")
 
 
+def must_ask_to_cancel(run: Run, goal: Goal) -> None:
+    """Fail unless the node asks to cancel this goal once, 5 s after it was accepted."""
+    if len(goal.cancels) != 1:
+        text = f"expected one request to cancel the goal that takes too long, got {len(goal.cancels)}."
+        run.wrong_at(goal.at, text, "", "one request", len(goal.cancels))
+    after = (goal.cancels[0].at - (goal.answered or goal.at)) / 1_000_000_000
+    if not 5.0 <= after <= 5.25:
+        text = f"expected a request to cancel 5 s after the goal was accepted, got it after {after:.2f} s."
+        run.wrong_at(goal.cancels[0].at, text, "", "5 s to 5.25 s", f"{after:.2f} s")
+
+
 @check(
-    points=8,
+    points=5,
+    hint="Put every message on /targets into the list, whatever its number is.",
+    depends=["test_every_target_in_order"],
+    misconception="loses targets",
+    rule="goal",
+)
+def test_repeated_and_zero_targets(again: Run) -> None:
+    """A target that is repeated, and one of 0.0, are goals like any other."""
+    again.must_match_goals("position")
+
+
+@check(
+    points=7,
     hint="Look at goal_handle.accepted before you ask for a result. Then continue with the next target.",
-    depends=ORDER,
+    depends=SENDS,
     misconception="ignores accepted",
-    rule="or rejected if the server did not accept it.",
+    rule=("outcome", "never_wait"),
 )
 def test_rejected(rejects: Run) -> None:
     """When the server rejects a goal, it publishes rejected, and continues with the next."""
-    outcomes(rejects)
+    rejects.must_match_goals("position")
+    must_report_every_end(rejects)
 
 
 @check(
     points=7,
     hint="future.result().status says how the goal ended.",
-    depends=ORDER,
+    depends=OUTCOME,
     misconception="ignores the status",
-    rule="What counts is the status that comes with the result, not what you asked for.",
+    rule="status",
 )
 def test_aborted(aborts: Run) -> None:
     """When the server aborts a goal, it publishes aborted, and continues with the next."""
-    outcomes(aborts)
+    must_report_every_end(aborts)
 
 
 @check(
     points=4,
     hint="Nothing has to happen until the server answers.",
     depends=OUTCOME,
-    rule="is published on /outcomes when its goal has ended",
+    rule="outcome",
 )
 def test_server_that_answers_late(answers_late: Run) -> None:
     """When the server takes long to accept, it still waits for the result."""
-    outcomes(answers_late)
+    must_report_every_end(answers_late)
 
 
 @check(
-    points=7,
+    points=6,
     hint="server_is_ready() says whether the server is there. Look again in the timer.",
-    depends=ORDER,
+    depends=SENDS,
     misconception="sends without a server",
-    rule="Keep the targets, and send the first one within 0.25 s after the server appears.",
+    rule=("server", "never_wait"),
 )
 def test_server_appears_late(appears: Run) -> None:
     """When the server appears late, it sends all targets that were waiting."""
-    appears.must_match_goals("position")
-    first = appears.goals(by="node")[0]
-    late = (first.at - 102_020_000_000) / 1_000_000_000
+    goals = appears.goals(by="node")
+    sent, expected = {goal.goal["position"] for goal in goals}, len(appears.sent)
+    if len(sent) != expected:
+        appears.wrong_at(None, f"expected {expected} goals, got {len(sent)}.", "", f"{expected} goals", len(sent))
+    late = (goals[0].at - 102_020_000_000) / 1_000_000_000
     if late > 0.25:
         text = f"the first goal was expected within 0.25 s after the server appeared, got it after {late:.2f} s."
-        appears.wrong_at(first.at, text, "", "within 0.25 s", f"{late:.2f} s")
+        appears.wrong_at(goals[0].at, text, "", "within 0.25 s", f"{late:.2f} s")
 
 
 @check(
     points=7,
     hint="Remember when the goal was accepted, and check the time in the timer.",
-    depends=OUTCOME,
+    depends=SENDS,
     misconception="waits forever",
-    rule="If a goal has not ended 5 s after it was accepted, ask the server to cancel it, once, within 0.25 s.",
+    rule=("cancel", "clock"),
 )
-def test_asks_to_cancel(never_ends: Run) -> None:
-    """It asks to cancel a goal that takes longer than 5 s, once."""
-    first = never_ends.goals(by="node")[0]
-    if len(first.cancels) != 1:
-        text = f"expected one request to cancel the goal that never ends, got {len(first.cancels)}."
-        never_ends.wrong_at(first.at, text, "", "one request", len(first.cancels))
-    after = (first.cancels[0].at - (first.answered or first.at)) / 1_000_000_000
-    if not 5.0 <= after <= 5.25:
-        text = f"expected a request to cancel 5 s after the goal was accepted, got it after {after:.2f} s."
-        never_ends.wrong_at(first.cancels[0].at, text, "", "5 s to 5.25 s", f"{after:.2f} s")
+def test_asks_to_cancel(never_ends: Run, refuses_to_cancel: Run) -> None:
+    """It asks to cancel a goal that takes longer than 5 s, once, even if there is feedback."""
+    for run in (never_ends, refuses_to_cancel):
+        must_ask_to_cancel(run, run.goals(by="node")[0])
 
 
 @check(
-    points=5,
+    points=4,
     hint="A canceled goal has a result, too, with its own status.",
-    depends=["test_asks_to_cancel", *ORDER],
-    rule="Then continue to wait for its result",
+    depends=["test_publishes_the_outcome", "test_asks_to_cancel"],
+    rule=("wait_on", "status"),
 )
 def test_canceled(never_ends: Run) -> None:
     """When the goal was canceled, it publishes canceled, and continues with the next."""
-    outcomes(never_ends)
+    must_report_every_end(never_ends)
 
 
 @check(
     points=5,
     hint="The 5 s begin when the goal is accepted, and go by the node's clock.",
-    depends=OUTCOME,
+    depends=SENDS,
     misconception="cancels too early",
-    rule="If a goal has not ended 5 s after it was accepted, ask the server to cancel it",
+    rule=("cancel", "clock"),
 )
 def test_waits_long_enough(slow: Run, late_and_slow: Run) -> None:
     """It does not cancel a goal that ends within 5 s after it was accepted."""
@@ -117,27 +160,27 @@ def test_waits_long_enough(slow: Run, late_and_slow: Run) -> None:
 
 
 @check(
-    points=5,
+    points=4,
     hint="Publish an outcome only when the result has arrived, according to its status.",
-    depends=["test_asks_to_cancel", *ORDER],
+    depends=["test_publishes_the_outcome", "test_asks_to_cancel"],
     misconception="believes that a cancel works",
-    rule="the server may refuse to cancel it, and it may even succeed.",
+    rule=("wait_on", "status"),
 )
 def test_cancel_that_does_not_work(refuses_to_cancel: Run, ignores_the_cancel: Run, aborts_late: Run) -> None:
     """What counts is how the goal ends, even if the server does not cancel it."""
     for run in (refuses_to_cancel, ignores_the_cancel, aborts_late):
-        outcomes(run)
+        must_report_every_end(run)
 
 
 @check(
-    points=2,
+    points=1,
     hint="Create each end once, in __init__, with a plain 10.",
-    depends=["test_sends_a_goal"],
-    rule="Use a queue depth of 10 for all topics.",
+    depends=SENDS,
+    rule="queue",
 )
 def test_quality_of_service(succeeds: Run) -> None:
-    """All ends are reliable and volatile, and there is one publisher on each topic."""
-    succeeds.must_have_qos()
+    """All ends are reliable and volatile with a depth of 10, and there is one publisher on each topic."""
+    succeeds.must_have_qos(depth=True)
     for topic in succeeds.exercise.outputs:
         count = len(succeeds.end_points("publisher", topic.name))
         if count != 1:

@@ -26,9 +26,16 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     three = (one, target(0.3, 0.83), target(1.2, 1.13))
     good = moves(1.0, 0.2, 0.5)
     scripts = {
-        "succeeds": ("one target, and a server that moves for 1.2 s", 2.5, one, (moves(1.2, 0.2, 0.4, 0.6),), {}),
+        "succeeds": ("one target, and a server that moves for 1.2 s", 2.5, one, (moves(1.2, 0.217, 0.43, 0.618),), {}),
         "several": ("three targets, one soon after the other", 6.0, three, (good, moves(1.5, 0.7, 0.4), good), {}),
-        "rejects": ("the first goal is rejected", 4.5, three, (rejects(), good), {}),
+        "again": (
+            "the same target twice, and 0.0",
+            6.0,
+            (target(0.8, 0.53, 0.83), target(0.0, 1.13)),
+            (good,),
+            {},
+        ),
+        "rejects": ("the first goal is rejected after 1 s", 5.5, three, (rejects(answers_after=1.0), good), {}),
         "aborts": ("the first goal is aborted", 5.0, three, (aborts(after=0.7), good), {}),
         "answers_late": ("the server takes 1.5 s to accept", 4.0, one, (moves(1.0, 0.5, answers_after=1.5),), {}),
         "appears": ("the server appears after 2 s", 7.0, three, (good,), {"appears": 2.02}),
