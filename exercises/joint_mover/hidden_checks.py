@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
+
 from grader.checking import Run, check
 
-STEPS, SUCCEEDS = ["test_feedback_after_each_step"], ["test_succeeds"]
+ACCEPTS, STEPS = ["test_accepts_a_goal"], ["test_feedback_after_each_step"]
 
 
 @check(
     points=5,
     hint="Keep the position in the node, not in the goal. A step can go down, too.",
     depends=STEPS,
-    rule="The next goal starts where the joint is.",
+    rule=("next", "feedback", "steps", "last", "start"),
 )
 def test_next_goal_starts_where_the_joint_is(down: Run) -> None:
     """The next goal starts where the joint is, and may be lower."""
@@ -21,8 +23,8 @@ def test_next_goal_starts_where_the_joint_is(down: Run) -> None:
 @check(
     points=4,
     hint="Without a step to take, the goal succeeds at once.",
-    depends=SUCCEEDS,
-    rule="If the joint is there already, no step is needed, and the goal succeeds at once.",
+    depends=ACCEPTS,
+    rule=("there", "start"),
 )
 def test_already_there(there: Run) -> None:
     """A goal where the joint is already succeeds at once, without a step."""
@@ -33,8 +35,8 @@ def test_already_there(there: Run) -> None:
 @check(
     points=4,
     hint="The limits themselves can be reached.",
-    depends=["test_accepts_a_goal"],
-    rule="Accept every goal between 0.0 rad and 2.356 rad, both included.",
+    depends=ACCEPTS,
+    rule=("accept", "meanwhile"),
 )
 def test_limits_are_accepted(limits: Run) -> None:
     """Goals at the limits are accepted."""
@@ -45,21 +47,21 @@ def test_limits_are_accepted(limits: Run) -> None:
 @check(
     points=4,
     hint="The last step is only as long as what is left.",
-    depends=["test_limits_are_accepted", *SUCCEEDS, *STEPS],
-    rule="the last one is shorter, and ends exactly at the goal.",
+    depends=STEPS,
+    rule=("last", "feedback", "steps", "start"),
 )
 def test_reaches_the_limit(limits: Run) -> None:
     """It reaches the upper limit, and goes no further."""
-    limits.must_end("succeeded", goal=1, within=4.85)
+    limits.must_end("succeeded", goal=1)
     limits.must_match_feedback("position", goal=1)
 
 
 @check(
     points=5,
     hint="Compare with both limits in goal_callback.",
-    depends=["test_accepts_a_goal"],
+    depends=ACCEPTS,
     misconception="accepts every goal",
-    rule="Reject every other goal, and one that is not a number",
+    rule="reject",
 )
 def test_out_of_reach_is_rejected(out_of_reach: Run) -> None:
     """Goals beyond the limits are rejected."""
@@ -70,19 +72,20 @@ def test_out_of_reach_is_rejected(out_of_reach: Run) -> None:
 @check(
     points=3,
     hint="Every comparison with nan is false.",
-    depends=["test_accepts_a_goal"],
-    rule="Reject every other goal, and one that is not a number",
+    depends=ACCEPTS,
+    rule="reject",
 )
 def test_not_a_number_is_rejected(not_a_number: Run) -> None:
-    """A goal that is not a number is rejected."""
+    """A goal that is not a number, or infinite, is rejected."""
     not_a_number.must_reject(1)
+    not_a_number.must_reject(2)
 
 
 @check(
     points=4,
     hint="The result of a canceled goal says where the joint is then.",
     depends=["test_cancel", "test_result_is_the_position"],
-    rule="The result holds the position where the joint stopped.",
+    rule=("cancel_result", "cancel", "at_goal", "clock"),
 )
 def test_result_of_a_canceled_goal(canceled: Run) -> None:
     """The result of a canceled goal holds the position where the joint stopped."""
@@ -93,7 +96,7 @@ def test_result_of_a_canceled_goal(canceled: Run) -> None:
     points=3,
     hint="A canceled goal leaves the joint where it is.",
     depends=["test_cancel", *STEPS],
-    rule="The next goal starts where the joint is.",
+    rule=("next", "cancel", "feedback", "steps", "last", "start", "cancel_result"),
 )
 def test_goal_after_a_cancel(after_cancel: Run) -> None:
     """After a cancel the next goal starts where the joint stopped."""
@@ -103,9 +106,9 @@ def test_goal_after_a_cancel(after_cancel: Run) -> None:
 @check(
     points=4,
     hint="A new goal makes the old one end. Call abort(), because nobody asked to cancel it.",
-    depends=SUCCEEDS,
+    depends=ACCEPTS,
     misconception="two goals at once",
-    rule="The old one ends as aborted within 0.1 s, without another step of its own",
+    rule=("replace", "meanwhile"),
 )
 def test_second_goal_aborts_the_first(replaced: Run) -> None:
     """A second goal aborts the running goal within 0.1 s."""
@@ -118,7 +121,7 @@ def test_second_goal_aborts_the_first(replaced: Run) -> None:
     hint="Call abort(), and then return a result as always.",
     depends=["test_second_goal_aborts_the_first", "test_result_is_the_position"],
     misconception="canceled() without a request",
-    rule="its result holds the position where it stopped.",
+    rule=("replace", "at_goal", "clock"),
 )
 def test_result_of_a_replaced_goal(replaced: Run) -> None:
     """The result of a goal that was replaced holds the position where it stopped."""
@@ -129,7 +132,7 @@ def test_result_of_a_replaced_goal(replaced: Run) -> None:
     points=5,
     hint="Only the newest goal may move the joint.",
     depends=["test_second_goal_aborts_the_first", *STEPS],
-    rule="The new one starts from there. Only one goal moves the joint.",
+    rule=("one_moves", "next", "feedback", "steps", "last", "start"),
 )
 def test_second_goal_goes_on_from_there(replaced: Run, replaced_upwards: Run) -> None:
     """The second goal starts where the first one stopped."""
@@ -141,10 +144,25 @@ def test_second_goal_goes_on_from_there(replaced: Run, replaced_upwards: Run) ->
 @check(
     points=3,
     hint="Look at goal_handle before you change anything: execute runs for accepted goals only.",
-    depends=[*SUCCEEDS, "test_out_of_reach_is_rejected"],
-    rule="Rejected goals change nothing: the running goal continues.",
+    depends=["test_out_of_reach_is_rejected"],
+    rule="rejected",
 )
 def test_rejected_goal_changes_nothing(rejected_meanwhile: Run) -> None:
     """A rejected goal does not affect the running goal."""
     rejected_meanwhile.must_reject(2)
-    rejected_meanwhile.must_end("succeeded", goal=1, within=1.0)
+    goal = rejected_meanwhile.goal(1)
+    rejected = rejected_meanwhile.goal(2).at
+    last = max((feedback.at for feedback in goal.feedback), default=None)
+    ends = [
+        state.at
+        for state in goal.states
+        if state.state in ("aborted", "canceled") and state.at < rejected + 300_000_000
+    ]
+    if ends or (last is not None and last < rejected):
+        text = "the running goal was expected to continue, got its end."
+        rejected_meanwhile.wrong_at(rejected, text, "goal 1", "to continue", "an end")
+    positions = [feedback.fields["position"] for feedback in goal.feedback]
+    for before, now in itertools.pairwise(positions):
+        if now < before:
+            text = f"the running goal was expected to continue upwards, got {now:.3g} rad after {before:.3g} rad."
+            rejected_meanwhile.wrong_at(rejected, text, "goal 1", "to continue", f"{now:.3g} rad")
