@@ -23,12 +23,12 @@ def must_report_every_end(run: Run) -> None:
         elif last and last.state in ENDS:
             ended.append((last.state, last.at))
     published = run.messages_on(OUTCOMES)
+    pairs = [({"data": outcome}, m.fields) for (outcome, _), m in zip(ended, published, strict=False)]
     for number, (outcome, at) in enumerate(ended, start=1):
         if number > len(published):
             run.wrong_at(at, f"expected {outcome} on {OUTCOMES}, got nothing.", f"goal {number}", outcome, "nothing")
         message = published[number - 1]
-        if (got := message.fields["data"]) != outcome:
-            run.wrong_at(at, f"expected {outcome} on {OUTCOMES}, got {got}.", f"goal {number}", outcome, got)
+        run.compare_at(at, f"goal {number}", "data", message.fields, {"data": outcome}, 0.0, OUTCOMES, pairs)
         late = (message.at - at) / 1_000_000_000
         if abs(late) > 0.3:
             text = f"the outcome was expected when the goal had ended, got it {abs(late):.2f} s "

@@ -101,7 +101,7 @@ MISTAKES: list[tuple[str, dict[str, str], str]] = [
     (
         "joint_velocity",
         {"answer.name.append(name)": "pass", "if answer.name": "if answer.velocity"},
-        "no velocity was published with a name",
+        "name is empty in every message",
     ),
     ("joint_velocity", {"zip(message.name, message.position) if": "message if"}, "A JointState is not a list."),
     ("robot_description", {"String(data=text)": "text"}, "publish() takes a whole String"),
