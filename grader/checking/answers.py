@@ -16,6 +16,7 @@ from grader.checking.partial import each
 from grader.checking.patterns import ORDER, common, fixed_step
 from grader.checking.recorded_run import RecordedRun
 from grader.checking.unanswered import why_unanswered
+from grader.recording.arrays import LongArray
 
 _COPIED = hints("copied")
 
@@ -242,7 +243,7 @@ def _is_copied(answered: list[Exchange], field: str, per: str, name: str) -> boo
 def _values(message: Message, field: str, per: str) -> dict[str, float]:
     """Return the numbers in a field, by name."""
     value = message.value(field)
-    if isinstance(value, list):
+    if isinstance(value, (list, LongArray)):
         names = message.value(per) if per else [str(i) for i in range(len(value))]
         values = dict(zip(names, value, strict=False))
     else:

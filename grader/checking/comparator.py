@@ -19,6 +19,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from grader.recording.arrays import LongArray
+
 #: How far two floats may be apart, absolute or relative, unless a check asks for something else.
 TOLERANCE = 1e-6
 
@@ -48,14 +50,25 @@ def difference(got: Any, expected: Any, tolerance: float = TOLERANCE, path: str 
     """
     if not tolerance >= 0:
         raise ValueError(f"tolerance={tolerance!r}: a tolerance is a number of 0 or more.")
+    if isinstance(got, LongArray) or isinstance(expected, LongArray):
+        return _of_arrays(got, expected, tolerance, path)
     if isinstance(expected, dict) and isinstance(got, dict) and got.keys() == expected.keys():
-        steps = [(f"{path}.{name}" if path else str(name), got[name], expected[name]) for name in expected]
+        steps = ((f"{path}.{name}" if path else str(name), got[name], expected[name]) for name in expected)
     elif isinstance(expected, (list, tuple)) and isinstance(got, (list, tuple)) and len(got) == len(expected):
-        steps = [(f"{path}[{i}]", *pair) for i, pair in enumerate(zip(got, expected, strict=True))]
+        steps = ((f"{path}[{i}]", *pair) for i, pair in enumerate(zip(got, expected, strict=True)))
     else:
         return None if _same(got, expected, tolerance) else Difference(path, got, expected)
     differences = (difference(mine, its, tolerance, step) for step, mine, its in steps)
     return next(filter(None, differences), None)
+
+
+def _of_arrays(got: Any, expected: Any, tolerance: float, path: str) -> Difference | None:
+    """Compare arrays of the same type at once; only if they differ, or one is a list, number by number."""
+    both = isinstance(got, LongArray) and isinstance(expected, LongArray)
+    if both and got.typecode == expected.typecode and got == expected:
+        return None
+    mine, its = (one.tolist() if isinstance(one, LongArray) else one for one in (got, expected))
+    return difference(mine, its, tolerance, path)
 
 
 def _same(got: Any, expected: Any, tolerance: float) -> bool:
@@ -84,7 +97,7 @@ def shown(value: Any, unit: str = "") -> str:
         return f"{value['sec']}.{value['nanosec']:09d}"
     if isinstance(value, dict):
         return ", ".join(f"{name} {shown(part)}" for name, part in value.items())[:MOST_CHARACTERS]
-    if isinstance(value, (list, tuple)):
+    if isinstance(value, (list, tuple, LongArray)):
         text = ", ".join(shown(item) for item in value[:MOST_ELEMENTS])
         return f"[{text}{' …' if len(value) > MOST_ELEMENTS else ''}]"
     text = repr(value) if isinstance(value, str) else str(value)

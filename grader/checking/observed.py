@@ -8,6 +8,7 @@ from typing import Any
 from grader.checking.cause import UNKNOWN, Cause
 from grader.checking.hint_texts import hints
 from grader.exercise.exercise import Exercise, Topic
+from grader.recording.arrays import LongArray
 from grader.recording.recording import Recording
 from ros_in_python.field_path import NoSuchField, field_of
 
@@ -127,7 +128,7 @@ def _values(recording: Recording, topic: Topic, field: str) -> list[float]:
                 value = field_of(message.fields, field)
             except NoSuchField:
                 return []
-            values += value if isinstance(value, list) else [value]
+            values += value if isinstance(value, (list, LongArray)) else [value]
     return values
 
 

@@ -16,6 +16,7 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.grading.grade import Options
 from grader.grading.reference import reference
 from grader.grading.scenario_runner import ScenarioRunner
+from grader.recording.arrays import ArrayEncoder, read_arrays
 from grader.recording.recording import Recording, from_plain, plain
 from grader.sandbox.program import Isolation
 from grader.scenario.declared import declared
@@ -71,7 +72,7 @@ def to_json(exercise: Exercise, public: PublicPart) -> str:
         "scenarios": [_for_students(exercise, scenario) for scenario in public.scenarios],
         "expected": plain(expected),
     }
-    return json.dumps(entries, ensure_ascii=False, separators=(",", ":")) + "\n"
+    return json.dumps(entries, cls=ArrayEncoder, ensure_ascii=False, separators=(",", ":")) + "\n"
 
 
 def modules_of(public: PublicPart) -> Iterator[Path]:
@@ -89,7 +90,7 @@ def _read(exercise: Exercise) -> PublicPart:
     file = exercise.public_file
     fix = "Take it from the course's handout again."
     try:
-        entries: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        entries: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"), object_hook=read_arrays())
         if entries["format"] not in (1, FORMAT):
             fix = "Install the spinbook that came with the handout: pip install -r requirements.txt"
             raise ExerciseError(file, f"it has the format {entries['format']}, not {FORMAT}", fix)

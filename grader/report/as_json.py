@@ -15,6 +15,7 @@ from typing import Any
 
 from grader.checking.verdict import Finding, Verdict
 from grader.grading.grade import Adjustment, Entry, Grade, Student
+from grader.recording.arrays import LongArray
 from grader.report.checks import ShownCheck, shown_checks
 from grader.report.feedback import tail
 from grader.report.printable import printable
@@ -37,7 +38,7 @@ def _finite(value: Any) -> Any:
         return None
     if isinstance(value, dict):
         return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
+    if isinstance(value, (list, tuple, LongArray)):
         return [_finite(item) for item in value]
     return value
 

@@ -63,7 +63,7 @@ def _in_order(recording: Recording, reference: Recording) -> list[tuple[int, str
 
 
 def _as_json(event: Event) -> str:
-    return json.dumps({"what": event.what, **dataclasses.asdict(event.item)}, ensure_ascii=False)
+    return json.dumps({"what": event.what, **dataclasses.asdict(event.item)}, default=list, ensure_ascii=False)
 
 
 def _learn(types: Any, kind: str) -> None:

@@ -12,7 +12,7 @@ from grader.runner.message_order import in_canonical_order, unordered_sources
 from grader.runner.publishers import ReferencePublishers
 from grader.runner.service_servers import AuthorFault
 from grader.scenario.scenario import START, Message
-from grader.scenario.values import InvalidValue, check_fields
+from grader.scenario.values import InvalidValue, checked_fields
 from grader.scenario.world import World
 from rmw_lockstep.hub import DeliveredMessage
 
@@ -58,7 +58,7 @@ class RunningWorld:
             if not type_name:
                 raise AuthorFault(f"the world {self._world.code.name} does not list {topic} in its publishes")
             try:
-                check_fields(message_class(type_name), fields, type_name)
+                state[topic] = checked_fields(message_class(type_name), fields, type_name)
             except InvalidValue as error:
                 raise AuthorFault(f"{self._world.code.name}.state(), {topic}: {error.problem}. {error.fix}") from None
         return state

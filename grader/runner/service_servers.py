@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from grader.exercise.exercise import Exercise
@@ -15,7 +15,7 @@ from grader.runner.program import CannotContinue
 from grader.scenario.code import AuthorCode
 from grader.scenario.servers import Reply
 from grader.scenario.servers import Server as Declared
-from grader.scenario.values import InvalidValue, check_fields
+from grader.scenario.values import InvalidValue, checked_fields
 from rmw_lockstep.hub import HubServer, PendingRequest
 
 #: No exercise needs more calls of one service from a node in one scenario, and no more bytes in the answers.
@@ -105,7 +105,8 @@ class ServiceServer:
             found = answer(request)
             reply = found if isinstance(found, Reply) else Reply(0.0, found)
             if reply.fields is not None:
-                check_fields(self._kind.Response, reply.fields, f"{self._declared.type}_Response")
+                name = f"{self._declared.type}_Response"
+                return replace(reply, fields=checked_fields(self._kind.Response, reply.fields, name))
         except InvalidValue as error:
             raise AuthorFault(f"{self._place(answer, request)}: {error.problem}. {error.fix}") from None
         except Exception as error:

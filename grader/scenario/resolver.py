@@ -30,8 +30,8 @@ from grader.scenario.scenario import (
     Step,
     Subscribe,
 )
-from grader.scenario.servers import ActionServer, Reply, Server
-from grader.scenario.values import InvalidValue, check_fields
+from grader.scenario.servers import ActionServer, GoalScript, Reply, Server
+from grader.scenario.values import InvalidValue, checked_fields
 from interface_compiler import prefixes
 
 _TYPE = re.compile(r"[a-z][a-z0-9_]*/(?P<kind>msg|srv|action)/[A-Z][A-Za-z0-9]*")
@@ -154,9 +154,9 @@ class Resolver:
     def _type_of(self, name: str, endpoints: Sequence[ServiceOrAction]) -> str | None:
         return next((one.type for one in endpoints if one.name == name), None)
 
-    def _check(self, line: int, name: str, kind: Any, fields: Fields, type_name: str) -> None:
+    def _check(self, line: int, name: str, kind: Any, fields: Fields, type_name: str) -> Fields:
         try:
-            check_fields(kind, fields, type_name)
+            return checked_fields(kind, fields, type_name)
         except InvalidValue as error:
             self._fault(line, f"{name}: {error.problem}", error.fix)
 
@@ -164,8 +164,8 @@ class Resolver:
 
     def _message(self, given: Message) -> Message:
         message = self._typed(given, given.topic, "msg", self._topics.get(given.topic), "subscribe")
-        self._check(given.line, given.topic, message_class(message.type), given.fields, message.type)
-        return message
+        fields = self._check(given.line, given.topic, message_class(message.type), given.fields, message.type)
+        return replace(message, fields=fields)
 
     def _step(self, step: Step) -> Step:
         if isinstance(step, Request):
@@ -193,14 +193,14 @@ class Resolver:
     def _request(self, step: Request) -> Request:
         declared = self._type_of(step.service, self._exercise.services)
         found = self._typed(step, step.service, "srv", declared, "service")
-        self._check(step.line, step.service, message_class(found.type).Request, step.fields, f"{found.type}_Request")
-        return found
+        kind = message_class(found.type).Request
+        return replace(found, fields=self._check(step.line, step.service, kind, step.fields, f"{found.type}_Request"))
 
     def _goal(self, step: SendGoal) -> SendGoal:
         declared = self._type_of(step.action, self._exercise.actions)
         found = self._typed(step, step.action, "action", declared, "action")
-        self._check(step.line, step.action, message_class(found.type).Goal, step.fields, f"{found.type}_Goal")
-        return found
+        kind = message_class(found.type).Goal
+        return replace(found, fields=self._check(step.line, step.action, kind, step.fields, f"{found.type}_Goal"))
 
     def _see_goal(self, step: CancelGoal) -> None:
         before = [one for one in self._scenario.steps if isinstance(one, SendGoal) and one.at <= step.at]
@@ -235,27 +235,37 @@ class Resolver:
         declared = self._type_of(given.service, self._exercise.clients)
         self._typed(given, given.service, "srv", declared, "client")
         type_name = given.type or declared or ""
-        if isinstance(given.replies, tuple):
-            for one in given.replies:
-                if not isinstance(one, Reply):
-                    self._fault(given.line, f"replies has {one!r}", "Give reply(…) or no_reply().")
-                if one.fields is not None:
-                    kind = message_class(type_name).Response
-                    self._check(given.line, given.service, kind, one.fields, f"{type_name}_Response")
-        return _with_type(given, type_name)
+        replies = given.replies
+        if isinstance(replies, tuple):
+            replies = tuple(self._reply(given, one, type_name) for one in replies)
+        return _with(given, type=type_name, replies=replies)
+
+    def _reply(self, given: Server, one: Reply, type_name: str) -> Reply:
+        if not isinstance(one, Reply):
+            self._fault(given.line, f"replies has {one!r}", "Give reply(…) or no_reply().")
+        if one.fields is None:
+            return one
+        kind = message_class(type_name).Response
+        fields = self._check(given.line, given.service, kind, one.fields, f"{type_name}_Response")
+        return replace(one, fields=fields)
 
     def _action_server(self, given: ActionServer) -> ActionServer:
         declared = self._type_of(given.action, self._exercise.action_clients)
         self._typed(given, given.action, "action", declared, "action_client")
         type_name = given.type or declared or ""
-        kind = message_class(type_name)
         if not given.goals:
             self._fault(given.line, f"{given.action}: no script for a goal", "Give goals=succeeds(…), for example.")
-        for script in given.scripts:
-            self._check(given.line, given.action, kind.Result, script.result, f"{type_name}_Result")
-            for _, fields in script.feedback:
-                self._check(given.line, given.action, kind.Feedback, fields, f"{type_name}_Feedback")
-        return _with_type(given, type_name)
+        scripts = tuple(self._script(given, script, type_name) for script in given.scripts)
+        return _with(given, type=type_name, goals=scripts)
+
+    def _script(self, given: ActionServer, script: GoalScript, type_name: str) -> GoalScript:
+        kind = message_class(type_name)
+        result = self._check(given.line, given.action, kind.Result, script.result, f"{type_name}_Result")
+        feedback = tuple(
+            (after, self._check(given.line, given.action, kind.Feedback, fields, f"{type_name}_Feedback"))
+            for after, fields in script.feedback
+        )
+        return replace(script, result=result, feedback=feedback)
 
     def _companion(self, given: Companion) -> Companion:
         file = self._exercise.folder / given.file
@@ -291,9 +301,9 @@ _EXAMPLES = {
 Peer = TypeVar("Peer", Server, ActionServer)
 
 
-def _with_type(given: Peer, type_name: str) -> Peer:
-    """Return the same peer with its type; `replace` would lose its line."""
-    names = [field.name for field in dataclasses.fields(given) if field.name not in ("line", "type")]
-    found = type(given)(**{name: getattr(given, name) for name in names}, type=type_name)
+def _with(given: Peer, **others: Any) -> Peer:
+    """Return the same peer with other values; `replace` would lose its line."""
+    names = [field.name for field in dataclasses.fields(given) if field.name != "line"]
+    found = type(given)(**{name: getattr(given, name) for name in names} | others)
     object.__setattr__(found, "line", given.line)
     return found

@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from grader.exercise.exercise import Qos
+from grader.recording.arrays import LongArray
 from grader.recording.recording import Fields
 from grader.scenario.code import AuthorCode, line_of_the_author
 from grader.scenario.servers import ActionServer, Server
@@ -298,6 +299,8 @@ def _digestible(value: Any) -> Any:
         return [_digestible(one) for one in value]
     if isinstance(value, dict):
         return {str(key): _digestible(one) for key, one in value.items()}
+    if isinstance(value, LongArray):
+        return [value.typecode, hashlib.sha256(value).hexdigest()]
     if not hasattr(value, "__dataclass_fields__"):
         return value
     if isinstance(value, AuthorCode):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from typing import Any
 
+from grader.recording.arrays import CODES, LONG, LongArray, plain_array
 from grader.recording.recording import Fields
 from grader.recording.types import message_class
 
@@ -21,26 +23,40 @@ class InvalidValue(ValueError):
         self.field, self.problem, self.fix = field, problem, fix
 
 
-def check_fields(kind: Any, fields: Fields, name: str, at: str = "") -> None:
-    """Check that a message, request or goal of the class `kind`, called `name` in errors, can have these fields.
+def checked_fields(kind: Any, fields: Fields, name: str, at: str = "") -> Fields:
+    """Return the fields of a message, request or goal of the class `kind`, called `name` in errors, as plain data.
 
-    Raises `InvalidValue`.
+    Lists of numbers may also be given as arrays of Python or numpy; `uint8[]` and `byte[]` also as bytes, a bytearray
+    or a memoryview.
+
+    Raises `InvalidValue` for what such a message can't have.
     """
     if not isinstance(fields, dict):
         raise InvalidValue(at or name, f"{_shown(fields)} is given for a {name}", "Give a dictionary of its fields.")
-    known = kind.get_fields_and_field_types()
+    known, checked = kind.get_fields_and_field_types(), {}
     for field, value in fields.items():
         where = f"{at}.{field}" if at else field
         if field not in known:
             fix = f"Its fields: {', '.join(known)}." if known else "It has no fields."
             raise InvalidValue(where, f"{name} has no field {field!r}", fix)
-        _check_value(known[field], value, where, name)
+        checked[field] = _checked(known[field], value, where, name)
+    return checked
+
+
+def _checked(type_name: str, value: Any, field: str, name: str) -> Any:
+    if found := _LIST.fullmatch(type_name):
+        return _checked_list(found, type_name, value, field, name)
+    if "/" in type_name:
+        package, _, short = type_name.partition("/")
+        return checked_fields(message_class(f"{package}/msg/{short}"), value, f"{package}/msg/{short}", field)
+    if type_name == "octet":
+        type_name, value = "uint8", value[0] if isinstance(value, bytes) and len(value) == 1 else value
+    _check_value(type_name, value, field, name)
+    return value
 
 
 def _check_value(type_name: str, value: Any, field: str, name: str) -> None:
-    if found := _LIST.fullmatch(type_name):
-        _check_list(found, type_name, value, field, name)
-    elif type_name in ("double", "float"):
+    if type_name in ("double", "float"):
         _expect(isinstance(value, float), type_name, value, field, name, "Write it with a point, such as 1.0.")
     elif type_name == "boolean":
         _expect(isinstance(value, bool), type_name, value, field, name, "Write True or False.")
@@ -49,21 +65,35 @@ def _check_value(type_name: str, value: Any, field: str, name: str) -> None:
     elif found := _TEXT.fullmatch(type_name):
         fits = isinstance(value, str) and (not found["most"] or len(value) <= int(found["most"]))
         _expect(fits, type_name, value, field, name, "Write a text in quotes.")
-    elif "/" in type_name:
-        package, _, short = type_name.partition("/")
-        check_fields(message_class(f"{package}/msg/{short}"), value, f"{package}/msg/{short}", field)
 
 
-def _check_list(found: re.Match[str], type_name: str, value: Any, field: str, name: str) -> None:
-    _expect(isinstance(value, (list, tuple)), type_name, value, field, name, "Write a list.")
+def _checked_list(found: re.Match[str], type_name: str, value: Any, field: str, name: str) -> Any:
+    kind = found["of"] or found["array"]
+    value = _as_list(kind, value)
+    _expect(isinstance(value, (list, tuple, LongArray)), type_name, value, field, name, "Write a list.")
     if found["size"]:
         fix = f"Give {found['size']} values."
         _expect(len(value) == int(found["size"]), type_name, value, field, name, fix)
     if found["most"]:
         fix = f"Give at most {found['most']} values."
         _expect(len(value) <= int(found["most"]), type_name, value, field, name, fix)
-    for index, one in enumerate(value):
-        _check_value(found["of"] or found["array"], one, f"{field}[{index}]", name)
+    if isinstance(value, LongArray) and value.typecode == CODES.get(kind):
+        return value
+    return [_checked(kind, one, f"{field}[{index}]", name) for index, one in enumerate(value)]
+
+
+def _as_list(kind: str, value: Any) -> Any:
+    """Return arrays as lists, and long ones of the right type as `LongArray`; anything else as it is."""
+    code = CODES.get(kind, "")
+    if code == "B" and isinstance(value, (bytes, bytearray, memoryview)):
+        return plain_array("B", bytes(value))
+    if hasattr(value, "tolist") and getattr(value, "ndim", 1) == 1 and not isinstance(value, (LongArray, memoryview)):
+        value = value.tolist()
+    of_python = {int} if kind in _INTEGERS or kind == "octet" else {float}
+    if code and isinstance(value, (list, tuple)) and len(value) >= LONG and set(map(type, value)) == of_python:
+        with contextlib.suppress(OverflowError):  # the first number that does not fit is found below
+            return plain_array(code, value)
+    return value
 
 
 def _check_integer(type_name: str, value: Any, field: str, name: str) -> None:

@@ -18,6 +18,7 @@ from grader.checking.ending_message import message_of
 from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load
+from grader.recording.arrays import read_arrays
 from grader.recording.recording import Ending, Recording, from_plain, not_run_because
 from grader.report.checks import ShownCheck, public_total, shown_verdicts
 from grader.scenario.scenario import Message, Scenario
@@ -94,7 +95,7 @@ def _unpacked(name: str) -> Path:
 
 def public_part(exercise: Exercise) -> tuple[list[Scenario], dict[str, Recording], dict[str, Any]]:
     """Return the scenarios, the solution's recordings of them, and the counts of hidden checks, from public.json."""
-    entries = json.loads(exercise.public_file.read_text(encoding="utf-8"))
+    entries = json.loads(exercise.public_file.read_text(encoding="utf-8"), object_hook=read_arrays())
     scenarios = [_scenario(item, exercise.folder) for item in entries["scenarios"]]
     return scenarios, from_plain(entries["expected"]), entries["hidden"]
 

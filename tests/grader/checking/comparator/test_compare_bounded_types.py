@@ -23,7 +23,7 @@ def through_the_wire(message: Any) -> dict[str, Any]:
         (BasicTypes(float32_value=0.1), BasicTypes(float32_value=0.1 + 1e-9), None),
         (BasicTypes(uint8_value=255), BasicTypes(uint8_value=254), "uint8_value"),
         (BasicTypes(int64_value=-(2**63)), BasicTypes(int64_value=-(2**63) + 1), "int64_value"),
-        (BasicTypes(byte_value=b"\x01"), BasicTypes(byte_value=b"\x02"), "byte_value[0]"),
+        (BasicTypes(byte_value=b"\x01"), BasicTypes(byte_value=b"\x02"), "byte_value"),
         (BasicTypes(bool_value=True), BasicTypes(), "bool_value"),
         (Arrays(float64_values=[1.0, 2.0, 3.0]), Arrays(float64_values=[1.0, 2.0, 3.0]), None),
         (Arrays(float64_values=[1.0, 2.0, 3.0]), Arrays(float64_values=[1.0, 2.0, 4.0]), "float64_values[2]"),
