@@ -162,7 +162,7 @@ def _compare(run: RecordedRun, exchange: Exchange, answer: Message, field: str, 
     if not differing:
         return
     place = field
-    if differing.path and len(shown(expected)) > LONGEST:
+    if differing.path and (isinstance(expected, LongArray) or len(shown(expected)) > LONGEST):
         place += differing.path if differing.path.startswith("[") else f".{differing.path}"
         got, expected = differing.got, differing.expected
     expected_text, got_text = shown(expected, unit), shown(got, unit)
@@ -230,6 +230,9 @@ def _copied(run: RecordedRun, field: str, per: str) -> str:
 
 
 def _is_copied(answered: list[Exchange], field: str, per: str, name: str) -> bool:
+    arrays = [exchange.answers[0].value(field) for exchange in answered]
+    if all(isinstance(got, LongArray) for got in arrays):
+        return all(exchange.sent.value(name) == got for exchange, got in zip(answered, arrays, strict=True))
     pairs = []
     for exchange in answered:
         if per and per not in exchange.sent._fields:
@@ -243,7 +246,7 @@ def _is_copied(answered: list[Exchange], field: str, per: str, name: str) -> boo
 def _values(message: Message, field: str, per: str) -> dict[str, float]:
     """Return the numbers in a field, by name."""
     value = message.value(field)
-    if isinstance(value, (list, LongArray)):
+    if isinstance(value, list):  # no pattern is looked for in an image
         names = message.value(per) if per else [str(i) for i in range(len(value))]
         values = dict(zip(names, value, strict=False))
     else:

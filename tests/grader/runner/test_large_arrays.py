@@ -7,11 +7,12 @@ from array import array
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 from runner_programs import EXERCISE
+from test_msgs.msg import BasicTypes, UnboundedSequences
 
 from grader.checking.comparator import difference, shown
 from grader.exercise import ExerciseError
@@ -20,12 +21,14 @@ from grader.recording import Recording
 from grader.recording.arrays import LongArray
 from grader.recording.recording import from_json, to_json
 from grader.report.bag import write_bags
+from grader.runner.message import to_fields, to_message
 from grader.runner.program import Task
 from grader.runner.run import run
 from grader.sandbox import ForkServer, Limits, ProgramSpec, SandboxedProgram, choose
-from grader.scenario import Scenario, at
+from grader.scenario import Scenario, World, at
 from grader.scenario.command_line import ARGUMENTS
 from grader.scenario.resolver import resolved
+from grader.scenario.values import checked_fields
 from grader.workers.pool import STUDENT_ENVIRONMENT
 
 IMAGE, GRID = "sensor_msgs/msg/Image", "nav_msgs/msg/OccupancyGrid"
@@ -64,10 +67,30 @@ def images(*data: Any) -> Scenario:
     return Scenario("images", "Images", tuple(messages))
 
 
+class Camera:
+    """A world that publishes an image in each step."""
+
+    reads: ClassVar = {}
+    publishes: ClassVar = {"/image": IMAGE}
+
+    def hear(self, topic: str, message: Any) -> None:
+        """Hear nothing."""
+
+    def step(self, seconds: float) -> None:
+        """Do nothing."""
+
+    def state(self) -> dict[str, Any]:
+        return {"/image": image(bytearray(PICTURE))}
+
+
 @pytest.fixture(scope="module")
 def recording(fork_server: ForkServer) -> Recording:
     """Twenty images, and what the node makes of them."""
-    scenario = resolved(CAMERA, images(*(PICTURE[i:] + PICTURE[:i] for i in range(20))))
+    return mirrored(fork_server, images(*(PICTURE[i:] + PICTURE[:i] for i in range(20))))
+
+
+def mirrored(fork_server: ForkServer, scenario: Scenario) -> Recording:
+    scenario = resolved(CAMERA, scenario)
 
     def start(hub: int) -> SandboxedProgram:
         program = ProgramSpec("node.py", {"node.py": MIRROR.encode()}, ARGUMENTS, STUDENT_ENVIRONMENT, hub=hub)
@@ -82,6 +105,11 @@ def test_a_node_gets_and_sends_images_as_it_does_over_dds(recording: Recording) 
     assert [len(one.fields["data"]) for one in recording.received] == [len(PICTURE)] * 20
     assert recording.received[0].fields["data"] == list(reversed(PICTURE))
     assert recording.sent[0].fields["data"] == list(PICTURE)
+
+
+def test_a_world_publishes_bytes_too(fork_server: ForkServer) -> None:
+    found = mirrored(fork_server, Scenario("world", "World", world=World(Camera, period=0.5), duration=1.0))
+    assert [one.fields["data"] == list(reversed(PICTURE)) for one in found.received] == [True, True]
 
 
 def test_twenty_images_take_less_than_a_megabyte_and_are_read_as_they_were(recording: Recording) -> None:
@@ -174,3 +202,13 @@ def test_a_check_compares_and_shows_arrays_as_lists() -> None:
     assert shown(mine) == shown(list(PICTURE))
     assert mine[:3] == list(PICTURE[:3])
     assert mine != its
+
+
+def test_a_byte_and_bytes_are_numbers_in_a_recording() -> None:
+    message = UnboundedSequences(byte_values=[b"\1", b"\xff"])
+    assert to_fields(message)["byte_values"] == [1, 255]
+    assert to_message("test_msgs/msg/UnboundedSequences", {"byte_values": [1, 255]}).byte_values == [b"\1", b"\xff"]
+    assert to_fields(BasicTypes(byte_value=b"\7"))["byte_value"] == 7
+    assert to_message("test_msgs/msg/BasicTypes", {"byte_value": 7}).byte_value == b"\7"
+    given = checked_fields(UnboundedSequences, {"byte_values": b"\1\2", "float32_values": np.zeros(2)}, "name")
+    assert given == {"byte_values": [1, 2], "float32_values": [0.0, 0.0]}
