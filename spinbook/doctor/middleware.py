@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 from rmw_lockstep import IDENTIFIER
-from rmw_lockstep.library import Library, library
+from rmw_lockstep.library import PREBUILT, Library, library
 from spinbook.doctor.diagnosis import MachineFinding, missing, ok, warning
 from spinbook.kernel.environment import claim_domain, for_domain, missing_middleware
 
@@ -64,8 +64,15 @@ def examine_lockstep(name: str) -> MachineFinding:
     return warning(
         name,
         f"it is compiled, but does not load: {lines[-1]}",
-        f"{_NEEDED} Compile it again: rm -r {found.folder}; python -m rmw_lockstep.build",
+        f"{_NEEDED} {_again(found)}",
     )
+
+
+def _again(found: Library) -> str:
+    if found.folder.name == PREBUILT:
+        wheel = f"wheels/{PREBUILT}-*.whl"
+        return f"Install its wheel again. In a handout's folder: .venv/bin/pip install --force-reinstall {wheel}"
+    return f"Compile it again: rm -r {found.folder}; python -m rmw_lockstep.build"
 
 
 def _trial(found: Library) -> subprocess.CompletedProcess[str]:

@@ -50,11 +50,6 @@ _AT_ONCE = 2
 #: How many earlier sets of libraries to keep for programs that still use them.
 _KEPT_SETS = 3
 
-_NO_COMPILER = UnavailableLibrary(
-    "neither its wheel is installed, nor g++ to compile it",
-    "Install one of them: the wheel rmw_lockstep_prebuilt, or sudo apt-get install g++",
-)
-
 
 class BuildError(Exception):
     """Raised when the compiler or the linker fails; the text has its output."""
@@ -76,10 +71,8 @@ def build(announce: Callable[[], None] = lambda: None) -> Library | UnavailableL
     """
     found = library()
     ros = installed_ros()
-    if isinstance(found, Library) or ros is None or not sources():
+    if isinstance(found, Library) or ros is None or not sources() or compiler() is None:
         return found
-    if compiler() is None:
-        return _NO_COMPILER
     root = next((root for root in library_folders() if _writable(root)), None)
     if root is None:
         return UnavailableLibrary("no folder for it is writable", "Set HOME to a folder of your own.")

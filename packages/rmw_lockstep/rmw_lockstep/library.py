@@ -89,6 +89,9 @@ def library() -> Library | UnavailableLibrary:
     built_by_colcon = _built_by_colcon() if ros.chooses_at_run_time else None
     if built_by_colcon:
         return Library(built_by_colcon, ros.prefix)
+    if compiler() is None:
+        reason = "neither a wheel of it that fits is installed, nor g++ to compile it"
+        return UnavailableLibrary(reason, f"Install one of them: the wheel {PREBUILT}, or sudo apt-get install g++")
     return UnavailableLibrary("it has not been compiled for this ROS 2", "Compile it: python -m rmw_lockstep.build")
 
 
