@@ -12,6 +12,8 @@ from spinbook.chapter.interface_fields import PARTS, InterfaceFields, fields_of
 from spinbook.chapter.node_classes import last_name
 
 _MODULE = re.compile(r"(\w+)\.(msg|srv|action)")
+#: A package of interfaces, or one of its modules.
+_INTERFACES = re.compile(r"_(msgs|srvs|interfaces|actions)\b|\.(msg|srv|action)$")
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
 
@@ -42,14 +44,17 @@ class Function:
     parameters: dict[str, TypedValue | None] = field(default_factory=dict)
     bound: dict[str, list[ast.expr | None]] = field(default_factory=dict)
 
-    def own_nodes(self) -> Iterator[ast.AST]:
-        """Yield the nodes of its body, without those of functions inside it."""
+    @functools.cached_property
+    def own_nodes(self) -> tuple[ast.AST, ...]:
+        """The nodes of its body, without those of functions inside it."""
+        nodes: list[ast.AST] = []
         todo = list(ast.iter_child_nodes(self.node))
         while todo:
             item = todo.pop()
-            yield item
+            nodes.append(item)
             if not isinstance(item, _FUNCTIONS):
                 todo += ast.iter_child_nodes(item)
+        return tuple(nodes)
 
     @property
     def arguments(self) -> list[str]:
@@ -64,11 +69,13 @@ class ProgramTypes:
 
     def __init__(self, tree: ast.Module) -> None:
         self.functions: list[Function] = []
-        self._tree = tree
         self._busy: set[tuple[int, str]] = set()
+        everything = list(ast.walk(tree))
+        self._called = {last_name(item.func) for item in everything if isinstance(item, ast.Call)}
         self._module = self._add(tree, None)
-        self._imported = _imported(tree)
-        self._attributes = _attributes(tree)
+        self._imported = _imported(everything)
+        self._is_dotted = any("." in name for name in self._imported)
+        self._attributes = _attributes(everything)
         self._callbacks()
 
     def value_of(self, expression: ast.expr, function: Function) -> TypedValue | None:
@@ -85,7 +92,7 @@ class ProgramTypes:
         function = Function(node, owner)
         function.bound = _bindings(function)
         self.functions.append(function)
-        for inner in function.own_nodes():
+        for inner in function.own_nodes:
             if isinstance(inner, ast.ClassDef):
                 for method in inner.body:
                     if isinstance(method, _FUNCTIONS):
@@ -135,10 +142,9 @@ class ProgramTypes:
         return kinds.pop() if len(kinds) == 1 else None
 
     def _attribute(self, item: ast.Attribute, function: Function) -> TypedValue | None:
-        dotted = ast.unparse(item)
-        if (known := self._imported.get(dotted)) is not None:
+        if self._is_dotted and (known := self._imported.get(ast.unparse(item))) is not None:
             return known
-        if isinstance(item.value, ast.Name) and item.value.id == "self" and function.owner is not None:
+        if _is_self(item.value) and function.owner is not None:
             places = self._attributes.get((function.owner.name, item.attr))
             makers = [(value, self._method_of(node)) for value, node in places or ()]
             kinds = {self._type(value, maker) if value and maker else None for value, maker in makers}
@@ -163,7 +169,7 @@ class ProgramTypes:
         """Give the parameters of functions their annotations' types, or those that rclpy calls them with."""
         given: dict[int, list[list[TypedValue | None]]] = {}
         for function in list(self.functions):
-            for call in (item for item in function.own_nodes() if isinstance(item, ast.Call)):
+            for call in (item for item in function.own_nodes if isinstance(item, ast.Call)):
                 for callback, types in _registered(call, functools.partial(self._type, function=function)):
                     target = self._function_of(callback, function)
                     if target is not None:
@@ -185,9 +191,7 @@ class ProgramTypes:
 
     def _is_called(self, function: Function) -> bool:
         """Return whether the program calls a callback itself: maybe with something else."""
-        name = getattr(function.node, "name", "")
-        calls = (item for item in ast.walk(self._tree) if isinstance(item, ast.Call))
-        return bool(name) and any(last_name(call.func) == name for call in calls)
+        return getattr(function.node, "name", "") in self._called
 
     def _function_of(self, callback: ast.expr, function: Function) -> Function | None:
         """Return the function that an expression names: `self.on_message`, `on_message`, or a lambda."""
@@ -197,7 +201,7 @@ class ProgramTypes:
             name = getattr(item.node, "name", "")
             if isinstance(callback, ast.Name) and item.owner is None and name == callback.id:
                 return item
-            is_own = isinstance(callback, ast.Attribute) and ast.unparse(callback.value) == "self"
+            is_own = isinstance(callback, ast.Attribute) and _is_self(callback.value)
             if is_own and item.owner is not None and item.owner is function.owner and name == last_name(callback):
                 return item
         return None
@@ -256,22 +260,26 @@ def _registered(
             yield named[name], [kind]
 
 
-def _imported(tree: ast.Module) -> Mapping[str, TypedValue]:
+def _is_self(expression: ast.expr) -> bool:
+    return isinstance(expression, ast.Name) and expression.id == "self"
+
+
+def _imported(everything: Sequence[ast.AST]) -> Mapping[str, TypedValue]:
     """Map names, also dotted ones, to the interfaces that a program imports; not those that it binds otherwise."""
     known: dict[str, TypedValue] = {}
-    for item in ast.walk(tree):
+    for item in everything:
         if isinstance(item, ast.ImportFrom) and item.module and (module := _MODULE.fullmatch(item.module)):
             for alias in item.names:
                 interface = f"{module[1]}/{module[2]}/{alias.name}"
                 known[alias.asname or alias.name] = TypedValue("class", interface)
-    modules = {alias.name for item in ast.walk(tree) if isinstance(item, ast.Import) for alias in item.names}
-    for item in ast.walk(tree):
+    modules = {alias.name for item in everything if isinstance(item, ast.Import) for alias in item.names}
+    for item in everything if any(map(_INTERFACES.search, modules)) else ():
         dotted = ast.unparse(item) if isinstance(item, ast.Attribute) else ""
         package, _, rest = dotted.partition(".")
         kind, _, name = rest.partition(".")
         if {package, f"{package}.{kind}"} & modules and kind in PARTS and name.isidentifier():
             known[dotted] = TypedValue("class", f"{package}/{kind}/{name}")
-    defined = {i.name for i in ast.walk(tree) if isinstance(i, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)}
+    defined = {i.name for i in everything if isinstance(i, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)}
     return {name: kind for name, kind in known.items() if name not in defined}
 
 
@@ -279,14 +287,14 @@ def _bindings(function: Function) -> dict[str, list[ast.expr | None]]:
     """Map each name that a function binds to the values that it gets; None for one that is not a plain value."""
     bound: dict[str, list[ast.expr | None]] = {}
     plain: set[int] = set()
-    for item in function.own_nodes():
+    for item in function.own_nodes:
         targets: list[ast.expr] = item.targets if isinstance(item, ast.Assign) else []
         targets = [item.target] if isinstance(item, ast.AnnAssign) and item.value is not None else targets
         for target in (target for target in targets if isinstance(target, ast.Name)):
             assert isinstance(item, ast.Assign | ast.AnnAssign)
             plain.add(id(target))
             bound.setdefault(target.id, []).append(item.value)
-    for item in function.own_nodes():
+    for item in function.own_nodes:
         if isinstance(item, ast.Name) and not isinstance(item.ctx, ast.Load) and id(item) not in plain:
             bound.setdefault(item.id, []).append(None)
         elif isinstance(item, ast.Global | ast.Nonlocal):
@@ -297,21 +305,21 @@ def _bindings(function: Function) -> dict[str, list[ast.expr | None]]:
     return bound
 
 
-def _attributes(tree: ast.Module) -> dict[tuple[str, str], list[tuple[ast.expr | None, ast.AST]]]:
+def _attributes(everything: Sequence[ast.AST]) -> dict[tuple[str, str], list[tuple[ast.expr | None, ast.AST]]]:
     """Map (class, attribute of `self`) to the values that it gets, each with its method.
 
     An attribute that the program also sets on something else than `self` is not in it.
     """
     values: dict[tuple[str, str], list[tuple[ast.expr | None, ast.AST]]] = {}
     plain: set[int] = set()
-    for owner in (item for item in ast.walk(tree) if isinstance(item, ast.ClassDef)):
+    for owner in (item for item in everything if isinstance(item, ast.ClassDef)):
         for method in (item for item in owner.body if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef)):
             for item in ast.walk(method):
                 targets = item.targets if isinstance(item, ast.Assign) else []
                 for target in targets:
-                    if isinstance(target, ast.Attribute) and ast.unparse(target.value) == "self":
+                    if isinstance(target, ast.Attribute) and _is_self(target.value):
                         plain.add(id(target))
                         values.setdefault((owner.name, target.attr), []).append((item.value, method))  # type: ignore[attr-defined]
-    stored = (i for i in ast.walk(tree) if isinstance(i, ast.Attribute) and isinstance(i.ctx, ast.Store | ast.Del))
+    stored = (i for i in everything if isinstance(i, ast.Attribute) and isinstance(i.ctx, ast.Store | ast.Del))
     unsure = {item.attr for item in stored if id(item) not in plain}
     return {key: given for key, given in values.items() if key[1] not in unsure}

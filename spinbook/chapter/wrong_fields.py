@@ -45,7 +45,7 @@ def wrong_fields(program: str) -> list[WrongField]:
 
 
 def _in_function(function: Function, types: ProgramTypes) -> Iterator[WrongField]:
-    for item in function.own_nodes():
+    for item in function.own_nodes:
         if isinstance(item, ast.Attribute):
             yield from _attribute(item, types.value_of(item.value, function))
         elif isinstance(item, ast.Call):

@@ -20,8 +20,13 @@ AS_EXPECTED = "— as expected, "
 _QUOTED_LINES = 8
 #: `ros2 launch` puts the program's name before each line.
 _LAUNCHED = re.compile(r"\[[\w./-]+-\d+\] ")
-#: The notebook's log format, with or without a time stamp.
-_LOGGED = re.compile(r"\[(ERROR|FATAL)\] (?:\[[\d.]+\] )?\[[^\]]*\]: ?(.*)")
+#: The notebook's log format, with or without a time stamp; that of Python's `logging`; what rclpy says of a lost error.
+_LOGGED = re.compile(
+    r"\[(?P<level>ERROR|FATAL)\] (?:\[[\d.]+\] )?\[[^\]]*\]: ?(?P<text>.*)"
+    r"|(?P<python>ERROR|CRITICAL):[\w.]+:(?P<message>.*)"
+    r"|The following exception was never retrieved: (?P<lost>.*)"
+)
+_COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 _TRACEBACK = "Traceback (most recent call last):"
 _FRAME = re.compile(r'\s*File "([^"]+)", line (\d+)(, in <module>)?')
 _RAISED = re.compile(r"[A-Za-z_][\w.]*(Error|Exception|Interrupt|Exit|Warning|Iteration)?(: .*)?$")
@@ -107,7 +112,7 @@ class NodeLog:
         *lines, self._part = (self._part + text).split("\n")
         for line in lines:
             self.last.extend(shortened(shown.rstrip()) for shown in self._frames_shown.shown([line]) if line.strip())
-            self._line(_LAUNCHED.sub("", line, count=1), stopping)
+            self._line(_LAUNCHED.sub("", _COLOURS.sub("", line), count=1), stopping)
         self._end_chain(stopping)
 
     def _line(self, line: str, stopping: bool) -> None:
@@ -120,8 +125,8 @@ class NodeLog:
         else:
             self._end_chain(stopping)
             self._ignored = line.startswith("Exception ignored")
-            if (log := _LOGGED.match(line)) and not (stopping and _ON_CTRL_C.match(log[2])):
-                self.logged.append(f"it logged {log[1]}: {log[2]}")
+            if (log := _LOGGED.match(line)) and not (stopping and _ON_CTRL_C.match(_text_of(log))):
+                self.logged.append(_in_words(log))
 
     def _in_traceback(self, line: str, frames: list[tuple[str, int]]) -> None:
         if frame := _FRAME.match(line):
@@ -149,6 +154,15 @@ class NodeLog:
         logged = [line for line in dict.fromkeys(self.logged) if not any(text in line for text in texts)]
         self.logged, self.raised = [], []
         return logged, raised
+
+
+def _text_of(log: re.Match[str]) -> str:
+    return log["text"] or log["message"] or log["lost"] or ""
+
+
+def _in_words(log: re.Match[str]) -> str:
+    level = log["level"] or log["python"]
+    return f"it logged {level}: {_text_of(log)}" if level else f"an exception was lost: {_text_of(log)}"
 
 
 def how_it_ended(code: int) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import socket
@@ -53,7 +54,9 @@ class KeptProcess:
         self._ask({"start": {"argv": list(argv), "env": dict(env), "cwd": os.fspath(cwd)}})
 
     def _ask(self, request: Mapping[str, Any]) -> None:
-        self._control.sendall(json.dumps(request).encode() + b"\n")
+        # If the supervisor was killed, the answer that does not come says so.
+        with contextlib.suppress(BrokenPipeError):
+            self._control.sendall(json.dumps(request).encode() + b"\n")
 
     def read(self) -> tuple[bytes, int]:
         """Return (output since the last call, number of bytes dropped before it), and update `status`."""

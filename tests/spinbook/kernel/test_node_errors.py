@@ -44,6 +44,9 @@ def test_an_exception_is_reported_with_its_line() -> None:
     [
         ("[ERROR] [arm]: too hot\n", "it logged ERROR: too hot."),
         ("[FATAL] [1700000000.123] [arm.left]: on fire\n", "it logged FATAL: on fire."),
+        ("\x1b[31m[ERROR] [1.2] [arm]: too hot\x1b[0m\n", "it logged ERROR: too hot."),
+        ("ERROR:root:too hot\n", "it logged ERROR: too hot."),
+        ("The following exception was never retrieved: no grip\n", "an exception was lost: no grip."),
         ("[arm-1] [ERROR] [arm]: too hot\n", "it logged ERROR: too hot."),
         ("[ERROR] [arm]: Error raised in execute callback: no grip\n" + RAISED, "ValueError: no grip."),
         ("Exception in thread Thread-1 (go):\n" + RAISED, "ValueError: no grip."),

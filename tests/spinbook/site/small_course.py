@@ -142,7 +142,7 @@ save time, `--event-handlers` shows output, and `--symlink-install` once more, w
 
 Good-bye.
 
-Before: [publisher and messages](01-talk.md). No message is lost.
+Before: [publisher and messages](01-talk.md). No message is lost. This is give–take.
 """
 _GLOSSARY = """\
 # Glossary
@@ -158,6 +158,10 @@ Whoever sends.
 ## Message
 
 What is sent.
+
+## Give–take
+
+A pattern, whose heading is not plain ASCII.
 """
 
 

@@ -88,6 +88,7 @@ def test_the_first_use_of_a_term_leads_to_the_glossary(built: SmallCourse) -> No
 
     assert page.count('href="../glossary.html#publisher"') == 1
     assert 'id="publisher"' in built.page("glossary.html")
+    assert 'href="../glossary.html#givetake"' in built.page("chapters/02-more.html")
 
 
 def test_a_term_in_a_link_to_another_page_stays_a_part_of_that_link(built: SmallCourse) -> None:
