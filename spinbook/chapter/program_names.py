@@ -48,10 +48,11 @@ class ProgramNames:
         return near[0] if len(near) == 1 else None
 
     def close(self, executable: str) -> str:
-        """Return the name that may have been meant: one that is spelled alike, or has a word in common; "" if none."""
+        """Return the name that may have been meant: one spelled alike, or with half of its words; "" if none."""
         names = {name: item.name or name for item in self.nodes.values() for name in _names(item)}
         alike = difflib.get_close_matches(executable, names, n=1, cutoff=0.7)
-        shared = [name for name in names if _words(name) & _words(executable)]
+        mine = _words(executable)
+        shared = [name for name in names if 2 * len(mine & _words(name)) >= max(len(mine), len(_words(name)))]
         best = (alike or shared or [""])[0]
         return names.get(best, "")
 

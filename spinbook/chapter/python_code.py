@@ -222,7 +222,7 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         has_main=any(map(_is_main, tree.body)),
         has_main_guard=any(map(_is_main_guard, tree.body)),
         is_setup_script=("setup" in called and _imports_setuptools(tree)) or any(map(_is_entry_point, everything)),
-        is_launch_file=any(map(_is_launch_function, everything)),
+        is_launch_file=any(map(_is_launch_function, everything)) or _imports_launch(tree),
         defines=defines,
         needs=needs,
         calls_main=any(map(calls_main, tree.body)),
@@ -281,6 +281,14 @@ def _is_entry_point(item: ast.AST) -> bool:
 
 def _is_launch_function(item: ast.AST) -> bool:
     return isinstance(item, ast.FunctionDef) and item.name == "generate_launch_description"
+
+
+def _imports_launch(tree: ast.Module) -> bool:
+    """Return whether it is a piece of a launch file: it imports from ROS 2's launch, and not rclpy."""
+    modules = {item.module for item in tree.body if isinstance(item, ast.ImportFrom) and item.module}
+    modules |= {alias.name for item in tree.body if isinstance(item, ast.Import) for alias in item.names}
+    tops = {module.partition(".")[0] for module in modules}
+    return bool(tops & {"launch", "launch_ros"}) and "rclpy" not in tops
 
 
 def _optional_imports(everything: Sequence[ast.AST]) -> set[ast.AST]:

@@ -15,7 +15,8 @@ from interface_compiler import prefixes
 from ros_in_python.ros2 import executables
 from spinbook.chapter.classify import CellKind, ClassifiedFence
 from spinbook.chapter.imports import IN_ROS, interfaces_of, own_names, remedy, ros_packages
-from spinbook.chapter.launch_files import LaunchedNode, NotSupportedError, launched_nodes
+from spinbook.chapter.launch_files import NotSupportedError
+from spinbook.chapter.launches import Launches, launch_words
 from spinbook.chapter.own_packages import OwnPackages, created_node, created_package
 from spinbook.chapter.program_names import ProgramNames
 from spinbook.chapter.terminal import Command, CommandKind, is_placeholder
@@ -90,12 +91,13 @@ class Shells:
     _created: set[str] = field(default_factory=set)
     _hello: set[tuple[str, str]] = field(default_factory=set)
     """The programs that `ros2 pkg create --node-name` makes: (package, executable)."""
-    _files: set[str] = field(default_factory=set)
-    """Launch and parameter files that cells above have put into the package, by name."""
-    _launch_files: dict[str, str] = field(default_factory=dict)
+    _launches: Launches = field(init=False)
     _said: _CodeSoFar = field(default_factory=_CodeSoFar)
     _nodes: dict[str, int] = field(default_factory=dict)
     """The chapter's nodes so far -> their number among the fences."""
+
+    def __post_init__(self) -> None:
+        self._launches = Launches(self.package, self.named_files)
 
     def decide(self, items: Sequence[ClassifiedFence]) -> list[ClassifiedFence]:
         """Decide what each fence becomes; a node that `ros2 run` starts below also gets the names used there."""
@@ -109,18 +111,14 @@ class Shells:
                 self._created.add((item.name or "").partition("/")[0])
             elif item.kind is not CellKind.STATIC:
                 self._said.add(item.whole)
-            if item.kind is CellKind.FILE:
-                self._files.add((item.name or "").rpartition("/")[2])
-            if _is_launch_file(item):
-                name = item.fence.title or self.named_files.get(item.fence.line) or f"launch file {number}"
-                self._launch_files[name.rsplit("/", 1)[-1]] = item.fence.code
+            self._launches.add(number, item)
             if item.kind is CellKind.NODE:
                 self._said.add(item.whole)
         return out
 
     def _fence(self, item: ClassifiedFence, out: list[ClassifiedFence]) -> ClassifiedFence:
         commands = [self._compiled_here(command) for command in item.commands]
-        item = replace(item, commands=tuple(part for command in commands for part in self._launched(command)))
+        item = replace(item, commands=tuple(part for command in commands for part in self._launches.started(command)))
         if all(command.kind is CommandKind.NOTE for command in item.commands):
             return replace(item, kind=CellKind.STATIC, why="it makes a package of interfaces, which is compiled here")
         if len(item.commands) > 1:
@@ -214,19 +212,19 @@ class Shells:
         return None
 
     def _launch(self, command: Command) -> _Reason | None:
-        names = _launch_words(command)
-        if self._runs_whole(command):
+        names = launch_words(command)
+        if self._launches.runs_whole(command):
             return None
         try:
-            self._launched_nodes(command)
+            self._launches.nodes(command)
         except NotSupportedError as error:
             fix = "It starts nothing here, because a part of it would be missing. Start its nodes with `ros2 run`."
             return _Reason(f"its launch file can't run here: {error}", fix, "")
         package = names[0] if len(names) > 1 else ""
         if not package or package in {self.package, *self.own.names, *ros_packages()}:
             file = _file_name(names[-1]) if names else ""
-            close = difflib.get_close_matches(file, [*self._files, *self._launch_files], n=1)
-            fix = f"Did you mean `{close[0]}`?" if close else "Show it in a fence above."
+            close = self._launches.close(file)
+            fix = f"Did you mean `{close}`?" if close else "Show it in a fence above."
             return _Reason("no fence above is its launch file", fix, "" if close else "launch files")
         if is_placeholder(package):
             return _TO_FILL_IN
@@ -266,7 +264,7 @@ class Shells:
         named = [after for word, after in itertools.pairwise(words) if word == "--params-file"]
         if words[1:3] == ("param", "load"):
             named += [word for word in words[4:] if not word.startswith("-")]
-        return any(_file_name(word) not in self._files for word in named)
+        return any(_file_name(word) not in self._launches.files for word in named)
 
     def _compiled_here(self, command: Command) -> Command:
         """Return a comment in place of `ros2 pkg create` of a package whose interfaces the chapters define."""
@@ -274,34 +272,6 @@ class Shells:
         if command.words[1:3] == ("pkg", "create") and created_package(command.words)[0] in packages:
             return Command(CommandKind.NOTE, f"# {command.text}", (), command.line)
         return command
-
-    def _launched(self, command: Command) -> list[Command]:
-        """Replace `ros2 launch` of a launch file above by a comment and the commands that start all its nodes."""
-        if command.kind is not CommandKind.ROS2 or command.words[1:2] != ("launch",) or self._runs_whole(command):
-            return [command]
-        try:
-            nodes = self._launched_nodes(command)
-        except NotSupportedError:
-            return [command]
-        note = Command(CommandKind.NOTE, f"# {command.text} starts:", (), command.line)
-        return [note, *(node.command(command.line) for node in nodes)] if nodes else [command]
-
-    def _runs_whole(self, command: Command) -> bool:
-        """Return whether a cell above has put the launch file into the course's package."""
-        names = _launch_words(command)
-        is_ours = len(names) < 2 or names[0] == self.package
-        return is_ours and any(_file_name(name) in self._files for name in names)
-
-    def _launched_nodes(self, command: Command) -> list[LaunchedNode]:
-        """Return the nodes of the launch file above that a command names; none if there is no such file.
-
-        Raises NotSupportedError if the file can't be run as a whole.
-        """
-        file = next((_file_name(word) for word in _launch_words(command) if word.endswith(".py")), "")
-        unnamed = [name for name in self._launch_files if not name.endswith(".py")]
-        code = self._launch_files.get(file) or (self._launch_files[unnamed[-1]] if file and len(unnamed) == 1 else "")
-        pairs = [word.partition(":=") for word in command.words]
-        return launched_nodes(code, {name: value for name, mark, value in pairs if mark}) if code else []
 
     def _create(self, command: Command) -> _Reason | None:
         name, build_type = created_package(command.words)
@@ -368,16 +338,6 @@ def _last_name(path: str) -> str:
     """Return the part of a name that a program contains: the last one, or the node's for its parameter services."""
     node, _, last = path.strip("/").lower().rpartition("/")
     return _last_name(node) if last in OWN_SERVICES and node else last
-
-
-def _is_launch_file(item: ClassifiedFence) -> bool:
-    is_file = item.kind is CellKind.FILE and (item.name or "").endswith(".py")
-    return is_file or (item.code is not None and item.code.is_launch_file)
-
-
-def _launch_words(command: Command) -> list[str]:
-    """Return the package and the file of `ros2 launch`, without options and arguments."""
-    return [word for word in command.words[2:] if not word.startswith("-") and ":=" not in word]
 
 
 def _file_name(path: str) -> str:

@@ -100,6 +100,16 @@ def test_otherwise_nothing_is_started_and_the_name_that_was_meant_is_suggested(
     assert f"Did you mean `{meant}`?" in result.problems[-1].fix
 
 
+def test_a_piece_of_a_launch_file_is_shown_without_a_word(tmp_path: Path) -> None:
+    piece = "from launch_ros.actions import Node\n\nlamp = Node(package='bench', executable='lamp')\n"
+
+    result = reading(tmp_path, piece)
+    assert result.chapter is not None
+
+    assert [(fence.why, fence.sign) for fence in result.chapter.static_fences] == [("it is a launch file", "")]
+    assert result.problems == ()
+
+
 def test_the_node_that_pkg_create_makes_can_be_run(tmp_path: Path) -> None:
     create = CREATE.replace("ros2 pkg create", "ros2 pkg create --node-name greeter")
 
