@@ -58,13 +58,24 @@ class _Before:
         if block.kind is BlockKind.HEADING:
             self.text, self.names, self.heading = text, [], _names_in(text)
         elif text.strip():
-            self.text, self.names = f"{self.text}\n{text}", _names_in(text)
+            # After "`ros2 interface show …` prints:", a fence is what it prints.
+            names = [] if "interface show" in text else _names_in(text)
+            self.text, self.names = f"{self.text}\n{text}", names
 
     def pop(self) -> list[_Name]:
         """Return the names for the next fence, the most likely one last."""
         names = [*self.heading, *self.names]
         self.text, self.names, self.heading = "", [], []
         return names
+
+
+@dataclass(frozen=True)
+class _Unnamed:
+    """A fence that nothing before it names, with the text before it, and what follows up to the next heading."""
+
+    fence: Fence
+    before: str
+    after: list[str] = field(default_factory=list)
 
 
 def shown_interfaces(blocks: Iterable[Block], text: str, own: str) -> dict[int, str]:
@@ -77,8 +88,13 @@ def shown_interfaces(blocks: Iterable[Block], text: str, own: str) -> dict[int, 
     packages = _Packages(text, own)
     before = _Before()
     names: dict[int, _Name] = {}
-    unnamed: list[tuple[Fence, str]] = []
+    unnamed: list[_Unnamed] = []
+    section: list[_Unnamed] = []
     for block in (inner for top in blocks for inner in top.walk()):
+        section = [] if block.kind is BlockKind.HEADING else section
+        if block.kind in {BlockKind.TEXT, BlockKind.FENCE}:
+            for item in section:
+                item.after.extend(line.text for line in block.lines)
         if block.kind in {BlockKind.TEXT, BlockKind.HEADING}:
             before.read(block)
         elif block.kind is BlockKind.FENCE and block.fence is not None and block.closed:
@@ -88,10 +104,11 @@ def shown_interfaces(blocks: Iterable[Block], text: str, own: str) -> dict[int, 
             elif (block.fence.is_shell and (candidates := _names_in(block.fence.code))) or _is_listing(block.fence):
                 before.names = candidates
             else:
-                unnamed.append((block.fence, words))
-    for fence, words in unnamed:
-        if name := packages.meant(fence, words, names.values()):
-            names[fence.line] = name
+                section = [*section, _Unnamed(block.fence, words)]
+                unnamed.append(section[-1])
+    for item in unnamed:
+        if name := packages.meant(item, names.values()):
+            names[item.fence.line] = name
     return {line: name.title for line, name in names.items()}
 
 
@@ -124,6 +141,11 @@ def is_definition(code: str, kind: str) -> bool:
     lines = [line for line in lines if line]
     fields = [line for line in lines if line != "---"]
     return len(lines) - len(fields) == KINDS[kind] and bool(lines) and all(map(_is_field, fields))
+
+
+def _has_plain_field(code: str) -> bool:
+    types = (re.split(r"[\[<\s]", line.strip(), maxsplit=1)[0] for line in code.split("\n"))
+    return any(name in PRIMITIVES or re.fullmatch(r"[a-z]\w*/\w+", name) for name in types)
 
 
 def _is_field(line: str) -> bool:
@@ -182,18 +204,22 @@ class _Packages:
         package = name.package or self._types.get((name.kind, name.name)) or self._near(fence.line)
         return _Name(package or _twin(name, fence.code), name.kind, name.name)
 
-    def meant(self, fence: Fence, words: str, known: Iterable[_Name]) -> _Name | None:
-        """Return the imported interface that a fence without a name defines: the only one that the text mentions."""
-        if fence.is_python or fence.is_shell or fence.has("static") or fence.title:
+    def meant(self, item: _Unnamed, known: Iterable[_Name]) -> _Name | None:
+        """Return the interface that a fence without a name defines: the only one of its kind that the text mentions.
+
+        The text before it mentions one that is imported; what follows names its file, in CMake, or imports it.
+        """
+        fence = item.fence
+        if fence.is_python or fence.is_shell or fence.has("static") or fence.title or "interface show" in item.before:
             return None
-        kinds = [kind for kind in KINDS if is_definition(fence.code, kind)]
+        kinds = [kind for kind in KINDS if is_definition(fence.code, kind) and _has_plain_field(fence.code)]
         taken = {(name.kind, name.name) for name in known}
-        names = [
-            _Name(package, kind, name)
-            for (kind, name), package in self._types.items()
-            if kind in kinds and (kind, name) not in taken and re.search(rf"\b{name}\b", words)
-        ]
-        return names[0] if len(names) == 1 and not is_someone_elses(names[0].package, self._own) else None
+        used = [name for name in self._types if re.search(rf"\b{name[1]}\b", item.before)]
+        after = "\n".join(line.partition("#")[0] for line in item.after)
+        used = used or list(dict.fromkeys([*((n.kind, n.name) for n in _names_in(after)), *dict(_types_in(after))]))
+        names = [_Name("", *name) for name in used if name[0] in kinds and name not in taken]
+        meant = self.placed(names[0], fence) if len(names) == 1 else None
+        return meant if meant and not is_someone_elses(meant.package, self._own) else None
 
     def _near(self, line: int) -> str:
         """Return the package of interfaces last mentioned before a line, otherwise the first one after it."""
@@ -205,7 +231,7 @@ def _packages_in(text: str) -> Iterator[tuple[str, int]]:
     """Yield the packages of interfaces that a text names as packages, each with its place."""
     for match in _NAMED_PACKAGE.finditer(text):
         for word in next(filter(None, match.groups())).split():
-            if _OF_INTERFACES.fullmatch(word):
+            if _OF_INTERFACES.fullmatch(word) and word not in _NOT_PACKAGES:
                 yield word, match.start()
 
 
@@ -215,8 +241,8 @@ def _types_in(text: str) -> Iterator[tuple[tuple[str, str], str]]:
         yield (match[2], match[3]), match[1]
     for match in _IMPORT.finditer(text):
         for word in match[3].strip("()").split(","):
-            if name := word.split(" as ")[0].strip():
-                yield (match[2], name), match[1]
+            if name := re.match(r"\s*(\w+)", word):
+                yield (match[2], name[1]), match[1]
 
 
 def _twin(name: _Name, code: str) -> str:

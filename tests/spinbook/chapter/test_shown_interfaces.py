@@ -86,6 +86,28 @@ def test_the_package_is_the_one_that_the_chapter_speaks_of(tmp_path: Path, text:
     assert defined(shown) == [f"{package}/msg/Limb.msg"]
 
 
+@pytest.mark.parametrize(
+    "after",
+    [
+        fence('rosidl_generate_interfaces(${PROJECT_NAME}\n  "msg/Limb.msg"\n)\n', "cmake"),
+        "- Import it: `from limb_msgs.msg import Limb`\n",
+    ],
+)
+def test_the_name_may_come_after_the_definition_in_its_section(tmp_path: Path, after: str) -> None:
+    first, second = fence("float64 angle\n"), fence("float64 other\n")
+
+    shown = chapter(tmp_path, f"# C\n\nIn `limb_msgs`:\n\n{first}{after}\n## Next\n\n{second}")
+
+    assert defined(shown) == ["limb_msgs/msg/Limb.msg"]
+
+
+def test_what_interface_show_printed_is_no_definition(tmp_path: Path) -> None:
+    shown = "`ros2 interface show limb_msgs/msg/Limb` prints Limb.msg's fields:\n\n"
+    printed, used = fence("float64 angle\n"), fence("from limb_msgs.msg import Limb\n", "python")
+
+    assert defined(chapter(tmp_path, f"# C\n\n{shown}{printed}{used}")) == []
+
+
 def test_several_definitions_in_one_fence_are_cells_of_their_own(tmp_path: Path) -> None:
     code = "# limb_msgs/msg/Joint.msg\nfloat64 angle\n\n# limb_msgs/msg/Limb.msg\nJoint[] joints\n"
 
