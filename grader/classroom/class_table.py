@@ -9,7 +9,7 @@ from pathlib import Path
 from grader.classroom.archive import date_of
 from grader.classroom.formats.format import UploadedFile
 from grader.classroom.names import normal
-from grader.classroom.submissions import File, SubmissionsError
+from grader.classroom.submissions import File, Question, SubmissionsError
 from grader.classroom.tables import table_rows
 from grader.classroom.times import UNKNOWN, Time, read_time
 from grader.grading.grade import Skipped, Student
@@ -18,33 +18,38 @@ NEEDED = ("file", "student")
 KNOWN = (*NEEDED, "name", "email", "submitted", "attempt")
 
 
-def by_row(table: Path, zone: tzinfo | None) -> tuple[list[tuple[File, UploadedFile]], list[Skipped]]:
-    """Return the files that the rows name, relative to the CSV file's folder, and the rows whose file is missing.
+def by_row(table: Path, zone: tzinfo | None) -> tuple[list[tuple[File, UploadedFile]], list[Skipped], list[Question]]:
+    """Return the files that the rows name, relative to the CSV file's folder, and the rows whose file is missing: a
+    question if it is the student's only one.
 
     Times without a zone are in `zone`. Several files of a student are attempts if each has a time, or a number in the
     column attempt. Other columns are kept as the student's data from the learning platform. Raises
     `SubmissionsError` for a row with a mistake.
     """
     uploads: dict[str, list[tuple[File, UploadedFile]]] = defaultdict(list)
-    skipped = []
+    absent: list[tuple[Student, Skipped]] = []
     for number, row in table_rows(table, NEEDED):
         if not row["student"] or not row["file"]:
             raise SubmissionsError(
                 f"{table}:{number}: file = {row['file']!r}, student = {row['student']!r}. Give both."
             )
         path = table.parent / row["file"]
-        if not path.exists() and not path.is_symlink():
-            skipped.append(Skipped(row["file"], f"line {number} names it, but there is no such file"))
-            continue
-        time = _time(row, path, f"{table}:{number}", zone)
         lms = {column: value for column, value in row.items() if column not in KNOWN}
         student = Student(normal(row["student"]), normal(row.get("name", "")), row.get("email", ""), lms)
+        if not path.exists() and not path.is_symlink():
+            absent.append((student, Skipped(row["file"], f"line {number} names it, but there is no such file")))
+            continue
+        time = _time(row, path, f"{table}:{number}", zone)
         attempt = row.get("attempt", "").zfill(4) if row.get("attempt") else ""
         if not attempt and row.get("submitted") and time.at:
             attempt = str(time.at.timestamp()).zfill(20)
         upload = UploadedFile((student,), (path.name,), attempt, time)
         uploads[student.id].append((File(row["file"], path), upload))
-    return [one for theirs in uploads.values() for one in _attempts(theirs)], skipped
+    skipped = [skip for student, skip in absent if student.id in uploads]
+    questions = [
+        Question(student, (skip.file,), "absent", skip.why) for student, skip in absent if student.id not in uploads
+    ]
+    return [one for theirs in uploads.values() for one in _attempts(theirs)], skipped, questions
 
 
 def _time(row: dict[str, str], path: Path, place: str, zone: tzinfo | None) -> Time:

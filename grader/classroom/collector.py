@@ -50,8 +50,8 @@ def collect(source: Path, exercise: Exercise, unpack_into: Path, options: Collec
     if not source.exists():
         raise SubmissionsError(f"{source}: there is no such file or folder.")
     if source.suffix.lower() == ".csv":
-        uploads, skipped = by_row(source, options.zone)
-        found = ClassFiles(f"the files that {source.name} names", uploads, skipped, together=False)
+        uploads, skipped, absent = by_row(source, options.zone)
+        found = ClassFiles(f"the files that {source.name} names", uploads, skipped, absent, together=False)
     else:
         found = _found(source, exercise, unpack_into, options)
     if not any(can_be_graded(file.name) or file.path.is_dir() for file, _ in found.uploads):

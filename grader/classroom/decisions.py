@@ -35,6 +35,11 @@ QUESTION_TEXTS: dict[Unclear, tuple[str, str, str]] = {
         "Say which attempt counts, for everybody: --attempts last, first or best.",
     ),
     "files": ("{} handed in several files", "student", "Keep one of them, or name it in a CSV file."),
+    "absent": (
+        "{} that the CSV file names is not there",
+        "file",
+        "Put it there, or remove its row. Everybody in a --roster has a row in the gradebook.",
+    ),
     "damaged": (
         "{} can't be read out of the zip",
         "file",
@@ -49,7 +54,7 @@ def decisions(
     """Return what is not clear about a class. `submissions` are those of `collected` after reading, by student."""
     programs = [f"{who}: {one.question}" for who, tries in submissions.items() for one in tries if one.question]
     unread = [f"{one.student.id}: {file.time.fault}" for one, file in _faults(collected.handed_in)]
-    questions: dict[Unclear, list[str]] = {"name": [], "attempts": [], "files": [], "damaged": []}
+    questions: dict[Unclear, list[str]] = {unclear: [] for unclear in QUESTION_TEXTS}
     for question in collected.questions:
         questions[question.unclear].append(str(question))
     found = [
@@ -63,9 +68,9 @@ def decisions(
             "Write them as 2026-11-22 23:59:00 UTC, or give them in a table with --roster.",
         ),
         Decision(
-            f"{counted(len(programs), 'submission')} may mean several programs",
+            f"{counted(len(programs), 'submission')}: what to run is not clear",
             tuple(programs),
-            "Ask the student which one counts, and keep only that one.",
+            "If the student must say which program counts, keep only that one.",
         ),
         _undated(collected, adjuster),
     ]

@@ -54,7 +54,7 @@ class StudentSubmission:
 
 #: Several files in one attempt; several attempts; a file that can't be read from the zip; a file whose name does not
 #: fit the platform's format.
-Unclear = Literal["files", "attempts", "damaged", "name"]
+Unclear = Literal["files", "attempts", "damaged", "name", "absent"]
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Question:
         names = ", ".join(self.files)
         if self.unclear == "name":
             return f"{names}: {self.why}"
-        if self.unclear == "damaged":
+        if self.unclear in ("damaged", "absent"):
             return f"{self.student.id} handed in {names}: {self.why}"
         return f"{self.student.id} handed in {len(self.files)} {self.unclear}: {names}. Which one counts?"
 

@@ -18,7 +18,7 @@ from grader.exercise.exercise import Exercise, ProgramFile
 from grader.exercise.starter import MarkerError, starter
 from grader.submission import packages, python_code
 from grader.submission.archive import Contents, unpacked
-from grader.submission.file_kinds import kind_of, kind_of_content
+from grader.submission.file_kinds import NEITHER, OTHER_ARCHIVES, kind_of, kind_of_content
 from grader.submission.notebook import Notebook, NotebookCell, read_notebook
 from grader.submission.problems import AmbiguousProgram, Unreadable, merge_conflict
 from grader.submission.program_choice import Choice, choose, digest_of
@@ -95,10 +95,8 @@ def code_of(name: str, content: bytes, exercise: Exercise) -> Code:
         return code_of_notebook(read_notebook(content), exercise, posixpath.basename(name))
     if kind == "python":
         return code_of_python(content, exercise)
-    raise Unreadable(
-        f"{posixpath.basename(name)} is neither Python, nor a notebook, nor an archive. Hand in a .py, .ipynb or .zip "
-        "file."
-    )
+    what = "an archive that can't be read here" if content.startswith(OTHER_ARCHIVES) else NEITHER
+    raise Unreadable(f"{posixpath.basename(name)} is {what}. Hand in a .py, .ipynb or .zip file.")
 
 
 def targets(exercise: Exercise) -> tuple[ProgramFile, ...]:

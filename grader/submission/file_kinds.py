@@ -36,6 +36,10 @@ MOST_BYTES_OF: dict[Kind, int] = {
 }
 
 _ARCHIVES = (b"PK\x03\x04", b"PK\x05\x06", b"\x1f\x8b", b"BZh", b"\xfd7zXZ\x00")
+#: RAR and 7z, which Python can't unpack.
+OTHER_ARCHIVES = (b"Rar!\x1a\x07", b"7z\xbc\xaf\x27\x1c")
+
+NEITHER = "neither Python, nor a notebook, nor an archive"
 
 
 def kind_of(name: str) -> Kind:

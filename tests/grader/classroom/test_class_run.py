@@ -160,7 +160,7 @@ def test_two_programs_of_one_student_are_a_question(done: SmallClass) -> None:
     shutil.copy(done.submissions / "carl.py", done.submissions / "ana" / "other.py")
     code, printed = done.grade()
     assert code == 1
-    assert "1 submission may mean several programs:" in printed
+    assert "1 submission: what to run is not clear:" in printed
     assert "Nothing was graded. Decide, or grade all others with --skip." in printed
     assert done.finals() == POINTS, "what was graded stays"
     code, printed = done.grade("--skip")

@@ -58,7 +58,7 @@ def test_nothing_is_graded_before_everything_is_decided(several: SmallClass) -> 
     assert "2 students handed in several times:" in printed
     assert f"bert handed in 2 attempts: Lab_1_bert_attempt_{ON_TIME}_node.py" in printed
     assert "--attempts last, first or best" in printed
-    assert "1 submission may mean several programs:" in printed
+    assert "1 submission: what to run is not clear:" in printed
     assert not (several.folder / "results").exists()
 
 

@@ -126,6 +126,11 @@ def test_a_merge_conflict_in_the_program_is_named(exercise: Exercise) -> None:
     assert of_content("heartbeat.py", shown.encode(), exercise).program
 
 
+@pytest.mark.parametrize("content", [b"Rar!\x1a\x07\x01", b"7z\xbc\xaf\x27\x1c"], ids=["RAR", "7z"])
+def test_an_archive_that_python_can_not_unpack_is_named_as_one(content: bytes, exercise: Exercise) -> None:
+    assert "is an archive that can't be read here" in of_content("work.rar", content, exercise).problem
+
+
 @pytest.mark.parametrize("name", ["essay.docx", "notes.txt", "video.mp4", "nameless"])
 def test_a_file_of_another_kind_is_a_submission_with_a_problem(name: str, tmp_path: Path, exercise: Exercise) -> None:
     (tmp_path / name).write_bytes(b"hello")
