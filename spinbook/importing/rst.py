@@ -90,6 +90,8 @@ def markdown_of(text: str, file: Path) -> str:
 def _known(names: set[str], role_names: set[str]) -> Iterator[None]:
     """Let docutils read these directives and roles while the block runs, as well as it can."""
     before = dict(directives._directives), dict(roles._roles)
+    # Without what Sphinx registers, if this process has made a site.
+    directives._directives, roles._roles = {}, {}
     standard = directives._directive_registry
     for name in names:
         if name in _CODE | _UNSEEN or name not in standard:
