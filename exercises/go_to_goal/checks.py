@@ -14,7 +14,12 @@ POSE, COMMANDS = "/turtle1/pose", "/turtle1/cmd_vel"
 
 @check(
     points=10,
-    hint="Create the publisher and the subscriptions in __init__, and steer with a Twist for each pose.",
+    hint="What does on_pose publish for each pose, and do the numbers depend on the goal?",
+    todo="Two callbacks work together. on_goal keeps the goal in an attribute of the node. on_pose is called for "
+    "each pose: it compares the pose with the goal, makes a new Twist, fills in linear.x (how fast ahead) and "
+    "angular.z (how fast it turns), and publishes it. A command holds for one second, so the turtle stands "
+    "still if no more come. Both numbers are floats. Log them, with the pose, for the first poses after a "
+    "goal: are they other than zero, and do they change?",
     rule=("pose", "goal", "command"),
 )
 def test_drives(ahead: Run) -> None:
@@ -29,7 +34,12 @@ def test_drives(ahead: Run) -> None:
 
 @check(
     points=16,
-    hint="The angle to the goal is atan2(goal.y - pose.y, goal.x - pose.x). Turn by its difference to pose.theta.",
+    hint="By which angle must the turtle turn to face the goal? Draw pose, goal and theta, and compare.",
+    todo="The direction to the goal is atan2(goal.y - pose.y, goal.x - pose.x): y first, and the goal minus the "
+    "pose. The turtle looks in the direction theta, so it must turn by the difference of the two, to the left "
+    "if that is positive. Bring the difference back to between -pi and pi: without that, the turtle turns the "
+    "long way round, or for ever. Drive ahead only while the goal is in front. The plot of your check shows "
+    "the path: does it start in the right direction, does it circle, or does it end too early?",
     depends=[test_drives],
     rule="reach",
 )

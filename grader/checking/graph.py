@@ -128,6 +128,14 @@ def must_have_nodes(run: RecordedRun) -> None:
         _wrong(text, ", ".join(expected), got, _NODES)
 
 
+def must_publish_on_no_others(run: RecordedRun) -> None:
+    """Check that the program publishes on no topics other than those of exercise.toml."""
+    declared = {topic.name for topic in run.exercise.outputs}
+    if others := sorted({end.topic for end in end_points(run, "publisher")} - declared):
+        text = f"your node publishes on other topics, too. Expected none, got {', '.join(others)}."
+        _wrong(text, "none", ", ".join(others), Cause("", *hints("other_topics")))
+
+
 def must_end_on_ctrl_c(run: RecordedRun) -> None:
     """Check that the program ends within 2 s of Ctrl-C, without a traceback. The scenario needs `interrupt=True`."""
     if not run.ending.interrupted:

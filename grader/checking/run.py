@@ -77,5 +77,6 @@ class Run(RecordedRun):
     must_have_interface = graph.must_have_interface
     must_have_qos = graph.must_have_qos
     must_have_nodes = graph.must_have_nodes
+    must_publish_on_no_others = graph.must_publish_on_no_others
     must_end_on_ctrl_c = graph.must_end_on_ctrl_c
     must_survive = graph.must_survive
