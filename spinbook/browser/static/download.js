@@ -27,7 +27,7 @@ async function load(say) {
   const report = (size) => say(`Loading ${megabytes((loaded += size))} of ${megabytes(whole)} MB, once for this course …`, loaded / whole);
   await Promise.all(missing.map(([name, , digest]) => fetchInto(cache, addressOf(name), digest, report)));
   await Promise.all(earlier.map((name) => caches.delete(name)));
-  keepCourse();
+  keepCourse().catch(() => {}); // Without a network, what was kept before stays.
 }
 
 // Take a file that has not changed from the cache of an earlier version.

@@ -33,13 +33,15 @@ async function workFor(cell, process, act) {
   const { progress } = cell.hears("");
   Object.assign(process.hears, { progress, output: (text, stream) => cell.print(text, stream) });
   process.work(cell.name);
-  cell.now.runs(() => process.stop());
+  const stop = () => process.stop();
+  cell.now.runs(stop);
   try {
     await process.ready;
     await process.call("environment", { environment });
     return await act(process);
   } finally {
-    cell.now.runs(null);
+    // A node that the command has started goes on.
+    if (cell.now.stop === stop) cell.now.runs(null);
     process.work("");
     process.hears.output = () => {};
   }

@@ -109,6 +109,8 @@ def stop_all(shown: Opened) -> None:
 
 def test_ros2_run_starts_the_newest_version_above(shown: Opened) -> None:
     expect(run(shown, 3)).to_contain_text("[talker]: version two", timeout=DEADLINE_MS)
+    expect(cell(shown, 3).get_by_role("status")).to_have_text("talker runs.")
+    expect(cell(shown, 3).get_by_role("button", name="Ctrl-C")).to_be_visible()
     expect(run(shown, 1)).to_contain_text("[talker]: version one", timeout=DEADLINE_MS)
     stop_all(shown)
 
