@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import errno
 import gc
 import importlib
 import importlib.util
@@ -102,6 +103,10 @@ EXTRAS = {
 }
 
 
+#: Faults of a place, not of Spinbook: it is read-only, somebody else's or full.
+NOT_WRITABLE = (errno.EROFS, errno.EACCES, errno.EPERM, errno.ENOSPC, errno.EDQUOT)
+
+
 class Verbs(click.Group):
     """A click group that imports a verb only when it is used."""
 
@@ -189,10 +194,19 @@ def spinbook() -> None:
 
 
 def main() -> None:
-    """Run `spinbook` as a program; invalid input prints a message and exits with 1, wrong usage with 2."""
+    """Run `spinbook` as a program; invalid input prints a message and exits with 1, wrong usage with 2, a place
+    that can't be written with 3."""
     atexit.register(gc.freeze)  # runs last: the system frees the memory anyway, so there is nothing to collect
     try:
         spinbook(prog_name="spinbook")
     except SpinbookError as error:
         click.echo(str(error), err=True)
         sys.exit(1)
+    except OSError as error:
+        if error.errno not in NOT_WRITABLE or not error.filename:
+            raise
+        click.echo(
+            f"{error.filename}: error: {error.strerror}.\n    Make room, or work in a folder that you can write to.",
+            err=True,
+        )
+        sys.exit(3)

@@ -11,6 +11,7 @@ import click
 import pytest
 from click.testing import CliRunner
 from course_folder import CourseFolder
+from prepared_python import run_prepared
 from tree import ROOT
 
 from spinbook import cli
@@ -85,6 +86,14 @@ def test_a_module_that_is_missed_only_while_a_verb_runs_is_one_sentence_too(
     assert done.exit_code == 2
     assert "`spinbook site` needs livereload" in done.output
     assert "pip install 'spinbook[site]'" in done.output
+
+
+def test_a_place_that_can_not_be_written_is_named_without_a_traceback() -> None:
+    exercise = ROOT / "spinbook" / "new" / "template" / "exercises" / "speed_limit"
+    done = run_prepared("spinbook", "classroom50", str(exercise), "--out", "/sys/spinbook")
+    assert done.returncode == 3, done.stdout
+    assert done.stderr.startswith("/sys/spinbook: error: ")
+    assert "Traceback" not in done.stderr
 
 
 def test_the_readme_lists_every_command() -> None:

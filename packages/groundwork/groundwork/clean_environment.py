@@ -23,9 +23,6 @@ GUARD = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 #: In a command that was started again: its process's number, and a dict of the variables that it does not use, as text.
 IGNORED = "SPINBOOK_IGNORED"
 
-#: The lists of folders in which programs find modules, libraries and ROS packages.
-_SEARCHED = ("PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH")
-
 #: A folder with one of these on `PYTHONPATH` is where this software is.
 _OWN_PACKAGES = (
     "groundwork",
@@ -52,16 +49,13 @@ def without_foreign(environment: dict[str, str], workspaces: bool = True) -> dic
     kept = {name: value for name, value in environment.items() if not _is_of_loaders(name)}
     has_own_ros = any(os.path.isdir(os.path.join(folder, "rclpy")) for folder in _site_folders())
     prefixes = _ros_prefixes(environment, has_own_ros, workspaces)
-    installed = [os.path.join(prefix, part) for prefix in prefixes for part in ("lib", "local", "opt")]
-    roots = [*_own_roots(), *_entries(environment, "COMPILED_INTERFACES"), *installed]
-    modules = [
-        entry
-        for entry in _entries(environment, "PYTHONPATH")
-        if _is_inside(entry, roots) or _holds(entry, _OWN_PACKAGES) or (not has_own_ros and _holds(entry, ["rclpy"]))
-    ]
-    _put(kept, "PYTHONPATH", modules)
+    own = [*_own_roots(), *_entries(environment, "COMPILED_INTERFACES")]
+    roots = own + [os.path.join(prefix, part) for prefix in prefixes for part in ("lib", "local", "opt")]
+    _put(kept, "PYTHONPATH", _modules(environment, roots, has_own_ros))
     _put(kept, "LD_LIBRARY_PATH", _libraries(_entries(environment, "LD_LIBRARY_PATH"), roots))
     _put(kept, "AMENT_PREFIX_PATH", prefixes)
+    for_cmake = _entries(environment, "CMAKE_PREFIX_PATH")
+    _put(kept, "CMAKE_PREFIX_PATH", [entry for entry in for_cmake if _is_inside(entry, [*own, *prefixes])])
     if os.path.join(sys.prefix, "lib") not in _entries(kept, "LD_LIBRARY_PATH"):
         kept.pop(GUARD, None)  # another installation's wheels have set it
     if _uses_foreign_user_site():
@@ -118,9 +112,7 @@ def own_path(path: list[str]) -> list[str]:
 
 def _is_of_loaders(name: str) -> bool:
     """Return whether a variable changes how Python or the dynamic linker works, and is not one that is allowed."""
-    if name.startswith(("PYTHON", "LD_")):
-        return name not in (*OF_PYTHON, *_SEARCHED)
-    return name == "CMAKE_PREFIX_PATH"
+    return name.startswith(("PYTHON", "LD_")) and name not in (*OF_PYTHON, "LD_LIBRARY_PATH")
 
 
 def _ros_prefixes(environment: dict[str, str], has_own_ros: bool, workspaces: bool) -> list[str]:
@@ -132,6 +124,13 @@ def _ros_prefixes(environment: dict[str, str], has_own_ros: bool, workspaces: bo
     if has_own_ros and (is_on_another or not workspaces):
         return [entry for entry in entries if entry not in foreign]
     return entries
+
+
+def _modules(environment: dict[str, str], roots: list[str], has_own_ros: bool) -> list[str]:
+    """Return what may be on `PYTHONPATH`; without PyPI's wheels also where rclpy is."""
+    packages = _OWN_PACKAGES if has_own_ros else (*_OWN_PACKAGES, "rclpy")
+    entries = _entries(environment, "PYTHONPATH")
+    return [entry for entry in entries if _is_inside(entry, roots) or _holds(entry, packages)]
 
 
 def _libraries(entries: list[str], roots: list[str]) -> list[str]:
@@ -195,7 +194,7 @@ def _is_inside(path: str, folders: list[str]) -> bool:
     )
 
 
-def _holds(folder: str, packages: tuple[str, ...] | list[str]) -> bool:
+def _holds(folder: str, packages: tuple[str, ...]) -> bool:
     return any(os.path.isfile(os.path.join(folder, package, "__init__.py")) for package in packages)
 
 

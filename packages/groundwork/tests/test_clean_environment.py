@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from groundwork import clean_environment
 from groundwork.clean_environment import GUARD, module_command, own_path, without_foreign
 
 WHEELS = Path(sys.prefix, "lib", f"python{sys.version_info.major}.{sys.version_info.minor}", "site-packages", "rclpy")
@@ -79,6 +80,24 @@ def test_a_command_starts_again_only_once_whatever_it_finds_then(tmp_path: Path)
     done = subprocess.run(module_command("loop"), env=environment, capture_output=True, text=True, timeout=60)
 
     assert done.stdout == "['LD_PRELOAD', 'PYTHONOPTIMIZE', 'PYTHONPATH']\n", done.stderr
+
+
+def test_a_sourced_ros_stays_as_it_is_where_there_are_no_wheels(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ros, version = tmp_path / "jazzy", f"python{sys.version_info.major}.{sys.version_info.minor}"
+    for folder in ("share/rcl_interfaces", f"lib/{version}/site-packages/rclpy", "opt/vendor/lib"):
+        (ros / folder).mkdir(parents=True)
+    monkeypatch.setattr(clean_environment, "_site_folders", lambda: [str(tmp_path / "venv" / "site-packages")])
+    environment = {
+        "AMENT_PREFIX_PATH": str(ros),
+        "CMAKE_PREFIX_PATH": str(ros),
+        "PYTHONPATH": str(ros / "lib" / version / "site-packages"),
+        "LD_LIBRARY_PATH": f"{ros}/opt/vendor/lib:{ros}/lib",
+        "ROS_DISTRO": "jazzy",
+    }
+    assert without_foreign(environment) == environment
+    assert without_foreign(environment, workspaces=False) == environment
 
 
 def test_the_guard_of_another_installations_wheels_is_left_out() -> None:
