@@ -31,6 +31,7 @@ def test_publishes_velocities(chapter: Run) -> None:
     if len({got for _, got in pairs}) < 2:
         chapter.must_vary("velocity", per="name")
     if len({got for _, got in pairs}) < 2 or abs(correlation(*zip(*pairs, strict=True))) < 0.4:
+        chapter.must_match("velocity", per="name")
         text = "the velocities have nothing to do with how fast the joints move."
         chapter.wrong_at(None, text, "", "velocities that follow the joints", "others")
 

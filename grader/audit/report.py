@@ -47,8 +47,7 @@ def _show_programs(audit: Audit, console: Console) -> None:
     if scores := [f"{p.title} {p.score:g}" for p in audit.programs if p.kind == "baseline"]:
         console.print(Text(f"points without any work: {', '.join(scores)}", style="dim"))
     elif not audit.quick:
-        text = "task.md marks no rules, so nothing is known rule by rule, and what a program without any work gets"
-        console.print(Text(text, style="dim"))
+        console.print(Text("task.md marks no rules, so nothing is known rule by rule", style="dim"))
 
 
 def _show_problem(problem: AuditProblem, console: Console) -> None:

@@ -22,7 +22,7 @@ COURSES = (ROOT, ROOT / "spinbook" / "new" / "template")
 EXERCISES = [file.parent for course in COURSES for file in sorted(course.glob("exercises/*/exercise.toml"))]
 
 #: Audited by every `make test`. The other exercises' solutions are graded by tests/grader/grading.
-ALWAYS = {"joint_velocity", "speed_limit"}
+ALWAYS = {"heartbeat", "speed_limit"}
 
 
 def to_fix(result: Audit) -> str:

@@ -25,7 +25,9 @@ def in_the_course(small: SmallExercise, cache: Path, monkeypatch: pytest.MonkeyP
 def test_without_mutants_it_tells_only_of_the_files(small: SmallExercise) -> None:
     done = solutions_only()
     assert done.exit_code == 0, done.stdout
-    assert "tried: 1 right solutions, 7 mistakes, 3 that do nothing\nnothing to fix" in done.stdout
+    assert "tried: 1 right solutions, 7 mistakes, 3 that do nothing\n" in done.stdout
+    assert "task.md marks no rules" in done.stdout
+    assert "\nnothing to fix\n" in done.stdout
 
 
 def test_a_mistake_may_be_a_whole_program_that_names_its_checks_in_its_docstring(small: SmallExercise) -> None:

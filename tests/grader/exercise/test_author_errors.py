@@ -63,7 +63,7 @@ def test_a_missing_solution(course: Path, workers: WorkerPool) -> None:
          "asks for the scenario no_scenario"),
         ("checks.py", "def test_answers_at_once", "def test_answers_each_message_once",
          "two checks called test_answers_each_message_once"),
-        ("checks.py", "points=4, hint=\"One", "points='4', hint=\"One", "gives '4' points"),
+        ("checks.py", "points=4,", "points='4',", "gives '4' points"),
         ("checks.py", '    """It publishes one message for each message after the first."""\n', "", "no docstring"),
         ("checks.py", "from grader.checking import Run, check", "import no_such_module", "no_such_module"),
         ("checks.py", "depends=[test_publishes_velocities]", "depends=['test_later']", "test_later"),

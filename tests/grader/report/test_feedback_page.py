@@ -28,7 +28,7 @@ def test_a_failed_public_check_tells_what_was_expected_and_got_when_and_where(
     graded: dict[str, Grade], exercise: Exercise
 ) -> None:
     shown = text(page_of(graded["position_for_velocity"], exercise))
-    assert "Begin here The first check that your node fails: Each joint's velocity" in shown
+    assert "Begin here The first check that your node fails: It subscribes to /joint_commands" in shown
     assert shown.index("Begin here") < shown.index("Checks ") < shown.index("Your node and the solution")
     assert (
         "expected 0.499167 rad/s got 0.0499167 rad/s when 0.10 s after the start (message 2) joint left_shoulder_pitch"
