@@ -1,7 +1,7 @@
 // A cell of the page: its code, its output, and its kind.
 import { Edits } from "./edits.js";
 import { createEditor } from "./editor.js";
-import { element } from "./elements.js";
+import { element, save } from "./elements.js";
 import { Now } from "./now.js";
 
 const LINES = 500;
@@ -38,6 +38,12 @@ class Cell {
   edit() {
     this.edits = new Edits(this.editor, this.key, this.name, this.node.querySelector(".cell-links"), this.head);
     this.edits.onrestore = () => this.#showRecorded();
+    // What is saved is what is shown.
+    this.node.querySelector(".cell-download")?.addEventListener("click", (event) => {
+      if (this.source === this.written) return;
+      event.preventDefault();
+      save(this.file, (this.about.before ?? "") + this.source);
+    });
   }
 
   // What it does now, in words.

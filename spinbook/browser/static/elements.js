@@ -40,6 +40,13 @@ export function button(text, label, act) {
   return made;
 }
 
+// Let the reader save a text as a file.
+export function save(name, text) {
+  const url = URL.createObjectURL(new Blob([text], { type: "text/x-python" }));
+  element("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 1000);
+}
+
 // Announce to screen readers what has just happened.
 export function announce(text) {
   document.getElementById("said").textContent = text;

@@ -2,7 +2,7 @@
 import { download as load } from "./download.js";
 import { Edits } from "./edits.js";
 import { createEditor } from "./editor.js";
-import { announce, button, element, failure, hindrance, style } from "./elements.js";
+import { announce, button, element, failure, hindrance, save, style } from "./elements.js";
 import { fill } from "./picture.js";
 import { Process } from "./processes.js";
 import { tellUpdate } from "./update.js";
@@ -85,12 +85,6 @@ function panel(result) {
   ];
 }
 
-function download(name, text) {
-  const url = URL.createObjectURL(new Blob([text], { type: "text/x-python" }));
-  element("a", { href: url, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(url), 1000);
-}
-
 let opened = null;
 
 // Turn the starter of an exercise's page into an editor with Check; return the editor.
@@ -162,7 +156,7 @@ function opening(section) {
     "div",
     { className: "check-tools" },
     checking,
-    button("Download", `Download your ${file}`, () => download(file, editor.text)),
+    button("Download", `Download your ${file}`, () => save(file, editor.text)),
     button("Upload", "Continue with a file of yours", () => upload.click()),
     buttons,
     upload,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from browser import Opened, opened
@@ -70,6 +71,9 @@ def test_an_edit_is_shown_after_a_reload_with_what_differs(shown: Opened) -> Non
     lines = cell.get_by_role("group", name="Lines that differ")
     assert [line[0] for line in lines.inner_text().splitlines() if line[:1] in ("+", "-")] == ["-", "+"]
     assert shown.violations() == []
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Download talker.py").click()
+    assert "edited {self.count}" in Path(download.value.path()).read_text()
 
     page.get_by_role("button", name="Reset talker").click()
     expect(cell.locator(".edited")).to_be_hidden()
