@@ -20,7 +20,16 @@ LONGEST = (
     *("audit", "classroom", "site", "handout", "interface_compiler", "interfaces", "sandbox", "submit"),
     "kernel/test_commands.py",
     *("build/test_execution.py", "grading/test_solutions.py", "gradescope", "grading/test_course_solutions.py"),
-    *("hostile/test_through_the_grader.py", "kernel", "report", "grading", "ros_in_python", "runner", "new"),
+    *(
+        "hostile/test_through_the_grader.py",
+        "hostile/test_attacks_on_the_grader.py",
+        "kernel",
+        "report",
+        "grading",
+        "ros_in_python",
+        "runner",
+        "new",
+    ),
     *("style", "graph", "chapters", "browser", "doctor", "package", "setup", "build", "rcl_python"),
 )
 
