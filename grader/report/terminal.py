@@ -6,6 +6,7 @@ from rich.console import Console
 from rich.padding import Padding
 from rich.text import Text
 
+from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
 from grader.recording.printed_paths import without_paths
@@ -52,7 +53,7 @@ def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = Fal
         console.print(Text(printable(f"{grade.outcome}: {grade.message}"), style="red"), soft_wrap=True)
     checks = shown_checks(grade)
     for check, verdict in zip(checks, grade.verdicts, strict=True):
-        _show_check(check, verdict.error, console, steps)
+        _show_check(check, verdict, console, steps)
     if grade.has_score:
         style = "bold green" if grade.full_marks else "bold"
         if grade.self_check:
@@ -66,13 +67,15 @@ def show(grade: Grade, exercise: Exercise, console: Console, verbose: bool = Fal
         console.print(Text(printable(without_paths(grade.log)) or "(nothing)"), soft_wrap=True)
 
 
-def _show_check(check: ShownCheck, error: str, console: Console, steps: int) -> None:
+def _show_check(check: ShownCheck, verdict: Verdict, console: Console, steps: int) -> None:
     points = f"{check.earned:g}/{check.points:g}"
     sign = (f" {check.sign} ", STYLES[check.sign])
     console.print(Text.assemble(sign, (f"{points:>6}  ", "dim"), check.title), soft_wrap=True)
-    lines = [(check.finding.text, "")] if check.finding else []
+    # Only instructors see hidden checks here, and they see the findings, too.
+    said = verdict.finding if check.finding or (check.hidden and check.hints) else None
+    lines = [(said.text, "")] if said else []
     lines += [(f"{label}: {hint}", "") for label, hint in check.labelled_hints[: steps - 1]]
-    lines += [(check.note, "dim"), (error, "")]
+    lines += [(check.note, "dim"), (verdict.error, "")]
     for line, style in lines:
         if line:
             console.print(Padding(Text(printable(line), style=style), (0, 0, 0, 11)))
