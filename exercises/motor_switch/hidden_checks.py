@@ -129,10 +129,13 @@ def test_pressed_while_off(pressed_while_off: Run) -> None:
     points=5,
     hint="The last message counts, however many there were before.",
     depends=RESPONDS,
-    rule=("twice", "emergency", "released"),
+    rule=("twice", "emergency", "released", "changes"),
 )
 def test_pressed_twice(pressed_twice: Run) -> None:
     """Pressed twice or released twice is the same as once."""
+    if off := changes_between(pressed_twice, 0.6, 0.95, False):
+        text = "the emergency stop was released, and had not been pressed: expected nothing."
+        pressed_twice.wrong_at(off[0], text, "", "nothing", "false")
     must_succeed(pressed_twice, False, lambda call: 1.3 < seconds(call.at) < 1.5, "the emergency stop is pressed")
     must_succeed(pressed_twice, True, lambda call: 1.7 < seconds(call.at) < 1.9, "the emergency stop is released")
 
