@@ -97,7 +97,9 @@ def test_the_class_at_a_glance(browser: Browser, site: Path) -> None:
             "Unlucky Person"
         )
         expect(page.get_by_role("region", name="Skipped")).to_contain_text("s77/")
-        expect(page.get_by_role("region", name="Most failed checks")).to_contain_text("Each joint's velocity")
+        expect(page.get_by_role("region", name="Most failed checks")).to_contain_text(
+            "Velocities are right when the messages arrive at uneven times"
+        )
 
 
 def test_a_row_opens_the_students_page(browser: Browser, site: Path) -> None:
