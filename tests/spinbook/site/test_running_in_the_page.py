@@ -150,7 +150,7 @@ def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str, tmp_
 
         wrong = tmp_path / "degrees.py"
         wrong.write_text(f"# Degrees.\n{mistake_of(load(ROOT / 'exercises' / 'joint_velocity'), 'degrees').source}")
-        check(wrong, "8 of 10 public checks, 24 of 37 points")
+        check(wrong, "7 of 9 public checks, 24 of 37 points")
         failed = page.locator(".check-failed")
         expect(failed).to_contain_text("Every velocity is in degrees.")
         for part in ("expected", "0.10 s after the start (message 2 of 100)", "Where to look", "What to do"):
@@ -158,8 +158,8 @@ def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str, tmp_
         expect(page.locator(".check-plot svg")).to_contain_text("first wrong")
         assert shown.violations() == []
         assert not shown.scrolls_sideways()
-        check(solutions / "right" / "several_threads.py", "10 of 10 public checks, 37 of 37 points")
-        check(solutions / "solution.py", "10 of 10 public checks, 37 of 37 points")
+        check(solutions / "right" / "several_threads.py", "9 of 9 public checks, 37 of 37 points")
+        check(solutions / "solution.py", "9 of 9 public checks, 37 of 37 points")
         expect(page.locator(".check-result")).to_contain_text("This is a preview, not your grade")
 
         with page.expect_download() as download:
