@@ -46,6 +46,8 @@ export async function run(node) {
   node.setAttribute("aria-busy", "true");
   cell.clear();
   cell.say("Starting …");
+  // The head has grown: show all of it above the bar.
+  cell.head.scrollIntoView({ block: "nearest", behavior: "instant" });
   try {
     const hindered = hindrance();
     if (hindered) return void cell.fail(cell.say(hindered));
