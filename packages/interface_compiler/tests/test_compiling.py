@@ -183,7 +183,11 @@ def test_old_prefixes_do_not_pile_up(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert second.prefix.exists()
 
 
-#: Of ROS 2 packages that CMake built elsewhere, from the code and the descriptions that its generators wrote there.
+#: Nobody has published the hashes of these.
+UNPUBLISHED = {"tf2_msgs/action/LookupTransform", "tf2_msgs/srv/FrameGraph"}
+
+#: Of ROS 2 packages that CMake built elsewhere, from the code and the descriptions that its generators wrote there; of
+#: tf2_msgs, as the package rosbags works them out of its own copies of the messages.
 PUBLISHED = json.loads(Path(__file__).with_name("published_hashes.json").read_text(encoding="utf-8"))
 
 
@@ -193,6 +197,7 @@ def test_type_hashes_are_the_published_ones(package: str) -> None:
     described = [json.loads(file.read_text(encoding="utf-8")) for file in share.glob("*/*.json")]
     hashes = {entry["type_name"]: entry["hash_string"] for one in described for entry in one["type_hashes"]}
 
-    ours = {item.full_name: hashes[item.full_name] for item in shipped.definitions(package)}
+    names = {item.full_name for item in shipped.definitions(package)} - UNPUBLISHED
+    ours = {name: hashes[name] for name in names}
 
     assert ours == {name: published for name, published in PUBLISHED.items() if name.startswith(f"{package}/")}
