@@ -7,10 +7,14 @@ shut ROS 2 down for good. So a notebook's rclpy waits in short slices, and witho
 from __future__ import annotations
 
 import functools
+import re
 from typing import Any
 
 #: How long one wait takes at most, and so how long Stop may take (s).
 _SLICE_S = 0.1
+
+#: A program that forgets to import rclpy must fail as in a new Python, so it is not imported for any other cell.
+_IMPORT = re.compile(r"^[ \t]*(?:import|from)[ \t]+rclpy\b", re.MULTILINE)
 
 _NOTE = (
     "— `rclpy.spin` runs in the notebook itself, so no other cell can run until you press Stop (■). To run this cell "
@@ -27,10 +31,10 @@ class SpinInCell:
         self._prepared = False
 
     def before_cell(self, info: Any) -> None:
-        """Prepare rclpy before the first cell that mentions it; IPython calls this before each cell."""
+        """Prepare rclpy before the first cell that imports it; IPython calls this before each cell."""
         self._cell = info.raw_cell or ""
         self._said = False
-        if not self._prepared and "rclpy" in self._cell and not self._cell.lstrip().startswith("%%"):
+        if not self._prepared and _IMPORT.search(self._cell) and not self._cell.lstrip().startswith("%%"):
             self._prepared = True
             self._prepare()
 

@@ -50,7 +50,7 @@ def test_running_a_cell_again_restarts_its_node(kernel: Kernel) -> None:
     kernel.run(f"%%node talker --seconds 60 --until talking\n{TALKER}")
     shown = kernel.run(f"%%node talker --seconds 60 --until talking\n{TALKER.replace('talking', 'talking anew')}")
 
-    assert "(restarting talker)" in shown.text
+    assert "(restarting talker with its new version)" in shown.text
     assert "talking anew" in shown.text
     assert sum("talker.py" in line and "supervisor" not in line for line in kernel_processes(kernel)) == 1
 

@@ -203,7 +203,7 @@ def test_a_check_that_has_no_time_to_end_leaves_no_temporary_file(
     handed_out: Path, temporary_files: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def until_it_runs(process: KeptProcess, timeout_s: float) -> Status:
-        wait_until(lambda: any("spinbook-hub-" in folder for folder, _, _ in os.walk(temporary_files)))
+        wait_until(lambda: any("spinbook-" in folder for folder, _, _ in os.walk(temporary_files)))
         return process.status
 
     monkeypatch.setattr(KeptProcess, "wait", until_it_runs)
