@@ -29,6 +29,7 @@ def without_comments(markdown: str, *, keep_lines: bool = False) -> str:
     kept = []
     for start, line in _numbered(markdown):
         shown, is_cut = _without(line, start, cuts)
+        shown = shown.rstrip() if is_cut else shown
         if keep_lines or not is_cut or shown.strip():
             kept.append(shown)
     return "\n".join(kept)

@@ -31,13 +31,21 @@ pytestmark = pytest.mark.timeout(900)
 
 #: Listed mistakes that other listed ones describe, too: if the first were not listed, the others would be true of it.
 AKIN = {
+    "a_publisher_on_urdf": {"publishes_its_state"},
+    "a_publisher_per_text": {"two_publishers"},
     "again_and_again": {"volatile", "waits_for_a_subscriber", "latched_and_again"},
+    "another_name": {"namespace"},
     "awaits_in_the_default_group": {"call_in_the_callback", "spins_in_the_callback"},
+    "best_effort": {"volatile", "waits_for_a_subscriber"},
     "call_in_the_callback": {"awaits_in_the_default_group"},
     "drops_without_a_server": {"counts_only_what_was_asked", "asks_without_a_server"},
+    "namespace": {"another_name"},
     "only_one_goal_ever": {"only_the_first_goal"},
+    "publishes_its_state": {"a_publisher_on_urdf"},
     "single_threaded": {"no_feedback"},
     "spins_in_the_callback": {"awaits_in_the_default_group"},
+    "volatile": {"best_effort"},
+    "waits_for_a_subscriber": {"best_effort"},
 }
 
 #: Grade by the mistake's name.

@@ -41,7 +41,9 @@ def test_it_is_mostly_right_with_mistakes_and_a_few_attacks() -> None:
     assert len({handed.student for handed in made}) == 200
     assert Counter(handed.kind for handed in made) == {"right": 110, "mistake": 60, "hostile": 24, "odd file": 6}
     mistakes = {mistake.name for mistake in mistakes_of(load(ROOT / "exercises" / students.EXERCISE))}
-    assert {handed.origin for handed in made if handed.kind == "mistake"} == mistakes
+    made_wrong = {handed.origin for handed in made if handed.kind == "mistake"}
+    assert made_wrong <= mistakes
+    assert len(made_wrong) == min(60, len(mistakes)), "none twice as long as there are others"
 
 
 def shape(source: str) -> list[type]:

@@ -145,7 +145,7 @@ UNLISTED: dict[str, dict[str, Unlisted]] = {
         ),
     },
     "robot_description": {
-        "depth_5": Unlisted({"depth=1": "depth=5"}, ("keeps_ten",)),
+        "depth_5": Unlisted({"depth=1": "depth=5"}, ("keeps_ten", "depth_of_five")),
         "upper": Unlisted({"String(data=text)": "String(data=text.upper())"}),
         "volatile_and_all": Unlisted(
             {

@@ -49,11 +49,11 @@ def test_what_looks_like_a_link_in_code_stays(markdown: str) -> None:
     [
         ("One.\n<!-- note -->\nTwo.", "One.\nTwo."),
         ("One <!-- note --> two.", "One  two."),
-        ("a <!-- one\n\ntwo --> b", "a \n b"),
+        ("a <!-- one\n\ntwo --> b", "a\n b"),
         ("One.\n<!-- a\n\n```python\nb\n```\n-->\nTwo.", "One.\nTwo."),
         ("<div>\n<!-- a\n\n-->\n</div>\n", "<div>\n</div>\n"),
-        ("One. <!-- never closed\n\nTwo.", "One. "),
-        ("`x` <!-- 1 --> ``<!-- `2` -->`` <!-- 3 -->", "`x`  ``<!-- `2` -->`` "),
+        ("One. <!-- never closed\n\nTwo.", "One."),
+        ("`x` <!-- 1 --> ``<!-- `2` -->`` <!-- 3 -->", "`x`  ``<!-- `2` -->``"),
         ("- ~~~\n  <!-- code -->\n  ~~~\n- <!-- note -->a", "- ~~~\n  <!-- code -->\n  ~~~\n- a"),
     ],
 )

@@ -23,6 +23,7 @@ from grader.exercise import load
 from grader.exercise.mistakes import Mistake, mistake_of, mistakes_of
 from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
 from interface_compiler.wheel_file import zipped
+from spinbook.chapter.comments import without_comments
 from spinbook.handout.leaks import Secret, hidden_names, leaks, secrets
 from spinbook.handout.student_copy import for_students
 from spinbook.handout.wheels import spinbook_wheel
@@ -209,7 +210,9 @@ def test_the_students_exercise_is_the_authors_without_what_is_not_for_them(real:
     for part in ("title", "points", "file_name", "class_name", "node_name", "topics"):
         assert getattr(theirs, part) == getattr(authors, part)
     assert (copy / "checks.py").read_bytes() == (EXERCISE / "checks.py").read_bytes()
-    assert (copy / "task.md").read_text(encoding="utf-8").strip() == (EXERCISE / "task.md").read_text().strip()
+    task = without_comments((EXERCISE / "task.md").read_text())
+    assert (copy / "task.md").read_text(encoding="utf-8").strip() == task.strip()
+    assert "<!--" not in task
 
 
 def test_a_chapter_or_a_task_that_gives_something_away_is_refused(tmp_path: Path) -> None:

@@ -235,7 +235,7 @@ def test_the_page_shows_the_opening_line_of_a_fence_as_it_is_written(tmp_path: P
     (root / "one.md").write_text("# One\n\n```python\nimport rclpy\nrclpy.init()\nrclpy.spin(1)\n```\n")
 
     assert spinbook_import(root).returncode == 0
-    assert "Name its file: <code>```python title=&#34;node.py&#34;</code>" in (root / "build/import.html").read_text()
+    assert "Name the file: <code>```python title=&#34;node.py&#34;</code>" in (root / "build/import.html").read_text()
 
 
 def test_the_page_lists_what_is_broken_in_the_chapters_own_code(tmp_path: Path) -> None:

@@ -74,7 +74,7 @@ def test_a_misspelled_topic_is_named_and_nothing_that_the_grader_itself_brings(g
 
 def test_nothing_of_the_students_becomes_markup(grading: Grading) -> None:
     bad = "<script>alert(1)</script><img src=x onerror=alert(2)>"
-    spoiled = solution().replace("answer.name.append(name)", f"answer.name.append({bad!r})")
+    spoiled = solution().replace("answer = JointState()", f"raise ValueError({bad!r})")
     assert bad in spoiled
 
     _, html = shown_of(grading, spoiled)

@@ -129,7 +129,7 @@ def link() -> bytes:
 
 #: Each is packed when its test runs: the bombs take a tenth of a second.
 NOT_UPLOADS: dict[str, tuple[Callable[[], bytes], str]] = {
-    "empty": (bytes, "not a valid zip file"),
+    "empty": (bytes, "not a valid archive"),
     "cut off": (lambda: UPLOAD[: len(UPLOAD) // 2], "cut off"),
     "link": (link, "symbolic link"),
     "one bomb": (lambda: zipped({"joint_velocity.py": bytes(50_000_000)}, zipfile.ZIP_DEFLATED), "more than 4 MB"),

@@ -56,5 +56,5 @@ def test_a_latched_topic_is_stored_in_sqlite3_and_played_back_latched(
     late = terminal.ros2(
         "topic", "echo", "--once", "/robot_name", "std_msgs/msg/String", "--qos-durability", "transient_local"
     )
-    assert late.out.startswith("data: Ada")
+    assert "data: Ada\n" in late.out
     playing.stop()

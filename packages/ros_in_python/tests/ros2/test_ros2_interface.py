@@ -64,7 +64,8 @@ def test_lists(terminal: Terminal, tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.chdir(tmp_path)  # outside a course, whose own types would be listed, too
     assert terminal.ros2("interface", "list", "-a").out == (
         "Actions:\n    example_interfaces/action/Fibonacci\n"
-        "    test_msgs/action/Fibonacci\n    test_msgs/action/NestedMessage\n    turtlesim/action/RotateAbsolute\n"
+        "    test_msgs/action/Fibonacci\n    test_msgs/action/NestedMessage\n"
+        "    tf2_msgs/action/LookupTransform\n    turtlesim/action/RotateAbsolute\n"
     )
     everything = terminal.ros2("interface", "list").out.splitlines()
     assert everything[:2] == ["Messages:", "    action_msgs/msg/GoalInfo"]
