@@ -37,13 +37,20 @@ function offer(key, { text }) {
 
 const runs = { shell: runTerminal, snippet: runPlain, interface: runInterface, package_file: runFile };
 
+// Cells whose code was changed and run again while they started.
+const again = new WeakSet();
+
 // Run one cell. Resolves when a plain cell or a command has ended, or when a node has started.
 export async function run(node) {
   open();
   const cell = cellAt(node);
   if (cell.kind !== "node") await cell.now.stop?.();
-  if (node.hasAttribute("aria-busy")) return;
+  if (node.hasAttribute("aria-busy")) {
+    if (cell.source !== cell.begun) again.add(node);
+    return;
+  }
   node.setAttribute("aria-busy", "true");
+  cell.begun = cell.source;
   cell.clear();
   cell.say("Starting …");
   // The head has grown: show all of it above the bar.
@@ -61,6 +68,7 @@ export async function run(node) {
     cell.now.close(cell.failed);
     announce(`${cell.name}: ${cell.state}`);
   }
+  if (again.delete(node)) await run(node);
 }
 
 // Run the cells above this one, in order, and wait for each as a notebook does. Stops at one that fails unexpectedly.
