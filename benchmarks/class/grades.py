@@ -31,15 +31,23 @@ def _wrong(entry: dict[str, Any], expected: Expected) -> str:
 
 def _wrong_points(entry: dict[str, Any], expected: Expected) -> str:
     grade = entry["grade"]
-    earned = sum(verdict["points"] for verdict in grade["verdicts"] if verdict["status"] == "passed")
+    earned = round(sum(map(_earned, grade["verdicts"])), 2)
     if not entry["final"] == grade["score"] == earned:
-        return f"final {entry['final']}, score {grade['score']}, but the checks that it passes give {earned}"
+        return f"final {entry['final']}, score {grade['score']}, but the checks give {earned}"
     full = grade["score"] == grade["points"]
     right = {"zero": grade["score"] == 0, "full": full, "less": not full, "any": True}
     if right[expected.score]:
         return ""
     score = f"{grade['score']:g} of {grade['points']:g} points, not {expected.score}"
     return f"{score}; it fails {sorted(_failed(grade))}"
+
+
+def _earned(verdict: dict[str, Any]) -> float:
+    """The points of one check: all if it passes, and a part only if the check gives parts."""
+    if verdict["status"] == "passed":
+        return float(verdict["points"])
+    partial = verdict["status"] == "failed" and verdict.get("partial")
+    return float(verdict["earned"]) if partial else 0.0
 
 
 def _failed(grade: dict[str, Any]) -> set[str]:

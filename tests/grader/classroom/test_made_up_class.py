@@ -68,7 +68,7 @@ WRONG = {**RIGHT, "name": "test_b", "status": "failed", "points": 4, "finding": 
 
 
 def problem_of(tmp_path: Path, expected: students.Expected, *verdicts: dict[str, Any], **fields: Any) -> str:
-    score = sum(verdict["points"] for verdict in verdicts if verdict["status"] == "passed")
+    score = sum(one["points"] if one["status"] == "passed" else one.get("earned", 0) for one in verdicts)
     grade = {"outcome": "graded", "message": "", "score": score, "points": 10, "log": "", "verdicts": verdicts}
     (tmp_path / "students" / "Ada_Abe").mkdir(parents=True, exist_ok=True)
     entry = {"final": score, "grade": {**grade, **fields}}
@@ -86,7 +86,9 @@ FAILS_B = students.Expected(("graded",), "less", frozenset({"test_b"}))
         (FAILS_B, [RIGHT, WRONG], {}, ""),
         (FAILS_B, [RIGHT, {**WRONG, "status": "passed"}], {}, "not less"),
         (FAILS_B, [{**RIGHT, "status": "failed"}, WRONG], {}, "not ['test_b']"),
-        (FAILS_B, [RIGHT, WRONG], {"score": 7}, "the checks that it passes give 6"),
+        (FAILS_B, [RIGHT, WRONG], {"score": 7}, "the checks give 6"),
+        (FAILS_B, [RIGHT, {**WRONG, "partial": True, "earned": 2.5}], {}, ""),
+        (FAILS_B, [RIGHT, {**WRONG, "partial": False, "earned": 2.5}], {}, "the checks give 6"),
         (FAILS_B, [RIGHT, WRONG], {"outcome": "crashed"}, "crashed, not graded"),
         (students.Expected(words=("line 4",), score="less"), [RIGHT, WRONG], {}, "the feedback lacks ['line 4']"),
         (students.Expected(never=("FOUND",), score="any"), [RIGHT], {"log": "FOUND it"}, "an attack has worked"),
