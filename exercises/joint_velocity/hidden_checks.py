@@ -31,7 +31,7 @@ def must_name_the_right_joints(run: Run) -> None:
 
 
 def must_answer_late_ones(run: Run, seconds: float) -> None:
-    """Fail unless half the messages are answered that come more than so many seconds after the one before."""
+    """Fail unless at least half of the messages more than `seconds` after the previous one are answered."""
     late = [now for before, now in itertools.pairwise(run) if now.sent.stamp - before.sent.stamp > seconds]
     if 2 * sum(bool(exchange.answers) for exchange in late) < len(late):
         run.wrong(late[0], "an answer was expected, got none.", "", "a message", "nothing")

@@ -37,7 +37,8 @@ def main() -> int:
     print(f"{len(rows)} repositories of {owner} begin with {prefix}.")
     if missing or not rows:
         print(
-            f"Could not be fetched: {', '.join(missing) or 'any'}. Nobody is graded until all can be.", file=sys.stderr
+            f"Could not be fetched: {', '.join(missing) or 'any'}. Nothing is graded before all can be.",
+            file=sys.stderr,
         )
     return 1 if missing or not rows else 0
 

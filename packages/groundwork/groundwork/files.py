@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
-# Another thread must not make a file while it is being asked for, so it is asked for once.
+# To read the umask is to change it for a moment, in which no other thread may create a file: so it is read once.
 _UMASK = os.umask(0o077)
 os.umask(_UMASK)
 

@@ -70,7 +70,7 @@ class JointStatePublisher(Node):
     def _position(self, joint: Joint) -> float:
         if joint.mimic is None:
             return self._positions[joint.name]
-        return joint.mimic.multiplier * self._positions.get(joint.mimic.joint, 0.0) + joint.mimic.offset
+        return joint.mimic.follow(self._positions.get(joint.mimic.joint, 0.0))
 
 
 def main(words: Sequence[str]) -> int:

@@ -15,7 +15,7 @@ def all_positions(robot: RobotDescription, given: Mapping[str, float]) -> dict[s
     positions = {joint.name: given[joint.name] for joint in robot.joints if joint.moves and joint.name in given}
     for joint in robot.joints:
         if joint.mimic and joint.mimic.joint in given:
-            positions[joint.name] = joint.mimic.multiplier * given[joint.mimic.joint] + joint.mimic.offset
+            positions[joint.name] = joint.mimic.follow(given[joint.mimic.joint])
     return positions
 
 

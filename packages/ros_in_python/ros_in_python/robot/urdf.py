@@ -27,6 +27,10 @@ class Mimic:
     multiplier: float = 1.0
     offset: float = 0.0
 
+    def follow(self, position: float) -> float:
+        """Return the position (rad or m) that belongs to one of the joint that is followed."""
+        return self.multiplier * position + self.offset
+
 
 @dataclass(frozen=True)
 class Joint:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
+from bisect import bisect_left
 from dataclasses import dataclass, field
 
 from tf2_py.exceptions import ExtrapolationException
@@ -47,12 +47,6 @@ class FrameHistory:
     def newest(self) -> int:
         """The time of the newest transform (ns)."""
         return self.times[-1]
-
-    def parent_at(self, time: int) -> str:
-        """Return the frame's parent at a time (ns), or at the nearest one that is known."""
-        if self.is_static or time == 0:
-            return self.parents[-1]
-        return self.parents[max(0, bisect_right(self.times, time) - 1)]
 
     def at(self, time: int) -> tuple[str, RigidMotion]:
         """Return the parent and the motion at a time (ns; 0 is the newest), between two transforms if need be.
