@@ -76,16 +76,16 @@ class ProcessGroup:
     # --- steps
 
     def _do(self, steps: Sequence[Step]) -> None:
+        # As in ROS 2, a handler also hears of a program that stands before it in the launch file.
+        self._handlers += [step for step in steps if isinstance(step, EventStep)]
         for step in steps:
             if isinstance(step, str):
                 self._say("INFO", "launch.user", step)
-            elif isinstance(step, EventStep):
-                self._handlers.append(step)
             elif isinstance(step, EndOfLaunch):
                 self._end(signal.SIGINT, events.ShutdownRequested(step.reason))
             elif isinstance(step, Later):
                 self._schedule(step.seconds, step.steps)
-            elif not self._is_ending:
+            elif isinstance(step, ProcessToStart) and not self._is_ending:
                 self._start(step)
 
     def _schedule(self, seconds: float, steps: tuple[Step, ...]) -> None:
@@ -120,24 +120,19 @@ class ProcessGroup:
 
     def _read(self, running: _Running) -> None:
         assert running.process.stdout is not None
-        heard = any(isinstance(step.handler, events.OnProcessIO) for step in self._handlers)
         for line in running.process.stdout:
             self._print(f"[{running.name}] {line.decode(errors='replace').rstrip()}")
-            if heard:
+            if any(isinstance(step.handler, events.OnProcessIO) for step in self._handlers):
                 self._queue.put(events.ProcessIO(*running.what, line))
         self._queue.put(running)
 
     def _wait(self) -> None:
         with contextlib.suppress(queue.Empty):
-            event = self._queue.get(timeout=self._until_next())
-            if isinstance(event, int):
-                self._interrupted(event)
-            elif isinstance(event, events.ProcessIO):
-                self._happened(event)
-            else:
-                event.process.wait()
+            self._take(self._queue.get(timeout=self._until_next()))
         for running in [item for item in self._running if item.process.poll() is not None]:
             running.reader.join(timeout=1.0)
+            while not self._queue.empty():  # its last lines come before its end
+                self._take(self._queue.get_nowait())
             self._running.remove(running)
             self._ended(running)
         while self._later and self._later[0][0] <= time.monotonic() and not self._is_ending:
@@ -146,6 +141,14 @@ class ProcessGroup:
             self._signal(self._next_signal)
             self._deadline = time.monotonic() + GRACE[1]
             self._next_signal = signal.SIGKILL
+
+    def _take(self, event: _Running | int | events.ProcessIO) -> None:
+        if isinstance(event, int):
+            self._interrupted(event)
+        elif isinstance(event, events.ProcessIO):
+            self._happened(event)
+        else:
+            event.process.wait()
 
     def _until_next(self) -> float:
         due = self._later[0][0] - time.monotonic() if self._later else _POLL_S

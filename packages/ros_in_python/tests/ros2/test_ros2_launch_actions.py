@@ -150,6 +150,21 @@ return LaunchDescription([
     assert said(answer) == ["[echo-1] first", "heard first", "[echo-2] second", "echo-2 ended with 0", "after second"]
 
 
+def test_a_handler_hears_of_a_program_that_stands_before_it(terminal: Terminal, tmp_path: Path) -> None:
+    answer = launched(terminal, tmp_path, """
+first = ExecuteProcess(cmd=["printf", "1\\n2\\n3\\n"])
+return LaunchDescription([
+    first,
+    RegisterEventHandler(OnProcessStart(target_action=first, on_start=[LogInfo(msg="started")])),
+    RegisterEventHandler(OnProcessIO(target_action=first, on_stdout=lambda event, context: LogInfo(
+        msg="heard " + event.text.decode().strip()))),
+    RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[LogInfo(msg="ended")])),
+])""")  # fmt: skip
+    assert (answer.code, answer.err) == (0, "")
+    told = [line for line in said(answer) if not line.startswith("[printf-1]")]
+    assert told == ["started", "heard 1", "heard 2", "heard 3", "ended"]
+
+
 @pytest.mark.parametrize("end", ["Shutdown(reason='done')", "EmitEvent(event=ShutdownEvent(reason='done'))"])
 def test_a_launch_can_end_itself_and_tells_who_listens(terminal: Terminal, tmp_path: Path, end: str) -> None:
     answer = launched(terminal, tmp_path, f"""
