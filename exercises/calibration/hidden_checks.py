@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from grader.checking import Run, check, each, fail
-from grader.recording.recording import ReceivedMessage
+from checks import OFFSETS, PENDING, must_count
 
-OFFSETS, PENDING = "/joint_offsets", "/calibrations_pending"
+from grader.checking import Run, check, fail
 
-#: In ns: how long a request may go unanswered, and by how much times may differ.
-GIVE_UP, TOLERANCE = 5_000_000_000, 150_000_001
 ASKS, OFFSET, COUNT = ["test_asks"], ["test_publishes_the_offset"], ["test_number_of_pending"]
 
 
@@ -21,28 +18,6 @@ def must_ask_in_time(run: Run, within: float, seconds: dict[str, float]) -> None
         if late > within + 1e-9:
             text = f"the request for {joint} was expected within {within:g} s, got it {late:.2f} s later."
             run.wrong_at(call.at, text, "", f"within {within:g} s", f"after {late:.2f} s")
-
-
-def must_count(run: Run) -> None:
-    """Fail unless each number on /calibrations_pending is right for the node's own requests, within 0.15 s.
-
-    A joint waits from its message until its request was answered, or for 5 s after it.
-    """
-    begins = [message.at_ns for message in run.sent]
-    ends = [min(call.answered or call.at + GIVE_UP, call.at + GIVE_UP) for call in run.calls(by="node")]
-
-    def waiting(at: int) -> int:
-        return sum(begin <= at for begin in begins) - sum(end <= at for end in ends)
-
-    def judge(message: ReceivedMessage) -> None:
-        first, last = message.at - TOLERANCE, message.at + TOLERANCE
-        right = {waiting(at) for at in (first, last, *(at for at in begins + ends if first <= at <= last))}
-        if message.fields["data"] not in right:
-            got, words = message.fields["data"], " or ".join(map(str, sorted(right)))
-            run.wrong_at(message.at, f"expected {words} on {PENDING}, got {got}.", "", words, got)
-
-    run.must_publish(PENDING)
-    each(run.messages_on(PENDING), judge)
 
 
 @check(

@@ -2,38 +2,12 @@
 
 from __future__ import annotations
 
+from checks import must_report_every_end
+
 from grader.checking import Run, check, fail
 from grader.recording.events import Goal
 
-OUTCOMES = "/outcomes"
-ENDS = ("succeeded", "canceled", "aborted")
 SENDS, OUTCOME = ["test_sends_a_goal"], ["test_publishes_the_outcome"]
-
-
-def must_report_every_end(run: Run) -> None:
-    """Fail unless each of the node's goals has its outcome, as it ended, within 0.3 s after its end."""
-    ended = []
-    for goal in run.goals(by="node"):
-        last = goal.states[-1] if goal.states else None
-        if goal.accepted is False:
-            ended.append(("rejected", goal.answered or goal.at))
-        elif last and last.state in ENDS:
-            ended.append((last.state, last.at))
-    published = run.messages_on(OUTCOMES)
-    pairs = [({"data": outcome}, m.fields) for (outcome, _), m in zip(ended, published, strict=False)]
-    for number, (outcome, at) in enumerate(ended, start=1):
-        if number > len(published):
-            run.wrong_at(at, f"expected {outcome} on {OUTCOMES}, got nothing.", f"goal {number}", outcome, "nothing")
-        message = published[number - 1]
-        run.compare_at(at, f"goal {number}", "data", message.fields, {"data": outcome}, 0.0, OUTCOMES, pairs)
-        late = (message.at - at) / 1_000_000_000
-        if abs(late) > 0.3:
-            text = f"the outcome was expected when the goal had ended, got it {abs(late):.2f} s "
-            text += "later." if late > 0 else "too early."
-            run.wrong_at(message.at, text, f"goal {number}", "when it had ended", f"{late:.2f} s later")
-    if len(published) > len(ended):
-        text = f"{len(ended)} goals have ended: expected {len(ended)} outcomes, got {len(published)}."
-        run.wrong_at(None, text, "", len(ended), len(published))
 
 
 def must_not_cancel(run: Run) -> None:

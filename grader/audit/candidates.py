@@ -135,7 +135,8 @@ def over_seed(trials: Trials, store: Store, seed: Seed, candidates: list[Candida
 
     def trial_of(candidate: Candidate) -> Trial:
         grading = trials.grading
-        runner = replace(grading.runner, scenarios=seed.scenarios)
+        options = replace(grading.runner.options, seed=seed.number)
+        runner = replace(grading.runner, scenarios=seed.scenarios, options=options)
         with_seed = replace(trials, grading=replace(grading, runner=runner, references=references()))
         if candidate is candidates[0]:
             return with_seed.trial_of_recordings(references())

@@ -21,6 +21,7 @@ from typing import Any
 
 from grader.audit.result import RecordingDifference, Trial
 from grader.checking.verdict import Finding
+from grader.exercise.modules import grading_files
 from grader.grading.grading import Grading
 from grader.grading.reference import GRADER, cache_folder, digest_of, solution_file, versions
 from grader.grading.scenario_runner import ScenarioRunner
@@ -127,7 +128,7 @@ class Store:
         self._folder = audit_folder(exercise.name)
         self._common = {
             "solution": digest_of([solution_file(exercise)]),
-            "exercise": digest_of([exercise.folder / "exercise.toml", *exercise.check_files]),
+            "exercise": digest_of(grading_files(exercise)),
             "scenarios": [scenario.digest for scenario in runner.scenarios],
             "engine": engine(JUDGING),
             "isolation": str(runner.isolation),

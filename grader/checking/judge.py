@@ -19,26 +19,35 @@ from grader.checking.plugin import Checks, ReportsWithoutTracebacks, fixtures_of
 from grader.checking.run import Run
 from grader.checking.verdict import Finding, Verdict
 from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.modules import importable
 from grader.recording.recording import Recording
 
 
 def judge(
-    exercise: Exercise, recordings: dict[str, Recording], references: dict[str, Recording], titles: dict[str, str]
+    exercise: Exercise,
+    recordings: dict[str, Recording],
+    references: dict[str, Recording],
+    titles: dict[str, str],
+    seed: int = 1,
 ) -> tuple[Verdict, ...]:
     """Return the verdict of every check, in the order of the files.
 
     `recordings` are the student's and `references` the solution's, by scenario. Raises `ExerciseError` if the files of
     checks are unusable. Runs pytest in this process, without the plugins that are installed on this machine.
     """
-    runs = runs_of(exercise, recordings, references, titles)
+    runs = runs_of(exercise, recordings, references, titles, seed)
     return judge_when_collected(exercise, runs, lambda: runs)
 
 
 def runs_of(
-    exercise: Exercise, recordings: dict[str, Recording], references: dict[str, Recording], titles: dict[str, str]
+    exercise: Exercise,
+    recordings: dict[str, Recording],
+    references: dict[str, Recording],
+    titles: dict[str, str],
+    seed: int = 1,
 ) -> dict[str, Run]:
     """Return what a check sees of each scenario."""
-    return {name: Run(exercise, recordings[name], references[name], titles.get(name, "")) for name in recordings}
+    return {name: Run(exercise, recordings[name], references[name], titles.get(name, ""), seed) for name in recordings}
 
 
 def judge_when_collected(
@@ -74,12 +83,13 @@ def run_pytest(exercise: Exercise, runs: Mapping[str, Run | None], checks: Check
     if not exercise.check_files:
         raise ExerciseError(exercise.folder / "checks.py", "there is no such file", "Write at least one check.")
     checks.scenarios = tuple(runs)
-    code = _session(
-        exercise.folder,
-        *("--import-mode=importlib", "-o", "python_files=*.py", "--capture=fd"),
-        *(str(file) for file in exercise.check_files),
-        plugins=[ReportsWithoutTracebacks(), checks, fixtures_of(runs)],
-    )
+    with importable(exercise.folder):
+        code = _session(
+            exercise.folder,
+            *("--import-mode=importlib", "-o", "python_files=*.py", "--capture=fd"),
+            *(str(file) for file in exercise.check_files),
+            plugins=[ReportsWithoutTracebacks(), checks, fixtures_of(runs)],
+        )
     if checks.problem:
         raise checks.problem
     if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import inspect
 import tempfile
-import traceback
 from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +18,7 @@ from grader.checking.ending_message import message_of
 from grader.checking.run import Run
 from grader.checking.verdict import CheckOptions, Finding, Verdict, Wrong, check_options
 from grader.exercise.exercise import ExerciseError
+from grader.exercise.modules import error_in
 
 #: Of a hint that says what to do: students don't read more.
 MOST_WORDS = 160
@@ -89,7 +89,11 @@ class Checks:
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Read every mark, and make sure that the checks can run in their order."""
+        """Read every mark, and make sure that the checks can run in their order.
+
+        A check that another file imports, such as to name it in `depends`, is not collected again.
+        """
+        items[:] = [item for item in items if _is_defined_here(item)]
         for item in items:
             try:
                 self._marks[item.name] = self._mark(item)
@@ -135,9 +139,7 @@ class Checks:
         """Report a file of checks that can't be imported: the author must fix it."""
         if isinstance(report, pytest.CollectReport) and call.excinfo and not self.problem:
             error = call.excinfo.value.__cause__ or call.excinfo.value
-            text = (str(error).strip().splitlines() or [""])[0]
-            problem = f"it can't be read: {type(error).__name__}: {text}"
-            self.problem = ExerciseError(node.path, problem, "It must import.", _line(error, node.path))
+            self.problem = error_in(error, node.path.parent, node.path, "it can't be read", "It must import.")
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, object, object]:
@@ -194,16 +196,11 @@ class Checks:
         return replace(verdict, status="error", error=_describe(error, item.path))
 
 
+def _is_defined_here(item: pytest.Item) -> bool:
+    function = getattr(item, "function", None)
+    return function is None or inspect.unwrap(function).__code__.co_filename == str(item.path)
+
+
 def _describe(error: BaseException, file: Path) -> str:
-    line = _line(error, file)
-    place = f"{file}:{line}" if line else f"{file}"
-    text = str(error).strip().splitlines()
-    return f"{place}: {type(error).__name__}: {text[0] if text else ''}"
-
-
-def _line(error: BaseException, file: Path) -> int | None:
-    """Return the last line of `file` that led to the error."""
-    if isinstance(error, SyntaxError) and error.filename == str(file):
-        return error.lineno
-    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(file)]
-    return lines[-1] if lines else None
+    problem = error_in(error, file.parent, file).problem
+    return f"{problem.place}: {problem.problem}"

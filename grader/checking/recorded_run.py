@@ -38,12 +38,16 @@ _SLEEPS = Cause(
 
 @dataclass(frozen=True, eq=False)
 class RecordedRun:
-    """One scenario: the student's recording and the solution's. `title` describes the scenario to students."""
+    """One scenario: the student's recording and the solution's. `title` describes the scenario to students.
+
+    `seed` is the one that `scenarios(seed)` got.
+    """
 
     exercise: Exercise
     recording: Recording
     reference: Recording
     title: str = ""
+    seed: int = 1
 
     @property
     def scenario(self) -> str:

@@ -20,6 +20,7 @@ from grader.classroom.deadline import Adjuster
 from grader.classroom.request import Backend, GradedSubmission
 from grader.classroom.submissions import StudentSubmission, Submissions
 from grader.exercise.exercise import Exercise
+from grader.exercise.modules import with_modules
 from grader.grading.grade import Entry, Grade, Student
 from grader.grading.grading import Grading
 from grader.grading.reference import digest_of, versions
@@ -196,7 +197,7 @@ def grade_key(grading: Grading) -> str:
     """
     runner = grading.runner
     exercise = runner.exercise
-    files: list[Path] = [exercise.folder / "task.md", *exercise.check_files]
+    files: list[Path] = [exercise.folder / "task.md", *with_modules(exercise.check_files)]
     if exercise.solution_file:
         files.append(exercise.solution_file)
     depends = {

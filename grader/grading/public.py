@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.modules import HIDDEN_FILES, see_that_students_have, with_modules
 from grader.grading.grade import Options
 from grader.grading.reference import reference
 from grader.grading.scenario_runner import ScenarioRunner
@@ -21,7 +22,7 @@ from grader.recording.recording import Recording, from_plain, plain
 from grader.sandbox.program import Isolation
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Message, Scenario
-from grader.scenario.store import HIDDEN_FILES, NotForStudents, code_in
+from grader.scenario.store import NotForStudents, code_in
 from grader.scenario.store import from_plain as from_plain_scenario
 from grader.scenario.store import plain as plain_scenario
 from grader.workers.jobs import ListJob
@@ -51,9 +52,10 @@ def public_part(exercise: Exercise, options: Options, isolation: Isolation, work
     """
     if exercise.solution_folder is None:
         return _read(exercise)
+    every = declared(exercise, options.seed)
     checks: tuple[Listed, ...] = workers.do(ListJob(replace(exercise, public_only=False)))
     used = {name for check in checks if not check.hidden for name in check.fixtures}
-    scenarios = tuple(scenario for scenario in declared(exercise, options.seed) if scenario.name in used)
+    scenarios = tuple(scenario for scenario in every if scenario.name in used)
     if not scenarios:
         problem = "no public check uses a scenario"
         raise ExerciseError(exercise.folder / "checks.py", problem, "Write one: students check their own work with it.")
@@ -75,10 +77,16 @@ def to_json(exercise: Exercise, public: PublicPart) -> str:
     return json.dumps(entries, cls=ArrayEncoder, ensure_ascii=False, separators=(",", ":")) + "\n"
 
 
-def modules_of(public: PublicPart) -> Iterator[Path]:
-    """Yield each of the author's files whose code the public scenarios need. `to_json` refuses hidden ones."""
-    files = {code.file for scenario in public.scenarios for code in code_in(scenario)}
-    yield from sorted(Path(file) for file in files if Path(file).name not in HIDDEN_FILES)
+def modules_of(exercise: Exercise, public: PublicPart) -> Iterator[Path]:
+    """Yield each of the author's files that the public checks and scenarios need, with what these import.
+
+    Raises `ExerciseError` if one imports a hidden file. `to_json` refuses a scenario that itself needs one.
+    """
+    codes = {Path(code.file) for scenario in public.scenarios for code in code_in(scenario)}
+    code_files = sorted(file for file in codes if file.name not in HIDDEN_FILES)
+    files = with_modules([exercise.folder / "checks.py", *code_files])
+    see_that_students_have(files)
+    yield from sorted(files)
 
 
 def _timeless(recording: Recording) -> Recording:

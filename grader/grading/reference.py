@@ -12,6 +12,7 @@ from importlib import metadata
 from pathlib import Path
 
 from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.modules import grading_files
 from grader.exercise.starter import MarkerError, starter
 from grader.grading.machine import machine_key
 from grader.grading.scenario_runner import ScenarioRunner
@@ -103,7 +104,7 @@ def reference_key(runner: ScenarioRunner) -> str:
     exercise = runner.exercise
     key = {
         "solution": digest_of([solution_file(exercise)]),
-        "exercise": digest_of([exercise.folder / "exercise.toml", *exercise.check_files]),
+        "exercise": digest_of(grading_files(exercise)),
         "scenarios": [scenario.digest for scenario in runner.scenarios],
         "versions": versions(),
         "interfaces": [prefix.name for prefix in activation.active()],

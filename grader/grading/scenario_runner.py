@@ -157,7 +157,7 @@ class ScenarioRunner:
     def judge(self, recordings: dict[str, Recording], references: dict[str, Recording]) -> tuple[Verdict, ...]:
         """Return the verdicts on a submission's recordings, by scenario. Raises `HostFault` when there are none."""
         titles = {scenario.name: scenario.title for scenario in self.scenarios}
-        return self.workers.judge(JudgeJob(self.exercise, recordings, references, titles))
+        return self.workers.judge(JudgeJob(self.exercise, recordings, references, titles, self.options.seed))
 
     def share(self, references: Iterable[Recording] = ()) -> None:
         """Give the worker what all jobs need. Call this once, before the first submission."""
@@ -208,7 +208,7 @@ class ScenarioRunner:
 def _companion(companion: Companion) -> ProgramSpec:
     return ProgramSpec(
         companion.file,
-        {companion.file: companion.text.encode()},
+        {name: text.encode() for name, text in {**companion.modules, companion.file: companion.text}.items()},
         (*companion.arguments, *ARGUMENTS),
         STUDENT_ENVIRONMENT,
     )

@@ -67,4 +67,4 @@ class RunningWorld:
         try:
             act()
         except Exception as error:
-            raise AuthorFault(f"the world {self._world.code.name}: {type(error).__name__}: {error}") from None
+            raise AuthorFault(f"the world {self._world.code.name}: {type(error).__name__}: {error}") from error

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from grader.exercise.exercise import ExerciseError
+from grader.exercise.modules import place_of
 from grader.recording.events import Call, Goal, ParameterChange, ParameterReading
 from grader.runner.action_clients import CancelStep, Goals
 from grader.runner.action_servers import ScriptedActionServer
@@ -118,10 +119,12 @@ class Script:
             took = [peer.react(now) for peer in self._servers.values()]
             return any([*took, self._goals.react(now), self._schedule.act(now)])
         except AuthorFault as error:
-            scenario = self._task.scenario
+            scenario, exercise = self._task.scenario, self._task.exercise
+            cause = error.__cause__ or error
+            place = place_of(cause, exercise.folder) or (exercise.scenarios_file, scenario.line or None)
             found = f"in the scenario {scenario.name}, {error}"
             fix = "Fix it: it runs inside the grader, and a student's node may send it anything that the type allows."
-            raise ExerciseError(self._task.exercise.scenarios_file, found, fix, scenario.line or None) from None
+            raise ExerciseError(place[0], found, fix, place[1]) from None
 
     # --- outcomes
 

@@ -23,7 +23,7 @@ MOST_CALLS, MOST_BYTES = 5_000, 8_000_000
 
 
 class AuthorFault(Exception):
-    """Raised if the author's code, which runs inside the grader, fails; the text names it."""
+    """Raised from the error if the author's code, which runs inside the grader, fails; the text names it."""
 
 
 @dataclass
@@ -110,7 +110,7 @@ class ServiceServer:
         except InvalidValue as error:
             raise AuthorFault(f"{self._place(answer, request)}: {error.problem}. {error.fix}") from None
         except Exception as error:
-            raise AuthorFault(f"{self._place(answer, request)}: {type(error).__name__}: {error}") from None
+            raise AuthorFault(f"{self._place(answer, request)}: {type(error).__name__}: {error}") from error
         return reply
 
     def _place(self, answer: Any, request: Any) -> str:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
 import importlib
-import importlib.util
 import inspect
 import sys
 from collections.abc import Callable
@@ -13,13 +11,15 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from grader.exercise.modules import digest_with_modules, imported
+
 
 @dataclass(frozen=True)
 class AuthorCode:
     """A function or a class called `name`, in `file`, or in a module of the grader's such as `grader.scenario.models`.
 
-    `digest` is the SHA-256 of the file's text. The code is stored by name, because it is sent to processes that have
-    not imported the file.
+    `digest` is the SHA-256 of the file's text and of the modules next to it that it imports. The code is stored by
+    name, because it is sent to processes that have not imported the file.
     """
 
     file: str
@@ -50,7 +50,7 @@ class AuthorCode:
         if self.is_the_graders:
             return self
         file = folder / Path(self.file).name
-        return AuthorCode(str(file), self.name, digest_of(file))
+        return AuthorCode(str(file), self.name, digest_with_modules(file))
 
 
 def code_of(given: Callable[..., Any]) -> AuthorCode:
@@ -61,22 +61,12 @@ def code_of(given: Callable[..., Any]) -> AuthorCode:
     if given.__module__.startswith("grader."):
         return AuthorCode(given.__module__, name)
     file = Path(inspect.getfile(given)).resolve()
-    return AuthorCode(str(file), name, digest_of(file))
-
-
-def digest_of(file: Path) -> str:
-    """Return the SHA-256 of a file's text."""
-    return hashlib.sha256(file.read_bytes()).hexdigest()
+    return AuthorCode(str(file), name, digest_with_modules(file))
 
 
 @lru_cache(maxsize=8)
 def _module(file: str, digest: str) -> Any:
-    spec = importlib.util.spec_from_file_location(f"author_{digest[:12]}", file)
-    assert spec
-    assert spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return imported(Path(file), f"author_{digest[:12]}")
 
 
 #: The file in which an author declares scenarios.

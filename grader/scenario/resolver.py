@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any, NoReturn, TypeVar
 
 from grader.exercise.exercise import Exercise, ExerciseError, ServiceOrAction
+from grader.exercise.modules import error_in, see_that_students_have, with_modules
 from grader.recording.recording import Fields
 from grader.recording.types import message_class
 from grader.scenario.scenario import (
@@ -32,6 +33,7 @@ from grader.scenario.scenario import (
 )
 from grader.scenario.servers import ActionServer, GoalScript, Reply, Server
 from grader.scenario.values import InvalidValue, checked_fields
+from grader.scenario.world import World
 from interface_compiler import prefixes
 
 _TYPE = re.compile(r"[a-z][a-z0-9_]*/(?P<kind>msg|srv|action)/[A-Z][A-Za-z0-9]*")
@@ -271,7 +273,15 @@ class Resolver:
         file = self._exercise.folder / given.file
         if not file.is_file():
             self._fault(0, f"there is no file {given.file} in the exercise's folder", "Write the companion there.")
-        return replace(given, text=file.read_text(encoding="utf-8"))
+        own, *modules = with_modules([file])
+        see_that_students_have([own, *modules])
+        texts = {module.name: module.read_text(encoding="utf-8") for module in modules}
+        return replace(given, text=own.read_text(encoding="utf-8"), modules=texts)
+
+    def _world_fault(self, world: World, error: Exception) -> NoReturn:
+        subject, fix = f"the world {world.code.name} fails", "It needs reads, publishes, hear(), step() and state()."
+        file, line = self._exercise.scenarios_file, world.line or self._scenario.line
+        raise error_in(error, self._exercise.folder, file, subject, fix, line) from None
 
     def _see_world(self) -> None:
         world = self._scenario.world
@@ -283,11 +293,13 @@ class Resolver:
             model.step(world.period)
             state = model.state()
         except Exception as error:
-            found = f"the world {world.code.name} fails: {type(error).__name__}: {error}"
-            self._fault(world.line, found, "It needs reads, publishes, hear(), step() and state().")
+            self._world_fault(world, error)
         for topic, type_name in topics.items():
             self._typed(Message(0, topic, type_name, {}, line=world.line), topic, "msg", None, "subscribe")
         for topic, fields in state.items():
+            if topic not in model.publishes:
+                fix = f"Its publishes has: {', '.join(model.publishes) or 'nothing'}."
+                self._fault(world.line, f"{world.code.name}.state() has {topic!r}", fix)
             kind = message_class(topics[topic])
             self._check(world.line, f"{world.code.name}.state() for {topic}", kind, fields, topics[topic])
 

@@ -151,12 +151,14 @@ class Program:
 class Companion:
     """A program of the author's that runs next to the student's: a file in the exercise's folder.
 
-    `text` is what is in the file; it is read together with the scenarios.
+    `text` is what is in the file, and `modules` the texts of the files next to it that it imports, by their names; both
+    are read together with the scenarios.
     """
 
     file: str
     arguments: tuple[str, ...] = ()
     text: str = field(default="", repr=False)
+    modules: dict[str, str] = field(default_factory=dict, repr=False)
 
 
 Content: TypeAlias = Message | Step

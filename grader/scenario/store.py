@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.exercise.exercise import Qos
+from grader.exercise.modules import HIDDEN_FILES
 from grader.scenario import scenario as steps
 from grader.scenario.code import AuthorCode
 from grader.scenario.scenario import Companion, Message, Program, Scenario
@@ -47,10 +48,6 @@ _CLASSES: dict[str, Any] = {
 
 class NotForStudents(ValueError):
     """Raised for a scenario that uses code from scenarios.py, which a student's copy does not have."""
-
-
-#: Files that no student gets. The code of a public scenario must be in another file of the exercise's folder.
-HIDDEN_FILES = ("scenarios.py", "hidden_checks.py")
 
 
 def code_in(value: Any) -> Iterator[AuthorCode]:

@@ -8,6 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
 from grader.exercise.exercise import Exercise
+from grader.exercise.modules import importable
 from grader.recording.recording import Recording
 from grader.runner.program import Task
 from grader.sandbox.program import Isolation, Limits, ProgramSpec
@@ -66,13 +67,14 @@ class RunJob:
             return fork_server.start(replace(program, hub=hub), self.isolation, self.limits, self.core)
 
         ready()
-        return run(
-            self._task,
-            partial(start, self.program),
-            HubLimits(data_bytes=self.data_bytes, cpu_s=self.hub_cpu_s),
-            {program.main: partial(start, program) for program in self.programs},
-            [partial(start, program) for program in self.companions],
-        )
+        with importable(self.exercise.folder):  # for what a world imports when it is used
+            return run(
+                self._task,
+                partial(start, self.program),
+                HubLimits(data_bytes=self.data_bytes, cpu_s=self.hub_cpu_s),
+                {program.main: partial(start, program) for program in self.programs},
+                [partial(start, program) for program in self.companions],
+            )
 
 
 @dataclass(frozen=True)
@@ -83,19 +85,20 @@ class JudgeJob:
     recordings: dict[str, Recording]
     references: dict[str, Recording]
     titles: dict[str, str]
+    seed: int = 1
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
         """Return the verdicts."""
         from grader.checking.judge import judge
 
         ready()
-        return judge(self.exercise, self.recordings, self.references, self.titles)
+        return judge(self.exercise, self.recordings, self.references, self.titles, self.seed)
 
     def runs(self) -> dict[str, Run]:
         """Return what is judged, for a process that has collected the checks."""
         from grader.checking.judge import runs_of
 
-        return runs_of(self.exercise, self.recordings, self.references, self.titles)
+        return runs_of(self.exercise, self.recordings, self.references, self.titles, self.seed)
 
 
 @dataclass(frozen=True)

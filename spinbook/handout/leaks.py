@@ -9,7 +9,6 @@ import re
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.mistakes import EDITS, mistakes_of
@@ -108,25 +107,19 @@ def public_code(exercise: Exercise) -> str:
 
 
 def authors_code(files: Mapping[str, bytes]) -> str:
-    """Return the author's code that runs in public scenarios, and so is in the students' copies of exercises.
+    """Return the author's code that public checks and scenarios need, and so is in the students' copies of exercises.
 
     `files` are those copies by their paths, such as `exercises/tank/public.json`.
     """
-    return "\n".join(text for name in files if name.endswith("/public.json") for text in _run_by(files, name))
+    modules = [content.decode() for name, content in files.items() if name.endswith(".py")]
+    companions = [text for name in files if name.endswith("/public.json") for text in _companions_of(files[name])]
+    return "\n".join(modules + companions)
 
 
-def _run_by(files: Mapping[str, bytes], name: str) -> Iterator[str]:
-    waiting: list[Any] = [json.loads(files[name])["scenarios"]]
-    while waiting:
-        value = waiting.pop()
-        if isinstance(value, dict):
-            waiting += value.values()
-            if value.get("is") == "Companion":
-                yield value["text"]
-            elif value.get("is") == "AuthorCode" and (code := files.get(name.replace("public.json", value["file"]))):
-                yield code.decode()
-        elif isinstance(value, list):
-            waiting += value
+def _companions_of(public: bytes) -> Iterator[str]:
+    for scenario in json.loads(public)["scenarios"]:
+        for companion in scenario.get("companions", ()):
+            yield from (companion["text"], *companion["modules"].values())
 
 
 def bare(text: str) -> str:

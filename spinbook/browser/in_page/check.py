@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import ast
 import json
-import sys
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -126,15 +125,7 @@ def verdicts(
     """Return the checks' verdicts."""
     from grader.checking.judge import judge
 
-    _forget_modules_of(_FOLDER)
     return judge(exercise, recordings, references, {scenario.name: scenario.title for scenario in scenarios})
-
-
-def _forget_modules_of(folder: Path) -> None:
-    """Forget these modules, so that the checks are imported again each time, as in a new process."""
-    for name, module in list(sys.modules.items()):
-        if (getattr(module, "__file__", None) or "").startswith(f"{folder}/"):
-            del sys.modules[name]
 
 
 @dataclass(frozen=True)

@@ -217,6 +217,22 @@ def test_a_world_in_a_file_of_its_own_is_in_a_students_copy_of_that_folder(tmp_p
     assert world.begin().state() == {"/in": {"data": 1.0}}
 
 
+def test_an_error_in_a_world_or_a_module_names_its_line_there(tmp_path: Path) -> None:
+    author = exercise_in(tmp_path, more="world=World(tank.Tank)")
+    (author / "scenarios.py").write_text(f"import tank\n{(author / 'scenarios.py').read_text()}")
+    for text, line, message in (
+        ("import json\njson[0]\n", 2, "TypeError"),
+        ("class Tank:\n reads = {}[1]", 2, "KeyError: 1"),
+        ("class Tank:\n reads = publishes = {}\n step = print\n def state(self):\n  return {'/in': {}}", None, "'/in'"),
+        ("class Tank:\n def __init__(self):\n  {}['x']\n", 3, "world Tank fails: KeyError: 'x'"),
+    ):
+        (author / "tank.py").write_text(text)
+        with pytest.raises(ExerciseError, match=message) as caught:
+            declared(load(author), seed=0)
+        problem = caught.value.problem
+        assert line is None or (problem.file.name, problem.line) == ("tank.py", line)
+
+
 def test_two_exercises_may_have_worlds_in_files_of_the_same_name(tmp_path: Path) -> None:
     levels = []
     for number in (1.0, 2.0):

@@ -1,4 +1,4 @@
-"""An author's own world is given to students if a public check needs it, and only then."""
+"""An author's own worlds and modules are given to students if a public check needs them, and only then."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.exercise import Exercise, load
+from grader.exercise import Exercise, ExerciseError, load
 from grader.grading import Options, grading_of
 from grader.submission.reader import of_source
 from grader.workers import WorkerPool
@@ -30,11 +30,17 @@ type = "std_msgs/msg/Float64"
 """
 
 TANK = """\
+from dataclasses import dataclass
+
+from tubes import Pipe
+
+
+@dataclass
 class Tank:
     reads, publishes = {"/valve": "std_msgs/msg/Float64"}, {"/level": "std_msgs/msg/Float64"}
 
     def __init__(self, level):
-        self.level, self.flow = level, 0.0
+        self.level, self.flow = level, Pipe().flow
 
     def hear(self, topic, message):
         self.flow = message.data
@@ -60,14 +66,28 @@ def scenarios(seed):
     )
 """
 
+#: A file next to the world, which imports it.
+TUBES = """\
+class Pipe:
+    flow = 0.0
+"""
+
 CHECK = """\
+from limits import must_fill
+
 from grader.checking import Run, check
 
 
 @check(points=2, hint="Open the valve.", rule="Keep the tank full.")
 def test_NAME(NAME: Run) -> None:
     \"\"\"It keeps the NAME full.\"\"\"
-    NAME.must_reach("/level", {"data": 2.0}, tolerance=0.3, within=1.9, stay=False)
+    must_fill(NAME)
+"""
+
+LIMITS = """\
+def must_fill(run):
+    assert run.seed == 1
+    run.must_reach("/level", {"data": 2.0}, tolerance=0.3, within=1.9, stay=False)
 """
 
 VALVE = """\
@@ -108,7 +128,10 @@ def exercise(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Exercise]:
         "exercises/valve/leaking.py": leaking,
         "exercises/valve/scenarios.py": SCENARIOS,
         "exercises/valve/checks.py": CHECK.replace("NAME", "tank"),
-        "exercises/valve/hidden_checks.py": CHECK.replace("NAME", "leak"),
+        "exercises/valve/hidden_checks.py": CHECK.replace("NAME", "leak").replace("from limits", "from checks"),
+        "exercises/valve/limits.py": LIMITS,
+        "exercises/valve/tubes.py": TUBES,
+        "exercises/valve/unused.py": "",
         "solutions/valve/solution.py": VALVE,
     }.items():
         (root / name).parent.mkdir(parents=True, exist_ok=True)
@@ -126,7 +149,8 @@ def copy(exercise: Exercise, workers: WorkerPool) -> dict[str, bytes]:
 
 def test_a_students_copy_has_the_world_of_a_public_check_and_no_other(copy: dict[str, bytes]) -> None:
     assert copy["tank.py"].decode() == TANK
-    assert "leaking.py" not in copy
+    assert (copy["tubes.py"].decode(), copy["limits.py"].decode()) == (TUBES, LIMITS)
+    assert not {"leaking.py", "unused.py", "scenarios.py", "hidden_checks.py"} & copy.keys()
     assert not [name for name, content in copy.items() if b"LeakingTank" in content or b"0.125" in content]
 
 
@@ -148,3 +172,42 @@ def test_a_line_of_a_world_that_stays_hidden_is_found_in_a_handout(exercise: Exe
     assert list(leaks(files, known)) == []
     line = "self.level = max(0.0, self.level + (self.flow - 0.25 - 0.125) * seconds)"
     assert [what for _, what in leaks({"chapter.md": line.encode()}, known)] == ["a line of leaking.py of valve"]
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "place", "message"),
+    [
+        ("limits.py", "def must", "import scenarios\n\n\ndef must", "limits.py:1", "imports scenarios.py, which"),
+        ("tank.py", "from tubes", "from queue", "tank.py:3", "queue.py has the name of an installed module"),
+        ("checks.py", "from limits", "from valve", "checks.py:1", "the file that students hand in"),
+        ("checks.py", "from limits", "from parts", "checks.py:1", "parts is a folder"),
+        ("limits.py", "    assert", "    open(__file__.replace('limits', 'scenarios'))\n    assert", "checks.py",
+         "in the students' copy, test_tank breaks: limits.py:2: FileNotFoundError"),
+    ],
+)  # fmt: skip
+def test_a_copy_that_lacks_something_is_not_written(
+    exercise: Exercise, workers: WorkerPool, file: str, old: str, new: str, place: str, message: str
+) -> None:
+    changed = exercise.folder / file
+    text = changed.read_text()
+    (exercise.folder / "parts").mkdir(exist_ok=True)
+    for name in ("queue", "valve"):
+        (exercise.folder / f"{name}.py").write_text("must_fill = print\nPipe = object\n")
+    changed.write_text(text.replace(old, new, 1))
+    try:
+        with pytest.raises(ExerciseError) as caught:
+            exercise_files(exercise, workers)
+    finally:
+        changed.write_text(text)
+    assert caught.value.problem.place.endswith(place), str(caught.value)
+    assert message in caught.value.problem.problem
+
+
+def test_a_students_own_file_is_not_imported_by_the_checks(
+    copy: dict[str, bytes], workers: WorkerPool, tmp_path: Path
+) -> None:
+    folder = tmp_path / "exercises" / "valve"
+    folder.mkdir(parents=True)
+    for name, content in {**copy, "dataclasses.py": b"1 / 0"}.items():
+        (folder / name).write_bytes(content)
+    assert grading_of(load(folder), Options(), workers).references
