@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 
+from grader.checking.patterns import common
 from grader.checking.recorded_run import RecordedRun, seconds
 from grader.recording.recording import ReceivedMessage, SentMessage
 from grader.scenario.times import SECOND, START
@@ -11,12 +13,21 @@ from ros_in_python.field_path import field_of
 
 Place = dict[str, float]
 
+#: Stands for a topic: what the world's truth() returned after each step.
+TRUTH = "truth"
+
 #: (seconds after the start, values of the fields) of each message, in order.
 Way = list[tuple[float, tuple[float, ...]]]
 
 
 def trajectory(run: RecordedRun, topic: str, *fields: str) -> Way:
-    """Return (seconds after the start, values of `fields`) of each message on `topic`, whichever node published it."""
+    """Return (seconds after the start, values of `fields`) of each message on `topic`, whichever node published it.
+
+    The topic "truth" stands for what the world's truth() returned.
+    """
+    if topic == TRUTH:
+        truth = run.recording.truth
+        return [(seconds(one.at), tuple(float(field_of(one.values, name)) for name in fields)) for one in truth]
     messages: list[SentMessage | ReceivedMessage] = [*run.recording.sent]
     messages += [message for message in run.recording.received if not message.subscriber]
     on_topic = sorted((message for message in messages if message.topic == topic), key=lambda message: message.at)
@@ -67,6 +78,31 @@ def must_stay_between(
         if at >= start - 1e-9 and not lowest - 1e-9 <= value <= highest + 1e-9:
             expected, got = f"{lowest:g} to {_measure(highest, unit)}", _measure(value, unit)
             run.wrong_at(_ns(at), f"expected {field} from {expected}, got {got}.", topic, expected, got)
+
+
+def must_estimate(run: RecordedRun, topic: str, fields: dict[str, str], rmse: float, start: float = 0.0) -> None:
+    """Check that the node's messages on `topic`, from `start` on (s), are close to what the world's truth() returned.
+
+    `fields` has the name of the true value for each field: `{"pose.position.x": "x"}`. `rmse` is the largest root of
+    the mean squared error that is allowed, in the fields' unit. A message is compared with the last step before it.
+    """
+    truth, times = run.recording.truth, [state.at for state in run.recording.truth]
+    messages = [m for m in run.messages_on(topic) if m.at >= _ns(start) and times and m.at >= times[0]]
+    if not messages:
+        run.wrong_at(None, f"expected messages on {topic}, got none from {start:g} s on.", "", "messages", "none")
+    pairs = [(truth[bisect_right(times, m.at) - 1].values, m.fields) for m in messages]
+    each = {
+        field: [(float(field_of(true, name)), float(field_of(got, field))) for true, got in pairs]
+        for field, name in fields.items()
+    }
+    error = math.sqrt(sum((t - g) ** 2 for values in each.values() for t, g in values) / len(messages))
+    if error <= rmse:
+        return
+    name, values = max(each.items(), key=lambda item: sum((t - g) ** 2 for t, g in item[1]))
+    unit = run.unit_of(name, topic)
+    expected, got = f"at most {_measure(rmse, unit)}", _measure(error, unit)
+    text = f"the root of the mean squared error of {', '.join(fields)} on {topic} is {got}; {expected} is allowed."
+    run.wrong_at(None, text, "", expected, got, common(values, name, unit))
 
 
 def _never_there(

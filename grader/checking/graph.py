@@ -8,6 +8,7 @@ from grader.checking.cause import UNKNOWN, Cause, as_cause
 from grader.checking.hint_texts import hints
 from grader.checking.recorded_run import RecordedRun
 from grader.checking.verdict import Finding, Wrong
+from grader.recording.events import ProgramStart
 from grader.recording.recording import Endpoint
 
 Kind = Literal["publisher", "subscription", "server", "client", "action server", "action client"]
@@ -84,6 +85,7 @@ def must_have_interface(run: RecordedRun, only: bool = False) -> None:
     """
     declared = [(_KINDS[topic.direction], topic.name, topic.type) for topic in run.exercise.topics]
     declared += [(_KINDS[end.role], end.name, end.type) for end in run.exercise.endpoints]
+    declared = [(kind, _in(run, kind, name, start), type_) for kind, name, type_ in declared for start in _starts(run)]
     for kind, name, type_ in declared:
         mine = end_points(run, kind, name)
         if not mine:
@@ -104,7 +106,9 @@ def must_have_qos(run: RecordedRun, topic: str = "", depth: bool = False) -> Non
         if topic not in ("", declared.name):
             continue
         expected = f"{declared.reliability} and {declared.durability}"
-        for end in end_points(run, _KINDS[declared.direction], declared.name):
+        kind = _KINDS[declared.direction]
+        names = {_in(run, kind, declared.name, start) for start in _starts(run)}
+        for end in [end for end in end_points(run, kind) if end.topic in names]:
             got = f"{end.reliability} and {end.durability}"
             if got != expected:
                 text = f"your {end.kind} on {end.topic} is {got}. Expected {expected}."
@@ -117,7 +121,9 @@ def must_have_qos(run: RecordedRun, topic: str = "", depth: bool = False) -> Non
 
 def must_have_nodes(run: RecordedRun) -> None:
     """Check that the program creates the node of exercise.toml (of each of its programs) and no other."""
-    names = [program.node for program in run.exercise.programs] or [run.exercise.node_name]
+    starts = run.recording.programs
+    names = [f"{one.namespace.strip('/')}/{one.node.lstrip('/')}" for one in starts]
+    names = names or [program.node for program in run.exercise.programs] or [run.exercise.node_name]
     expected = tuple(sorted(f"/{name.lstrip('/')}" for name in names))
     got, text = ", ".join(run.nodes) or "none", ""
     if lacking := [name for name in expected if name not in run.nodes]:
@@ -130,7 +136,7 @@ def must_have_nodes(run: RecordedRun) -> None:
 
 def must_publish_on_no_others(run: RecordedRun) -> None:
     """Check that the program publishes on no topics other than those of exercise.toml."""
-    declared = {topic.name for topic in run.exercise.outputs}
+    declared = {_in(run, "publisher", topic.name, start) for topic in run.exercise.outputs for start in _starts(run)}
     if others := sorted({end.topic for end in end_points(run, "publisher")} - declared):
         text = f"your node publishes on other topics, too. Expected none, got {', '.join(others)}."
         _wrong(text, "none", ", ".join(others), Cause("", *hints("other_topics")))
@@ -155,6 +161,16 @@ def must_survive(run: RecordedRun, program: str = "") -> None:
             how = f"with code {exit_.code}" if exit_.signal is None else f"by signal {exit_.signal}"
             text = f"{exit_.program} ended by itself, {how}, but must continue."
             run.wrong_at(exit_.at, text, "", "to go on", f"an end {how}")
+
+
+def _starts(run: RecordedRun) -> tuple[ProgramStart, ...]:
+    return run.recording.programs or (ProgramStart("", ""),)
+
+
+def _in(run: RecordedRun, kind: Kind, name: str, start: ProgramStart) -> str:
+    """Return what a declared name is for a program: in its namespace, unless the program gives it with a slash."""
+    absolute = start.resolved(name)
+    return absolute if end_points(run, kind, absolute) else start.resolved(f"{start.namespace}{name}")
 
 
 def _has_no_others(run: RecordedRun, declared: list[tuple[Kind, str]]) -> None:

@@ -62,6 +62,10 @@ def judge_when_collected(
     checks = Checks(before_the_first=lambda: runs.update(given()))
     run_pytest(exercise, runs, checks)
     topics = [topic.name for topic in exercise.topics] + [endpoint.name for endpoint in exercise.endpoints]
+    starts = {
+        (one.namespace, *one.remappings.values()) for run in runs.values() if run for one in run.recording.programs
+    }
+    topics += [f"{space}{name}" for space, *_ in starts for name in topics] + [name for _, *to in starts for name in to]
     node = f"/{exercise.node_name}"
     return tuple(with_spelling(verdict, topics, node) for verdict in checks.verdicts.values())
 

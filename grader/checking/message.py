@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from grader.recording.events import Truth
 from grader.recording.recording import ReceivedMessage, Recording, SentMessage
 from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import field_of
@@ -60,6 +61,15 @@ class Message(Part):
     def by(self, key: str, field: str) -> dict[str, Any]:
         """Return two lists as a dictionary: `by("name", "velocity")` gives each joint's velocity."""
         return dict(zip(self.value(key), self.value(field), strict=False))
+
+
+class WorldState(Part):
+    """What a world's truth() returned after a step, its values by name; `at` is when that was (s)."""
+
+    def __init__(self, truth: Truth) -> None:
+        super().__init__(truth.values)
+        self.at = (truth.at - START) / SECOND
+        self.at_ns = truth.at
 
 
 @dataclass(frozen=True)

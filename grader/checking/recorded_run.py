@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 from grader.checking.cause import UNKNOWN, Cause, as_cause
 from grader.checking.comparator import difference, shown
 from grader.checking.hint_texts import hints
-from grader.checking.message import Exchange, Message, exchanges
+from grader.checking.message import Exchange, Message, WorldState, exchanges
 from grader.checking.observed import observed
 from grader.checking.patterns import COMPUTER_CLOCK, common, other_text
 from grader.checking.verdict import Finding, Wrong
@@ -73,6 +73,11 @@ class RecordedRun:
     def received(self) -> list[Message]:
         """Return every message that the node published on the exercise's topics."""
         return [Message(received) for received in self.recording.received if not received.subscriber]
+
+    @cached_property
+    def truth(self) -> list[WorldState]:
+        """Return what the world's truth() returned after each step, with the student's node in the loop."""
+        return [WorldState(truth) for truth in self.recording.truth]
 
     @cached_property
     def exchanges(self) -> list[Exchange]:
@@ -193,13 +198,16 @@ class RecordedRun:
         return Cause(_WAITS.format(request=request, name=name, at=seconds(at)), *hints("do_not_wait"))
 
     def unit_of(self, field: str, name: str = "") -> str:
-        """Return the unit of a field in exercise.toml: of the topic, service or action `name`, or of any."""
+        """Return the unit of a field in exercise.toml: of the topic, service or action `name`, or of any.
+
+        A topic in a namespace has the units of the declared one.
+        """
         declared: list[Topic | ServiceOrAction] = [
             *self.exercise.outputs,
             *self.exercise.endpoints,
             *self.exercise.inputs,
         ]
-        return next((d.units[field] for d in declared if name in ("", d.name) and field in d.units), "")
+        return next((d.units[field] for d in declared if (not name or name.endswith(d.name)) and field in d.units), "")
 
     def messages_on(
         self, topic: str = "", reference: bool = False, subscriber: str = ""

@@ -68,6 +68,7 @@ class Run(RecordedRun):
     trajectory = closed_loops.trajectory
     must_reach = closed_loops.must_reach
     must_stay_between = closed_loops.must_stay_between
+    must_estimate = closed_loops.must_estimate
 
     end_points = graph.end_points
     publishers = graph.publishers

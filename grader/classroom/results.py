@@ -19,6 +19,7 @@ from typing import Any
 from grader.classroom.deadline import Adjuster
 from grader.classroom.request import Backend, GradedSubmission
 from grader.classroom.submissions import StudentSubmission, Submissions
+from grader.exercise.data_files import data_paths
 from grader.exercise.exercise import Exercise
 from grader.exercise.modules import with_modules
 from grader.grading.grade import Entry, Grade, Student
@@ -220,6 +221,7 @@ def _of_a_run(grading: Grading) -> dict[str, Any]:
     return {
         "scenarios": [scenario.digest for scenario in runner.scenarios],
         "versions": versions(),
+        "data": digest_of(data_paths(runner.exercise)),
         "seed": runner.options.seed,
         "pace": runner.options.pace,
         "limits": asdict(runner.options.limits),

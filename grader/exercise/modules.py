@@ -14,6 +14,7 @@ from importlib.machinery import PathFinder
 from pathlib import Path
 from types import ModuleType
 
+from grader.exercise.data_files import data_paths
 from grader.exercise.exercise import Exercise, ExerciseError
 
 #: Files that no student gets. What a public check or scenario needs must be in another file of the exercise's folder.
@@ -80,7 +81,7 @@ def with_modules(files: Iterable[Path]) -> tuple[Path, ...]:
 
 def grading_files(exercise: Exercise) -> list[Path]:
     """Return the files that decide a grade, besides the scenarios and the solution."""
-    return [exercise.folder / "exercise.toml", *with_modules(exercise.check_files)]
+    return [exercise.folder / "exercise.toml", *with_modules(exercise.check_files), *data_paths(exercise)]
 
 
 def digest_with_modules(file: Path) -> str:

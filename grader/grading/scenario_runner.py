@@ -16,7 +16,7 @@ from grader.exercise.exercise import Exercise
 from grader.grading.grade import Options
 from grader.recording.recording import Recording, not_run_because
 from grader.sandbox.program import Isolation, ProgramSpec
-from grader.scenario.command_line import ARGUMENTS, arguments
+from grader.scenario.command_line import ARGUMENTS, arguments, programs_of
 from grader.scenario.scenario import Companion, Scenario
 from grader.submission.reader import Submission
 from grader.workers.jobs import JudgeJob, RunJob
@@ -182,11 +182,11 @@ class ScenarioRunner:
             environment={**STUDENT_ENVIRONMENT, **submission.program.environment},
             hidden=self._hidden,
         )
-        own = {program.file: program.arguments for program in scenario.programs}
-        programs = tuple(
-            replace(program, main=part.file, arguments=(*own.get(part.file, ()), *program.arguments))
-            for part in self.exercise.programs
-        )
+        main = "" if self.exercise.programs else program.main
+        programs = {
+            one.id: replace(program, main=main or one.file, arguments=arguments(scenario, one))
+            for one in programs_of(self.exercise, scenario)
+        }
         cores = sorted(os.sched_getaffinity(0))
         return RunJob(
             exercise=self.exercise,

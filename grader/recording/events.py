@@ -128,6 +128,31 @@ class ProgramExit:
 
 
 @dataclass(frozen=True)
+class ProgramStart:
+    """A program as the scenario starts it: its name, the node that it is to create, its namespace and remappings.
+
+    `remappings` are from full name to full name.
+    """
+
+    name: str
+    node: str
+    namespace: str = ""
+    remappings: dict[str, str] = field(default_factory=dict)
+
+    def resolved(self, name: str) -> str:
+        """Return what the full `name` that a program gives becomes."""
+        return self.remappings.get(name, name)
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What a world's truth() returned after a step: nothing of it reaches the student's program."""
+
+    at: int
+    values: Fields
+
+
+@dataclass(frozen=True)
 class Event:
     """One entry of a timeline: `what` happened at `at`; `item` is the record that it belongs to."""
 

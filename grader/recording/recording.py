@@ -10,7 +10,17 @@ from typing import Any, Literal
 
 from grader.recording import events
 from grader.recording.arrays import ArrayEncoder, LongArray, read_arrays
-from grader.recording.events import Call, Event, Fields, Goal, ParameterChange, ParameterReading, ProgramExit
+from grader.recording.events import (
+    Call,
+    Event,
+    Fields,
+    Goal,
+    ParameterChange,
+    ParameterReading,
+    ProgramExit,
+    ProgramStart,
+    Truth,
+)
 
 __all__ = ["Ending", "Endpoint", "Fields", "ReceivedMessage", "Recording", "RunOutcome", "SentMessage"]
 
@@ -114,6 +124,8 @@ class Recording:
     parameters: tuple[ParameterChange, ...] = ()
     readings: tuple[ParameterReading, ...] = ()
     exits: tuple[ProgramExit, ...] = ()
+    programs: tuple[ProgramStart, ...] = ()
+    truth: tuple[Truth, ...] = ()
 
     @property
     def timeline(self) -> tuple[Event, ...]:
@@ -157,6 +169,8 @@ _TUPLES_OF = {
     "parameters": events.ParameterChange,
     "readings": events.ParameterReading,
     "exits": events.ProgramExit,
+    "programs": events.ProgramStart,
+    "truth": events.Truth,
 }
 
 
@@ -213,7 +227,7 @@ def _recording(entries: dict[str, Any]) -> Recording:
             **entries,
             "nodes": tuple(entries["nodes"]),
             "ending": Ending(**entries["ending"]),
-            **{name: tuple(kind(**one) for one in entries[name]) for name, kind in _TUPLES_OF.items()},
+            **{name: tuple(kind(**one) for one in entries.get(name, ())) for name, kind in _TUPLES_OF.items()},
             "goals": tuple(_goal(goal) for goal in entries["goals"]),
         }
     )

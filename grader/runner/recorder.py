@@ -13,6 +13,7 @@ from grader.runner.grader_side import ACCEPT_ANY, Clocks
 from grader.runner.message import message_class
 from grader.runner.message_order import in_canonical_order, place_of, unordered_sources, without_order
 from grader.runner.program import CannotContinue, Task
+from grader.scenario.command_line import starts
 from rmw_lockstep.hub import DeliveredMessage, HubNode, HubSubscription, QosPolicies
 
 #: No exercise needs more than this from a node in one scenario.
@@ -21,16 +22,11 @@ MOST_MESSAGES = 5_000
 
 def recorded_topics(task: Task) -> tuple[tuple[str, str], ...]:
     """Return names and types of the topics to record, with those that a remapping or a namespace adds."""
-    namespace, found = task.scenario.namespace.rstrip("/"), {}
-
-    def full(name: str) -> str:
-        return name if name.startswith("/") else f"{namespace}/{name}"
-
-    remappings = {full(name): full(to) for name, to in task.scenario.remappings.items()}
-    for topic in task.exercise.outputs:
-        for name in (topic.name, f"{namespace}{topic.name}"):
-            found[name] = topic.type
-            found[remappings.get(name, name)] = topic.type
+    found = {topic.name: topic.type for topic in task.exercise.outputs}
+    for start in starts(task.exercise, task.scenario):
+        for topic in task.exercise.outputs:
+            for name in (topic.name, f"{start.namespace}{topic.name}"):
+                found[name] = found[start.resolved(name)] = topic.type
     return tuple(found.items())
 
 

@@ -24,6 +24,7 @@ from grader.runner.readiness import Parameters, wait_until_up
 from grader.runner.recorder import Recorder, recorded_topics
 from grader.runner.script import Script
 from grader.runner.team import Start, Team
+from grader.scenario.command_line import starts
 from grader.scenario.scenario import SECOND, START, Content, Message
 from rmw_lockstep.hub import Hub, HubLimits, Violation
 
@@ -113,10 +114,15 @@ class ScenarioRun:
         return self._team is not None and self._team.is_companions(process)
 
     def _remember_end_points(self) -> None:
-        """Remember the endpoints before a crash, because a program that crashes may have removed some by its end."""
+        """Remember endpoints and nodes before a program ends, because they may be gone by its end."""
         found = end_points(self._hub.graph, self._is_ours)
         if len(found) >= len(self._end_points):
             self._end_points = found
+        if self._team and self._is_up:
+            self._remember_nodes()
+
+    def _remember_nodes(self) -> None:
+        self._nodes = tuple(sorted({*self._nodes, *nodes(self._hub.graph, self._is_ours)}))
 
     def run(self, began: float) -> Recording:
         """Do the whole run, from the program's start to its end."""
@@ -148,6 +154,8 @@ class ScenarioRun:
             "parameters": script.changes(),
             "readings": script.readings(),
             "exits": tuple(self._team.exits) if self._team else (),
+            "programs": starts(self._task.exercise, self._task.scenario),
+            "truth": script.truth(),
         }
 
     def _ending(self) -> Ending:
@@ -253,7 +261,7 @@ class ScenarioRun:
                 self._do(content.popleft(), script)
             self._settle(script)
         self._end_points = self._all_end_points()
-        self._nodes = tuple(sorted({*self._nodes, *nodes(self._hub.graph, self._is_ours)}))
+        self._remember_nodes()
         if not scenario.servers:
             self._check_that_it_still_answers()
 

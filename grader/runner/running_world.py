@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from functools import partial
 
+from grader.recording.events import Truth
 from grader.runner.cdr import deserialized
 from grader.runner.grader_side import ACCEPT_ANY, GraderSide, Schedule, nanoseconds
 from grader.runner.message import message_class
@@ -29,6 +31,7 @@ class RunningWorld:
         self._period = nanoseconds(world.period)
         self._topics = tuple(self._model.reads.items())
         self._heard: list[tuple[int, DeliveredMessage]] = []
+        self.truth: list[Truth] = []
         for number, (topic, type_name) in enumerate(self._topics):
             ends.node.subscription(topic, type_name, ACCEPT_ANY, partial(self._keep, number))
         for topic, type_name in self._model.publishes.items():
@@ -46,6 +49,8 @@ class RunningWorld:
             message = deserialized(one.cdr, message_class(type_name))
             self._ask(partial(self._model.hear, topic, message))
         self._ask(partial(self._model.step, self._world.period))
+        if truth := getattr(self._model, "truth", None):
+            self._ask(lambda: self.truth.append(Truth(now, json.loads(json.dumps(truth())))))
         for topic, fields in self._state().items():
             self._publish(Message(now, topic, self._model.publishes[topic], fields))
         self._schedule.plan(now + self._period, self._step)

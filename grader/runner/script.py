@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.modules import place_of
-from grader.recording.events import Call, Goal, ParameterChange, ParameterReading
+from grader.recording.events import Call, Goal, ParameterChange, ParameterReading, Truth
 from grader.runner.action_clients import CancelStep, Goals
 from grader.runner.action_servers import ScriptedActionServer
 from grader.runner.calls import Calls, CallStep
@@ -66,9 +66,9 @@ class Script:
         team = self._team
         assert team
         if one.starts > 0:
-            self._schedule.plan(START + nanoseconds(one.starts), lambda now: team.start(one.file))
+            self._schedule.plan(START + nanoseconds(one.starts), lambda now: team.start(one.id))
         if one.killed is not None:
-            self._schedule.plan(START + nanoseconds(one.killed), lambda now: team.stop(one.file, now))
+            self._schedule.plan(START + nanoseconds(one.killed), lambda now: team.stop(one.id, now))
 
     def _add(self, declared: DeclaredServer | ActionServer) -> None:
         peer: Peer
@@ -141,6 +141,10 @@ class Script:
         for peer in self._servers.values():
             found += peer.goals() if isinstance(peer, ScriptedActionServer) else ()
         return tuple(found)
+
+    def truth(self) -> tuple[Truth, ...]:
+        """Return what the world's truth() returned after each step."""
+        return tuple(self._world.truth) if self._world else ()
 
     def changes(self) -> tuple[ParameterChange, ...]:
         """Return the parameters that were set."""

@@ -38,7 +38,7 @@ class Team:
         self.ended = ""
         """The program that ended by itself."""
         self.exits: list[ProgramExit] = []
-        later = {one.file for one in scenario.programs if one.starts > 0}
+        later = {one.id for one in scenario.programs if one.starts > 0}
         self._companions = [start(hub.add_program()) for start in companions]
         for name in programs:
             if name not in later:

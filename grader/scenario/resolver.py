@@ -12,6 +12,7 @@ from grader.exercise.exercise import Exercise, ExerciseError, ServiceOrAction
 from grader.exercise.modules import error_in, see_that_students_have, with_modules
 from grader.recording.recording import Fields
 from grader.recording.types import message_class
+from grader.scenario.command_line import programs_of
 from grader.scenario.scenario import (
     SECOND,
     START,
@@ -64,6 +65,7 @@ class Resolver:
         self._timing()
         self._within_its_end()
         self._parameters()
+        self._see_programs()
         found = replace(
             given,
             messages=tuple(self._message(message) for message in given.messages),
@@ -103,7 +105,7 @@ class Resolver:
             if step.at > end:
                 self._too_late(getattr(step, "line", 0), "a step", (step.at - START) / SECOND)
         for program in scenario.programs:
-            self._check_times(0, program.file, starts=program.starts, killed=program.killed)
+            self._check_times(0, program.id, starts=program.starts, killed=program.killed)
         for server in scenario.servers:
             name = server.service if isinstance(server, Server) else server.action
             self._check_times(server.line, name, appears=server.appears, gone=server.gone, back=server.back)
@@ -119,7 +121,8 @@ class Resolver:
         self._fault(line, found, "Give it a longer duration, or an earlier step.")
 
     def _parameters(self) -> None:
-        for name, value in self._scenario.parameters.items():
+        programs = [entry for one in self._scenario.programs for entry in one.parameters.items()]
+        for name, value in [*self._scenario.parameters.items(), *programs]:
             if not isinstance(value, (bool, int, float, str, list, tuple)):
                 found = f"the parameter {name} is {type(value).__name__}"
                 self._fault(0, found, "Give a number, a text, a bool or a list of these.")
@@ -211,10 +214,21 @@ class Resolver:
             self._fault(step.line, found, "Goals count from 1, in the order in which they are sent.")
 
     def _see_program(self, step: Kill | StartProgram) -> None:
-        known = [one.file for one in self._exercise.programs]
+        known = [one.id for one in programs_of(self._exercise, self._scenario)]
         if step.program not in known:
             fix = f"There are: {', '.join(known)}." if known else "Declare each program in exercise.toml: [[program]]."
             self._fault(step.line, f"there is no program {step.program!r}", fix)
+
+    def _see_programs(self) -> None:
+        files = [part.file for part in self._exercise.programs] or [self._exercise.file_name]
+        names: list[str] = []
+        for one in self._scenario.programs:
+            if one.file not in files:
+                self._fault(0, f"there is no program {one.file!r}", f"There are: {', '.join(files)}.")
+            if one.id in names:
+                fix = 'Give each its own name, such as Program("robot.py", name="left", namespace="/left").'
+                self._fault(0, f"two programs are called {one.id!r}", fix)
+            names.append(one.id)
 
     def _see_peer(self, step: Leave | ComeBack) -> None:
         known = [message.topic for message in self._scenario.messages]

@@ -139,12 +139,25 @@ class StartProgram(Step):
 
 @dataclass(frozen=True)
 class Program:
-    """One of a submission's several programs, by its file: when it starts and when it is killed (s after the start)."""
+    """One of a submission's programs, by its file: when it starts and when it is killed (s after the start).
+
+    The same file can run several times, each time with its own `name`. `namespace`, `remappings` and `parameters` are
+    for this program alone; without them, it gets those of the scenario.
+    """
 
     file: str
     starts: float = 0.0
     killed: float | None = None
     arguments: tuple[str, ...] = ()
+    name: str = ""
+    namespace: str = ""
+    remappings: dict[str, str] = field(default_factory=dict)
+    parameters: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def id(self) -> str:
+        """The name by which steps and recordings call it: its own, or its file's."""
+        return self.name or self.file
 
 
 @dataclass(frozen=True)

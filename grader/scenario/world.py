@@ -1,7 +1,8 @@
 """Worlds: small models that read a program's commands and publish the state, stepped in simulated time.
 
 A model is a class with `reads` and `publishes` (topic to type), `hear(topic, message)`, `step(seconds)` and `state()`,
-which returns a message's fields for each topic to publish now. It runs inside the grader.
+which returns a message's fields for each topic to publish now. It runs inside the grader. If it also has `truth()`,
+which returns a dictionary, checks see what that returned after each step, and students' programs never do.
 """
 
 from __future__ import annotations

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
+from grader.exercise.data_files import data_files
 from grader.exercise.exercise import Exercise
 from grader.exercise.modules import importable
 from grader.recording.recording import Recording
@@ -47,15 +48,16 @@ class RunJob:
     """What the program may publish in all messages together."""
     hub_cpu_s: float = 5.0
     """What reading all that it sends may cost the grader."""
-    programs: tuple[ProgramSpec, ...] = ()
-    """The programs of a submission with several, instead of `program`."""
+    programs: Mapping[str, ProgramSpec] = field(default_factory=dict)
+    """The programs of a scenario with several, by their names, instead of `program`."""
     companions: tuple[ProgramSpec, ...] = ()
     """The author's own programs."""
 
     @property
     def _task(self) -> Task:
-        texts = {name: data.decode(errors="replace") for name, data in self.program.files.items()}
-        files = {name: text for name, text in texts.items() if name.endswith(".py") and not is_launcher(text)}
+        python = {name: data for name, data in self.program.files.items() if name.endswith(".py")}
+        texts = {name: data.decode(errors="replace") for name, data in python.items()}
+        files = {name: text for name, text in texts.items() if not is_launcher(text)}
         return Task(self.exercise, self.scenario, self.file_name, self.source, self.pace, files)
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Recording:
@@ -63,8 +65,11 @@ class RunJob:
         from grader.runner.run import run
         from rmw_lockstep.hub import HubLimits
 
+        data = data_files(self.exercise)
+
         def start(program: ProgramSpec, hub: int) -> SandboxedProgram:
-            return fork_server.start(replace(program, hub=hub), self.isolation, self.limits, self.core)
+            with_data = replace(program, hub=hub, files={**program.files, **data})
+            return fork_server.start(with_data, self.isolation, self.limits, self.core)
 
         ready()
         with importable(self.exercise.folder):  # for what a world imports when it is used
@@ -72,7 +77,7 @@ class RunJob:
                 self._task,
                 partial(start, self.program),
                 HubLimits(data_bytes=self.data_bytes, cpu_s=self.hub_cpu_s),
-                {program.main: partial(start, program) for program in self.programs},
+                {name: partial(start, program) for name, program in self.programs.items()},
                 [partial(start, program) for program in self.companions],
             )
 

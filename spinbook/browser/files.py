@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from grader.exercise.data_files import DATA
 from grader.exercise.exercise import Exercise
 from grader.submission.code import STARTER
 from grader.workers.pool import WorkerPool
@@ -115,6 +116,8 @@ def public_parts(exercises: Iterable[Exercise]) -> dict[str, bytes]:
             copy = exercise_files(exercise, workers)
             needed = [name for name in copy if name in _NEEDED or _is_code(name, exercise)]
             files |= {f"exercises/{exercise.name}/{name}": copy[name] for name in needed}
+            if any(name.startswith(f"{DATA}/") for name in copy):
+                files[f"exercises/{exercise.name}/{DATA}"] = b"Its files stay in the handout."
             # The grader ignores code that equals the starter, so it has to know the starter.
             files[f"exercises/{exercise.name}/{STARTER}"] = copy[exercise.file_name]
     return files

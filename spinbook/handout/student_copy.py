@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
+from grader.exercise.data_files import data_files
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from grader.exercise.modules import error_in
@@ -41,6 +42,7 @@ def exercise_files(exercise: Exercise, workers: WorkerPool) -> dict[str, bytes]:
         exercise.public_file.name: to_json(exercise, public).encode(),
         **{file.name: file.read_bytes() for file in modules_of(exercise, public)},
         exercise.file_name: starter(solution.read_text(encoding="utf-8")).encode(),
+        **data_files(exercise),
         **{str(name): (exercise.folder / name).read_bytes() for name in _pictures(exercise)},
     }
     _try(exercise, files, workers)
