@@ -53,13 +53,18 @@ _NO_FEEDBACK = Cause("Your node never publishes feedback.", *hints("no_feedback"
 def goals(run: RecordedRun, action: str = "", by: By = "grader") -> tuple[Goal, ...]:
     """Return the scenario's goals for the student's server, in order; with `by="node"`, those of the student's
     client.
+
+    Example: `run.goals("/count")[0].status`
     """
     name = action or run.only("action" if by == "grader" else "action_client")
     return tuple(goal for goal in run.recording.goals if goal.action == name and goal.by == by)
 
 
 def scenario_goal(run: RecordedRun, number: int) -> Goal:
-    """Return the scenario's goal with this number. Raises ValueError if it sends no such goal."""
+    """Return the scenario's goal with this number. Raises ValueError if it sends no such goal.
+
+    Example: `run.goal(1).feedback[0].fields["sequence"]`
+    """
     for goal in run.recording.goals:
         if goal.number == number and goal.by == "grader":
             return goal
@@ -67,12 +72,18 @@ def scenario_goal(run: RecordedRun, number: int) -> Goal:
 
 
 def must_accept(run: RecordedRun, goal: int = 1) -> None:
-    """Check that the node accepts this goal."""
+    """Check that the node accepts this goal.
+
+    Example: `run.must_accept(1)`
+    """
     _must_answer(run, scenario_goal(run, goal), accepted=True)
 
 
 def must_reject(run: RecordedRun, goal: int = 1) -> None:
-    """Check that the node rejects this goal."""
+    """Check that the node rejects this goal.
+
+    Example: `run.must_reject(2)`
+    """
     _must_answer(run, scenario_goal(run, goal), accepted=False)
 
 
@@ -80,6 +91,8 @@ def must_go_through(run: RecordedRun, *states: str, goal: int = 1) -> None:
     """Check that the goal goes through exactly these states, such as "accepted", "executing", "succeeded".
 
     The default is the states of the solution's goal.
+
+    Example: `run.must_go_through("accepted", "executing", "succeeded", goal=1)`
     """
     student = scenario_goal(run, goal)
     expected = states or tuple(state.state for state in _solutions(run, goal).states)
@@ -92,7 +105,10 @@ def must_go_through(run: RecordedRun, *states: str, goal: int = 1) -> None:
 
 
 def must_end(run: RecordedRun, status: str, goal: int = 1, within: float | None = None) -> None:
-    """Check that the goal ends as "succeeded", "canceled" or "aborted", within this many seconds after it was sent."""
+    """Check that the goal ends as "succeeded", "canceled" or "aborted", within this many seconds after it was sent.
+
+    Example: `run.must_end("succeeded", goal=1, within=2.5)`
+    """
     student = scenario_goal(run, goal)
     _must_answer(run, student, accepted=True)
     if (got := _ended_as(student)) != status:
@@ -115,6 +131,8 @@ def must_cancel(run: RecordedRun, goal: int = 1, within: float = 1.0) -> None:
     """Check that the node accepts the scenario's first request to cancel this goal, and ends the goal as "canceled".
 
     Both must happen within this many seconds of simulated time, and the node must send no feedback after that.
+
+    Example: `run.must_cancel(3, within=0.5)`
     """
     student = scenario_goal(run, goal)
     _must_answer(run, student, accepted=True)
@@ -135,7 +153,10 @@ def must_cancel(run: RecordedRun, goal: int = 1, within: float = 1.0) -> None:
 
 
 def must_match_results(run: RecordedRun, field: str = "", action: str = "", tolerance: float = TOLERANCE) -> None:
-    """Check that each goal's result has the same `field` as with the solution. By default every field counts."""
+    """Check that each goal's result has the same `field` as with the solution. By default every field counts.
+
+    Example: `run.must_match_results("sequence")`
+    """
 
     def result(goal: Goal) -> dict[str, Any] | None:
         return goal.result
@@ -152,6 +173,8 @@ def must_match_feedback(
     """Check that the goal's feedback matches the solution's, message by message.
 
     With `time`, each message must also come within this many seconds of the solution's.
+
+    Example: `run.must_match_feedback("sequence", goal=1, time=0.05)`
     """
     student, reference = scenario_goal(run, goal), _solutions(run, goal)
     _must_answer(run, student, accepted=True)
@@ -179,6 +202,8 @@ def must_match_goals(
     """Check that the node, a client, sends as many goals as the solution, with the same `field`.
 
     With `time`, each must be sent within this many seconds of the solution's.
+
+    Example: `run.must_match_goals("order", "/climb", time=0.1)`
     """
     name = action or run.only("action_client")
     got, expected = len(goals(run, name, by="node")), len(_reference_goals(run, name, "node"))
@@ -200,7 +225,10 @@ def must_match_goals(
 
 
 def must_ask_only_for_accepted(run: RecordedRun, action: str = "") -> None:
-    """Check that the node, a client, does not ask for the result of a goal that was rejected."""
+    """Check that the node, a client, does not ask for the result of a goal that was rejected.
+
+    Example: `run.must_ask_only_for_accepted("/climb")`
+    """
     for student in goals(run, action, by="node"):
         if student.accepted is False and student.asked_result is not None:
             text = "it was rejected, but your node asked for its result. Check goal_handle.accepted."

@@ -32,6 +32,8 @@ def must_match(
     `per` names the list of names that `field` goes with, so that the order does not count: `must_match("velocity",
     per="name")`. Numbers may differ by `tolerance`, absolute or relative, whichever is larger. With `missing_ok`,
     missing answers are ignored, because another check judges them.
+
+    Example: `run.must_match("data", tolerance=0.01)`
     """
     unit = _unit(run, field)
 
@@ -65,7 +67,10 @@ def _unit(run: RecordedRun, field: str) -> str:
 
 
 def must_answer(run: RecordedRun) -> None:
-    """Check that the node answers every message that the solution answers, once."""
+    """Check that the node answers every message that the solution answers, once.
+
+    Example: `run.must_answer()`
+    """
 
     def answered_once(exchange: Exchange) -> None:
         _answer(run, exchange)
@@ -80,6 +85,8 @@ def must_answer_at_once(run: RecordedRun, within: float = AT_ONCE) -> None:
     """Check that each answer comes before the next message, and within this many seconds of simulated time.
 
     Missing answers are ignored, because another check judges them.
+
+    Example: `run.must_answer_at_once(within=0.02)`
     """
 
     def in_time(exchange: Exchange) -> None:
@@ -96,6 +103,8 @@ def must_vary(run: RecordedRun, field: str, per: str = "") -> None:
     """Check that the node's `field` changes from message to message if the solution's does.
 
     A node that publishes zeros or a constant fails; one with wrong values does not. `per` is as in `must_match`.
+
+    Example: `run.must_vary("data")`
     """
     expected, got = _series(run, field, per, reference=True), _series(run, field, per, reference=False)
     varying = {name: values for name, values in expected.items() if len(set(values)) > 1}
@@ -132,12 +141,17 @@ def _series(run: RecordedRun, field: str, per: str, reference: bool) -> dict[str
 def must_be_silent(run: RecordedRun) -> None:
     """Check that the node does not answer messages that the solution does not answer. The first message does not
     count.
+
+    Example: `run.must_be_silent()`
     """
     _must_be_silent(run, run.exchanges[1:])
 
 
 def must_be_silent_at_first(run: RecordedRun) -> None:
-    """Check that the node does not answer the very first message, if the solution does not."""
+    """Check that the node does not answer the very first message, if the solution does not.
+
+    Example: `run.must_be_silent_at_first()`
+    """
     _must_be_silent(run, run.exchanges[:1])
 
 

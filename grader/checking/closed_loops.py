@@ -24,6 +24,8 @@ def trajectory(run: RecordedRun, topic: str, *fields: str) -> Way:
     """Return (seconds after the start, values of `fields`) of each message on `topic`, whichever node published it.
 
     The topic "truth" stands for what the world's truth() returned.
+
+    Example: `run.trajectory("/in", "data")[-1]`
     """
     if topic == TRUTH:
         truth = run.recording.truth
@@ -51,6 +53,8 @@ def must_reach(
     `place` has a value for each field that counts: `{"x": 9.0, "y": 2.0}`. With `overshoot`, it must not go further
     than that beyond the place, as seen from its position at `start`. Unless `stay` is False, it must not leave the
     place again.
+
+    Example: `run.must_reach("truth", {"level": 1.0}, tolerance=0.1, within=1.5)`
     """
     way = [(at, point) for at, point in trajectory(run, topic, *place) if at >= start - 1e-9]
     goal, unit = tuple(place.values()), run.unit_of(next(iter(place)), topic)
@@ -72,6 +76,8 @@ def must_stay_between(
 ) -> None:
     """Check that each value of `field` on `topic`, from `start` on (s), is between these two, whichever node
     published it.
+
+    Example: `run.must_stay_between("/out", "data", 0.0, 2.0)`
     """
     unit = run.unit_of(field, topic)
     for at, (value,) in trajectory(run, topic, field):
@@ -85,9 +91,11 @@ def must_estimate(run: RecordedRun, topic: str, fields: dict[str, str], rmse: fl
 
     `fields` has the name of the true value for each field: `{"pose.position.x": "x"}`. `rmse` is the largest root of
     the mean squared error that is allowed, in the fields' unit. A message is compared with the last step before it.
+
+    Example: `run.must_estimate("/out", {"data": "level"}, rmse=0.2)`
     """
     truth, times = run.recording.truth, [state.at for state in run.recording.truth]
-    messages = [m for m in run.messages_on(topic) if m.at >= _ns(start) and times and m.at >= times[0]]
+    messages = [m for m in run.published_on(topic) if m.at >= _ns(start) and times and m.at >= times[0]]
     if not messages:
         run.wrong_at(None, f"expected messages on {topic}, got none from {start:g} s on.", "", "messages", "none")
     pairs = [(truth[bisect_right(times, m.at) - 1].values, m.fields) for m in messages]

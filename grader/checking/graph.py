@@ -48,17 +48,26 @@ _KINDS: dict[str, Kind] = {
 
 
 def end_points(run: RecordedRun, kind: Kind, name: str = "") -> list[Endpoint]:
-    """Return the student's endpoints of a kind, such as "publisher" or "action server"; with `name`, of that topic."""
+    """Return the student's endpoints of a kind, such as "publisher" or "action server"; with `name`, of that topic.
+
+    Example: `run.end_points("publisher", "/out")[0].depth`
+    """
     return [end for end in run.recording.end_points if end.kind == kind and name in ("", end.topic)]
 
 
 def publishers(run: RecordedRun, topic: str) -> list[Endpoint]:
-    """Return the student's publishers on `topic`."""
+    """Return the student's publishers on `topic`.
+
+    Example: `run.publishers("/out")[0].reliability`
+    """
     return end_points(run, "publisher", topic)
 
 
 def subscriptions(run: RecordedRun, topic: str) -> list[Endpoint]:
-    """Return the student's subscriptions to `topic`."""
+    """Return the student's subscriptions to `topic`.
+
+    Example: `len(run.subscriptions("/in"))`
+    """
     return end_points(run, "subscription", topic)
 
 
@@ -66,13 +75,18 @@ def topics(run: RecordedRun, kind: Kind) -> list[str]:
     """Return the names of all topics that the student's nodes publish ("publisher") or subscribe to ("subscription").
 
     The subscription to `/clock` is left out unless the exercise is about it, because the grader makes rclpy create it.
+
+    Example: `run.topics("publisher")`
     """
     ours = {CLOCK} - {topic.name for topic in run.exercise.topics} if kind == "subscription" else set()
     return sorted({end.topic for end in end_points(run, kind)} - ours)
 
 
 def must_be_as_declared(run: RecordedRun) -> None:
-    """Check that the program has the nodes and the interface of exercise.toml, with its QoS, and nothing else."""
+    """Check that the program has the nodes and the interface of exercise.toml, with its QoS, and nothing else.
+
+    Example: `run.must_be_as_declared()`
+    """
     must_have_interface(run, only=True)
     must_have_nodes(run)
     must_have_qos(run)
@@ -82,6 +96,8 @@ def must_have_interface(run: RecordedRun, only: bool = False) -> None:
     """Check that the node has every topic, service and action of exercise.toml, each with its type.
 
     With `only`, it must have no others, and one endpoint of each. Of several programs, each node must have at most one.
+
+    Example: `run.must_have_interface(only=True)`
     """
     declared = [(_KINDS[topic.direction], topic.name, topic.type) for topic in run.exercise.topics]
     declared += [(_KINDS[end.role], end.name, end.type) for end in run.exercise.endpoints]
@@ -101,6 +117,8 @@ def must_have_interface(run: RecordedRun, only: bool = False) -> None:
 def must_have_qos(run: RecordedRun, topic: str = "", depth: bool = False) -> None:
     """Check that the node's endpoints on `topic`, or on all topics, have the reliability and durability of
     exercise.toml; with `depth`, the depth of their queues, too.
+
+    Example: `run.must_have_qos("/out", depth=True)`
     """
     for declared in run.exercise.topics:
         if topic not in ("", declared.name):
@@ -120,7 +138,10 @@ def must_have_qos(run: RecordedRun, topic: str = "", depth: bool = False) -> Non
 
 
 def must_have_nodes(run: RecordedRun) -> None:
-    """Check that the program creates the node of exercise.toml (of each of its programs) and no other."""
+    """Check that the program creates the node of exercise.toml (of each of its programs) and no other.
+
+    Example: `run.must_have_nodes()`
+    """
     starts = run.recording.programs
     names = [f"{one.namespace.strip('/')}/{one.node.lstrip('/')}" for one in starts]
     names = names or [program.node for program in run.exercise.programs] or [run.exercise.node_name]
@@ -135,7 +156,10 @@ def must_have_nodes(run: RecordedRun) -> None:
 
 
 def must_publish_on_no_others(run: RecordedRun) -> None:
-    """Check that the program publishes on no topics other than those of exercise.toml."""
+    """Check that the program publishes on no topics other than those of exercise.toml.
+
+    Example: `run.must_publish_on_no_others()`
+    """
     declared = {_in(run, "publisher", topic.name, start) for topic in run.exercise.outputs for start in _starts(run)}
     if others := sorted({end.topic for end in end_points(run, "publisher")} - declared):
         text = f"your node publishes on other topics, too. Expected none, got {', '.join(others)}."
@@ -143,7 +167,10 @@ def must_publish_on_no_others(run: RecordedRun) -> None:
 
 
 def must_end_on_ctrl_c(run: RecordedRun) -> None:
-    """Check that the program ends within 2 s of Ctrl-C, without a traceback. The scenario needs `interrupt=True`."""
+    """Check that the program ends within 2 s of Ctrl-C, without a traceback. The scenario needs `interrupt=True`.
+
+    Example: `run.must_end_on_ctrl_c()`
+    """
     if not run.ending.interrupted:
         raise ValueError(f"the scenario {run.scenario} sends no Ctrl-C. Add interrupt=True to it.")
     if not run.ending.ended_in_time:
@@ -155,7 +182,10 @@ def must_end_on_ctrl_c(run: RecordedRun) -> None:
 
 
 def must_survive(run: RecordedRun, program: str = "") -> None:
-    """Check that no program of the submission ends by itself; with `program` (its file), check only that one."""
+    """Check that no program of the submission ends by itself; with `program` (its file), check only that one.
+
+    Example: `run.must_survive()`
+    """
     for exit_ in run.recording.exits:
         if exit_.by == "itself" and program in ("", exit_.program):
             how = f"with code {exit_.code}" if exit_.signal is None else f"by signal {exit_.signal}"

@@ -6,26 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from grader.recording.events import Truth
+from grader.recording.fields import Part
 from grader.recording.recording import ReceivedMessage, Recording, SentMessage
 from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import field_of
-
-
-class Part:
-    """Some fields of a message, by name: `message.header.frame_id`."""
-
-    def __init__(self, fields: dict[str, Any]) -> None:
-        self._fields = fields
-
-    def __getattr__(self, name: str) -> Any:
-        try:
-            value = self._fields[name]
-        except KeyError:
-            raise AttributeError(f"a message of this type has no field {name!r}") from None
-        return Part(value) if isinstance(value, dict) else value
-
-    def __repr__(self) -> str:
-        return f"Message({self._fields})"
 
 
 class Message(Part):

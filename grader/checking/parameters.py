@@ -27,24 +27,36 @@ def kind_of(value: Any) -> str:
 
 
 def must_take(run: RecordedRun, name: str, value: Any = ANY) -> None:
-    """Check that the node accepts each `value` that the scenario sets for this parameter."""
+    """Check that the node accepts each `value` that the scenario sets for this parameter.
+
+    Example: `run.must_take("gain", 3.0)`
+    """
     each(_changes(run, name, value), lambda change: _see(run, change, taken=True))
 
 
 def must_refuse(run: RecordedRun, name: str, value: Any = ANY) -> None:
-    """Check that the node refuses each `value` that the scenario sets for this parameter, and continues to run."""
+    """Check that the node refuses each `value` that the scenario sets for this parameter, and continues to run.
+
+    Example: `run.must_refuse("gain", -1.0)`
+    """
     each(_changes(run, name, value), lambda change: _see(run, change, taken=False))
 
 
 def must_take_and_refuse_as_the_solution(run: RecordedRun) -> None:
-    """Check that the node accepts and refuses the same values as the solution."""
+    """Check that the node accepts and refuses the same values as the solution.
+
+    Example: `run.must_take_and_refuse_as_the_solution()`
+    """
     for change, reference in zip(run.recording.parameters, run.reference.parameters, strict=False):
         if reference.taken is not None:
             _see(run, change, taken=reference.taken)
 
 
 def must_have_parameter(run: RecordedRun, name: str, value: Any = ANY, tolerance: float = TOLERANCE) -> None:
-    """Check that this parameter has this value whenever the scenario reads it; by default the solution's value."""
+    """Check that this parameter has this value whenever the scenario reads it; by default the solution's value.
+
+    Example: `run.must_have_parameter("gain", 3.0)`
+    """
     readings = _readings(run, run.recording.readings, name)
     for reading, reference in zip(readings, _readings(run, run.reference.readings, name), strict=False):
         right_value = reference.value if value is ANY else value

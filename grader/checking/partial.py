@@ -14,6 +14,8 @@ def each(items: Iterable[Item], judge: Callable[[Item], None]) -> None:
     """Judge every item. If some are wrong, fail as the first of them does, with the share of what is right.
 
     An item that is partly right, because `judge` calls `each` itself, counts as that part.
+
+    Example: `each(run.messages_on("/out"), lambda message: None)`
     """
     shares: list[float] = []
     first: Wrong | None = None

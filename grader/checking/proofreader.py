@@ -16,12 +16,14 @@ from pathlib import Path
 
 from grader.checking.agreement import disagreements
 from grader.checking.judge import Listed, listed
+from grader.checking.misspellings import misspellings
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from grader.exercise.mistakes import each_mistake
 from grader.exercise.rules import named_by, rules_of, without_markup
 from grader.exercise.starter import MarkerError, starter
 from grader.scenario.declared import declared
+from grader.scenario.scenario import Scenario
 from groundwork.child_process import run_program
 from groundwork.clean_environment import module_command, without_foreign
 from groundwork.problem import Problem
@@ -56,16 +58,17 @@ def faults(folder: Path) -> Iterator[ExerciseError]:
         return
     yield from _of_solution(exercise)
     yield from disagreements(exercise)
+    scenarios: tuple[Scenario, ...] = ()
     try:
-        scenarios = tuple(scenario.name for scenario in declared(exercise, seed=0))
+        scenarios = declared(exercise, seed=0)
+        yield from misspellings(exercise, scenarios)
     except ExerciseError as error:
         yield error
-        scenarios = ()
     for file in exercise.check_files:
         yield from same_name_twice(file)
     yield from rules_that_the_task_lacks(exercise.task, exercise.check_files)
     try:
-        checks = listed(exercise, scenarios)
+        checks = listed(exercise, tuple(scenario.name for scenario in scenarios))
     except ExerciseError as error:
         yield error
         return

@@ -17,7 +17,7 @@ from grader.checking.observed import observed
 from grader.checking.patterns import COMPUTER_CLOCK, common, other_text
 from grader.checking.verdict import Finding, Wrong
 from grader.exercise.exercise import Exercise, Role, ServiceOrAction, Topic
-from grader.recording.recording import Ending, ReceivedMessage, Recording
+from grader.recording.recording import Ending, ReceivedMessage, Recording, SentMessage
 from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import NoSuchField, field_of, steps_of
 
@@ -51,37 +51,58 @@ class RecordedRun:
 
     @property
     def scenario(self) -> str:
-        """Return the scenario's name."""
+        """Return the scenario's name.
+
+        Example: `run.scenario`
+        """
         return self.recording.scenario
 
     @property
     def nodes(self) -> tuple[str, ...]:
-        """Return the full names of the student's nodes."""
+        """Return the full names of the student's nodes.
+
+        Example: `run.nodes`
+        """
         return self.recording.nodes
 
     @property
     def ending(self) -> Ending:
-        """Return how the run ended."""
+        """Return how the run ended.
+
+        Example: `run.ending.traceback`
+        """
         return self.recording.ending
 
     @cached_property
     def sent(self) -> list[Message]:
-        """Return every message sent to the node."""
+        """Return every message sent to the node.
+
+        Example: `run.sent[0].data`
+        """
         return [Message(sent) for sent in self.recording.sent]
 
     @cached_property
     def received(self) -> list[Message]:
-        """Return every message that the node published on the exercise's topics."""
+        """Return every message that the node published on the exercise's topics.
+
+        Example: `run.received[-1].at`
+        """
         return [Message(received) for received in self.recording.received if not received.subscriber]
 
     @cached_property
     def truth(self) -> list[WorldState]:
-        """Return what the world's truth() returned after each step, with the student's node in the loop."""
+        """Return what the world's truth() returned after each step, with the student's node in the loop.
+
+        Example: `run.truth[-1].level`
+        """
         return [WorldState(truth) for truth in self.recording.truth]
 
     @cached_property
     def exchanges(self) -> list[Exchange]:
-        """Return each message sent, with the node's answers and the solution's."""
+        """Return each message sent, with the node's answers and the solution's.
+
+        Example: `run.exchanges[0].answers[0].data`
+        """
         return exchanges(self.recording, self.reference)
 
     @cached_property
@@ -102,6 +123,8 @@ class RecordedRun:
 
         `part` is the wrong part of the message, such as the joint. Reports show `expected` and `got` separately.
         `cause` is what is probably behind it; what the whole run shows has priority.
+
+        Example: `run.wrong(run.exchanges[0], "the sign is wrong.", expected=1, got=-1)`
         """
         where = f"Message {exchange.number} of {len(self.sent)} ({exchange.sent.at:.2f} s after the start"
         where += f"; {self.title})" if self.title else ")"
@@ -122,6 +145,8 @@ class RecordedRun:
         """End the check: `text` says what is wrong at `at`, in ns of simulated time, or in the whole scenario.
 
         `part` is what is wrong, such as a service or a goal. `cause` is as in `wrong`.
+
+        Example: `run.wrong_at(run.recording.received[0].at, "the valve is open.", "/out")`
         """
         seconds = None if at is None else (at - START) / SECOND
         where = "" if seconds is None else "Before the start" if seconds < 0 else f"At {seconds:.2f} s"
@@ -152,6 +177,8 @@ class RecordedRun:
 
         `name` is the topic, service or action. `pairs` are all (expected, got) messages of this kind; the finding says
         what they have in common. If that is nothing, it ends with `otherwise`.
+
+        Example: `run.compare_at(None, "call 1", "sum", {"sum": 3}, {"sum": 3}, 0.0, "/add", [])`
         """
         differing = difference(field_of(got, field), field_of(expected, field), tolerance, field)
         if not differing:
@@ -176,6 +203,8 @@ class RecordedRun:
         """End the check if something happened more than `time` s before or after it was expected.
 
         `since` is when the node began to wait for it.
+
+        Example: `run.time_at(100_000_000_000, 100_000_000_000, "call 1", time=0.1)`
         """
         if time is not None and abs(at - expected) > time * SECOND + 1:
             expected_text, got_text = f"{seconds(expected):.2f} s", f"{seconds(at):.2f} s"
@@ -201,6 +230,8 @@ class RecordedRun:
         """Return the unit of a field in exercise.toml: of the topic, service or action `name`, or of any.
 
         A topic in a namespace has the units of the declared one.
+
+        Example: `run.unit_of("data", "/out")`
         """
         declared: list[Topic | ServiceOrAction] = [
             *self.exercise.outputs,
@@ -211,11 +242,26 @@ class RecordedRun:
 
     def messages_on(
         self, topic: str = "", reference: bool = False, subscriber: str = ""
-    ) -> tuple[ReceivedMessage, ...]:
-        """Return what the student's node, or the solution, published on `topic`; by default on the only output.
+    ) -> tuple[ReceivedMessage | SentMessage, ...]:
+        """Return the messages on `topic`, by default those on the only output, with fields by name: `message.data`.
 
-        With `subscriber`, return only what that subscriber of the scenario got.
+        They are the student's, or with `reference` those of the run with the solution. On a topic that only the grader
+        or the world publishes, they are what these published. With `subscriber`, they are what that subscriber of the
+        scenario got. Each has its `at` in ns of simulated time.
+
+        Example: `[message.data for message in run.messages_on("/out")]`
         """
+        name = topic or self.output.name
+        published = self.published_on(name, reference, subscriber)
+        if published or subscriber or any(m.topic == name for m in self.reference.received):
+            return published
+        recording = self.reference if reference else self.recording
+        return tuple(message for message in recording.sent if message.topic == name)
+
+    def published_on(
+        self, topic: str = "", reference: bool = False, subscriber: str = ""
+    ) -> tuple[ReceivedMessage, ...]:
+        """Return only what the student's node, or the solution, published on `topic`: see `messages_on`."""
         recording, name = self.reference if reference else self.recording, topic or self.output.name
         return tuple(m for m in recording.received if m.topic == name and m.subscriber == subscriber)
 

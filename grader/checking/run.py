@@ -22,7 +22,10 @@ class Run(RecordedRun):
         return iter(self.exchanges)
 
     def on(self, topic: str) -> Run:
-        """Return the same run with only the messages on `topic`, for a node that publishes on several topics."""
+        """Return the same run with only the messages on `topic`, for a node that publishes on several topics.
+
+        Example: `run.on("/out").must_match("data")`
+        """
         student, solution = (
             replace(recording, received=tuple(message for message in recording.received if message.topic == topic))
             for recording in (self.recording, self.reference)

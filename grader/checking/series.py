@@ -22,9 +22,12 @@ COMPUTER_STAMP = 1_000_000
 
 
 def must_publish(run: RecordedRun, topic: str = "", count: int | None = None) -> None:
-    """Check that the node publishes on `topic`: `count` messages, or at least one."""
+    """Check that the node publishes on `topic`: `count` messages, or at least one.
+
+    Example: `run.must_publish("/out", count=10)`
+    """
     name = topic or run.output.name
-    got = len(run.messages_on(name))
+    got = len(run.published_on(name))
     expected = f"{count} messages" if count is not None else "at least one message"
     if not got and count != 0:
         _never(run, name, expected)
@@ -45,10 +48,12 @@ def must_match_series(
     Without a `field`, whole messages are compared. With `time`, each must come within that many seconds of the
     solution's. With `subscriber`, only what that subscriber of the scenario got is compared. What several threads
     published at one moment has no order, so any order is right.
+
+    Example: `run.must_match_series("data", "/out", time=0.02)`
     """
     name = topic or run.output.name
-    expected = run.messages_on(name, reference=True, subscriber=subscriber)
-    got = _in_the_order_of(expected, run.messages_on(name, subscriber=subscriber), field, tolerance)
+    expected = run.published_on(name, reference=True, subscriber=subscriber)
+    got = _in_the_order_of(expected, run.published_on(name, subscriber=subscriber), field, tolerance)
     if expected and not got:
         _never(run, name, f"{len(expected)} messages", subscriber)
     pairs = list(zip(expected, got, strict=False))
@@ -81,9 +86,11 @@ def must_keep_rate(run: RecordedRun, hz: float, topic: str = "", tolerance: floa
     It must continue for as long as the solution does. A short gap before the second message does not count: a timer
     that is created before the clock starts fires as soon as it does, and then at multiples of its period since 0
     (rcl_timer_call in rcl's timer.c), as with any robot's or simulator's clock.
+
+    Example: `run.must_keep_rate(10.0, "/out")`
     """
     name = topic or run.output.name
-    got, expected = run.messages_on(name), run.messages_on(name, reference=True)
+    got, expected = run.published_on(name), run.published_on(name, reference=True)
     if len(got) < 2:
         _never(run, name, f"{hz:g} messages per second") if not got else None
         text = f"only one message was published on {name}."
@@ -109,9 +116,11 @@ def must_have_no_gap(
     """Check that no two messages are more than `longest` s of simulated time apart, between `start` and `end` (s).
 
     The time from `start` to the first message counts too, and the time from the last one to `end` if it is given.
+
+    Example: `run.must_have_no_gap(0.15, "/out")`
     """
     name = topic or run.output.name
-    times = [seconds(message.at) for message in run.messages_on(name)]
+    times = [seconds(message.at) for message in run.published_on(name)]
     inside = [at for at in times if at >= start and (end is None or at <= end)]
     moments = [start, *inside, *([end] if end is not None else [])]
     for before, after in itertools.pairwise(moments):
@@ -124,9 +133,12 @@ def must_have_no_gap(
 
 
 def must_stamp(run: RecordedRun, topic: str = "", field: str = "header.stamp", within: float = 0.001) -> None:
-    """Check that each message's stamp is the node's time when it is published, within this many seconds."""
+    """Check that each message's stamp is the node's time when it is published, within this many seconds.
+
+    Example: `run.must_stamp("/point")`
+    """
     name = topic or run.output.name
-    messages = run.messages_on(name)
+    messages = run.published_on(name)
     stamps = [_nanoseconds(field_of(message.fields, field)) for message in messages]
 
     def judge(numbered: tuple[int, tuple[ReceivedMessage, int]]) -> None:
@@ -150,7 +162,7 @@ def _never(run: RecordedRun, topic: str, expected: str, subscriber: str = "") ->
         names = ", ".join(sorted({end.topic for end in ends} - {"/rosout", "/parameter_events"})) or "none"
         text = f"your node does not publish on {topic}. It publishes on: {names}."
         run.wrong_at(None, text, "", expected, "none", lacking("publisher"))
-    if subscriber and run.messages_on(topic):
+    if subscriber and run.published_on(topic):
         text = f"the subscriber “{subscriber}” got nothing on {topic}."
         run.wrong_at(None, text, "", expected, "none", _VOLATILE if any(map(_is_volatile, mine)) else UNKNOWN)
     text = f"your node has a publisher on {topic}, but never published anything."

@@ -22,13 +22,18 @@ _NEVER_RESPONDS = Cause(
 def calls(run: RecordedRun, service: str = "", by: By = "grader") -> tuple[Call, ...]:
     """Return the scenario's calls of the student's service, in order; with `by="node"`, the requests of the
     student's node.
+
+    Example: `run.calls("/add")[0].response["sum"]`
     """
     name = service or run.only("service" if by == "grader" else "client")
     return tuple(call for call in run.recording.calls if call.service == name and call.by == by)
 
 
 def must_respond(run: RecordedRun, service: str = "", within: float | None = None) -> None:
-    """Check that the node responds to every request that the solution responds to, within this many seconds."""
+    """Check that the node responds to every request that the solution responds to, within this many seconds.
+
+    Example: `run.must_respond(within=0.1)`
+    """
 
     def judge(numbered: tuple[int, Call, Call]) -> None:
         number, call, reference = numbered
@@ -45,7 +50,10 @@ def must_respond(run: RecordedRun, service: str = "", within: float | None = Non
 
 
 def must_match_responses(run: RecordedRun, field: str = "", service: str = "", tolerance: float = TOLERANCE) -> None:
-    """Check that every response has the same `field` as the solution's. By default every field counts."""
+    """Check that every response has the same `field` as the solution's. By default every field counts.
+
+    Example: `run.must_match_responses("sum")`
+    """
     numbered = _numbered(run, service, "grader")
     pairs = [(r.response, c.response) for _, c, r in numbered if r.response is not None and c.response is not None]
 
@@ -62,7 +70,10 @@ def must_match_responses(run: RecordedRun, field: str = "", service: str = "", t
 
 
 def must_call(run: RecordedRun, service: str = "", count: int | None = None) -> None:
-    """Check that the node calls a reference server: `count` times, or as often as the solution does."""
+    """Check that the node calls a reference server: `count` times, or as often as the solution does.
+
+    Example: `run.must_call("/ask", count=1)`
+    """
     name = service or run.only("client")
     got = calls(run, name, by="node")
     expected = count if count is not None else len(_reference_calls(run, name, "node"))
@@ -81,6 +92,8 @@ def must_match_requests(
     """Check that the node's first request has the same `field` as the solution's first, and so on.
 
     With `time`, each must arrive within this many seconds of the solution's.
+
+    Example: `run.must_match_requests("a", "/ask", time=0.1)`
     """
     must_call(run, service)
     numbered = _numbered(run, service, "node")

@@ -56,7 +56,10 @@ class Wrong(AssertionError):
 
 
 def fail(text: str, *, expected: object = "", got: object = "", at: float | None = None) -> NoReturn:
-    """End the check: the node does not pass it. `text` says why, to the student; `at` is in seconds."""
+    """End the check: the node does not pass it. `text` says why, to the student; `at` is in seconds.
+
+    Example: `fail("Two publishers on /out.", expected=1, got=2)`
+    """
     message = text
     if expected != "" or got != "":
         message += f" Expected {expected}, got {got}."
@@ -154,6 +157,8 @@ def check(
     `todo` says what to do, in up to 160 words, to a student who asks for more than `hint`. Both are shown only if the
     recording shows no cause that has hints of its own. `untested` is for a check whose rule no public scenario tests in
     full: what passes it all the same, such as "a stamp from now() passes, too." A self-check then shows no ✓.
+
+    Example: `check(points=5, hint="Which topic does it publish on?", rule="topic")`
     """
     names = tuple(item if isinstance(item, str) else item.__name__ for item in depends)
     rules = (rule,) if isinstance(rule, str) else tuple(rule)

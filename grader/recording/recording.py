@@ -21,6 +21,7 @@ from grader.recording.events import (
     ProgramStart,
     Truth,
 )
+from grader.recording.fields import WithFields
 
 __all__ = ["Ending", "Endpoint", "Fields", "ReceivedMessage", "Recording", "RunOutcome", "SentMessage"]
 
@@ -32,7 +33,7 @@ EndPointKind = Literal["publisher", "subscription", "server", "client", "action 
 
 
 @dataclass(frozen=True)
-class SentMessage:
+class SentMessage(WithFields):
     """A message that a reference publisher published at `at` ns of simulated time.
 
     `heard` is whether the student's node subscribed to its topic at that time.
@@ -46,7 +47,7 @@ class SentMessage:
 
 
 @dataclass(frozen=True)
-class ReceivedMessage:
+class ReceivedMessage(WithFields):
     """A message from the student's node at `at` ns of simulated time.
 
     `after` is how many messages had been sent by then: 3 means after the third and before the fourth.

@@ -1,0 +1,125 @@
+"""Makes docs/check-api.md from the docstrings of what checks use.
+
+Run it from the project's folder: PYTHONPATH=. .venv/bin/python tests/support/check_api_page.py > docs/check-api.md
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import re
+import types
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from grader.checking import actions, answers, closed_loops, graph, parameters, partial, series, services, verdict
+from grader.checking.message import Exchange, Message, WorldState
+from grader.checking.recorded_run import RecordedRun
+from grader.checking.run import Run
+from grader.recording import events, recording
+
+HEAD = """\
+# What a check can use
+
+Made from the docstrings; each example is run by a test. The [guide](writing-checks.md) says how to write a check.
+`run` is the recording of one scenario, which the check's argument names. Times are in seconds unless it says ns.
+"""
+
+#: Title -> the module whose functions are methods of a run.
+SUBJECTS: dict[str, types.ModuleType] = {
+    "Nodes that answer messages": answers,
+    "Nodes that publish on their own": series,
+    "Services": services,
+    "Actions": actions,
+    "Parameters": parameters,
+    "Closed loops and estimates": closed_loops,
+    "The program in the graph": graph,
+}
+
+RECORDS = (
+    *(Message, Exchange, WorldState, recording.ReceivedMessage, recording.SentMessage, events.Call, events.Goal),
+    *(events.GoalState, events.Feedback, events.Cancel, events.ParameterChange, events.ParameterReading),
+    *(events.ProgramExit, recording.Endpoint, recording.Ending),
+)
+
+#: What helpers share, and checks do not need.
+_INTERNAL = ("observed", "waits", "only", "output", "published_on")
+
+
+def page() -> str:
+    """Return the text of the page."""
+    return "\n".join([HEAD, *_page()]).rstrip() + "\n"
+
+
+def examples() -> dict[str, str]:
+    """Return each example by the heading under which it stands."""
+    entries = [re.match(r"`(.*)`\n.*?^```python\n(.*?)\n```", text, re.M | re.S) for text in page().split("\n### ")]
+    return {entry[1]: entry[2] for entry in entries if entry}
+
+
+def _page() -> Iterator[str]:
+    yield "## A check\n"
+    for function in (verdict.check, verdict.fail, partial.each):
+        yield from _function(function.__name__, function)
+    yield "## A run\n"
+    for name in [*vars(RecordedRun), "on"]:
+        entry = inspect.getattr_static(Run, name)
+        if name.startswith("_") or name in _INTERNAL or not inspect.getdoc(entry) or name in ("title", "seed"):
+            continue
+        if isinstance(entry, types.FunctionType):
+            yield from _function(f"run.{name}", entry)
+        else:
+            yield from _entry(f"run.{name}", _documented(entry))
+    yield "`run.title`: the scenario's title. `run.seed`: what `scenarios(seed)` got. `run.exercise`: exercise.toml.\n"
+    for title, module in SUBJECTS.items():
+        yield f"## {title}\n"
+        for name, function in vars(Run).items():
+            if inspect.isfunction(function) and function.__module__ == module.__name__:
+                yield from _function(f"run.{name}", function)
+    yield "## Records\n"
+    yield "Times in records are ns of simulated time, except in the first three.\n"
+    for record in RECORDS:
+        yield from _record(record)
+
+
+def _documented(entry: Any) -> Any:
+    return entry.fget if isinstance(entry, property) else entry.func
+
+
+def _function(name: str, function: Callable[..., Any]) -> Iterator[str]:
+    parameters = [one for key, one in inspect.signature(function).parameters.items() if key not in ("self", "run")]
+    yield from _entry(f"{name}({', '.join(map(_parameter, parameters))})", function)
+
+
+def _parameter(one: inspect.Parameter) -> str:
+    """Return a parameter as Python writes it; a default that is an object of the grader's is …"""
+    star = "*" if one.kind is one.VAR_POSITIONAL else ""
+    if one.default is one.empty:
+        return f"{star}{one.name}: {one.annotation}"
+    plain = isinstance(one.default, (str, int, float, tuple, type(None)))
+    default = repr(one.default).replace("'", '"') if plain else "…"
+    return f"{one.name}: {one.annotation} = {default}"
+
+
+def _entry(heading: str, documented: Any) -> Iterator[str]:
+    text, _, example = (inspect.getdoc(documented) or "").partition("\n\nExample: `")
+    yield f"### `{heading}`\n"
+    yield f"{text}\n"
+    if example:
+        yield f"```python\n{example.removesuffix('`')}\n```\n"
+
+
+def _record(record: type) -> Iterator[str]:
+    yield f"### `{record.__name__}`\n"
+    yield f"{inspect.getdoc(record)}\n"
+    names = (
+        [f"`{one.name}`: {one.type}" for one in dataclasses.fields(record)] if dataclasses.is_dataclass(record) else []
+    )
+    for name, entry in vars(record).items():
+        if isinstance(entry, property) or (inspect.isfunction(entry) and not name.startswith("_")):
+            names.append(f"`{name}{'' if isinstance(entry, property) else '(…)'}`: {inspect.getdoc(entry)}")
+    yield "\n".join(f"- {name}" for name in names) + "\n"
+
+
+if __name__ == "__main__":
+    print(page(), end="")
