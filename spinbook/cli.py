@@ -73,6 +73,12 @@ STUDENTS = {
     "check": Verb(
         "spinbook.submit.command:check", "Say what the public checks say of your node.", needs="rclpy", runs=True
     ),
+    "try": Verb(
+        "spinbook.submit.trying:try_out",
+        "Play what surrounds your node in an exercise, in real time.",
+        needs="rclpy",
+        runs=True,
+    ),
     "hint": Verb(
         "spinbook.submit.command:hint", "Show the next hint about the first check that failed.", needs="rclpy"
     ),

@@ -51,7 +51,7 @@ def public_part(exercise: Exercise, options: Options, isolation: Isolation, work
     Raises `ExerciseError` if the author, or a student who changed the copy, has something to fix.
     """
     if exercise.solution_folder is None:
-        return _read(exercise)
+        return read_public(exercise)
     every = declared(exercise, options.seed)
     checks: tuple[Listed, ...] = workers.do(ListJob(replace(exercise, public_only=False)))
     used = {name for check in checks if not check.hidden for name in check.fixtures}
@@ -94,7 +94,16 @@ def _timeless(recording: Recording) -> Recording:
     return replace(recording, log="", seconds=0.0, lockstep_seconds=0.0)
 
 
-def _read(exercise: Exercise) -> PublicPart:
+def playable(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
+    """Return the scenarios that may be played here: in a student's copy the public ones, for the author all of them.
+
+    Raises `ExerciseError`.
+    """
+    return declared(exercise, seed) if exercise.solution_folder else read_public(exercise).scenarios
+
+
+def read_public(exercise: Exercise) -> PublicPart:
+    """Return the public part that a student's copy has. Raises `ExerciseError`."""
     file = exercise.public_file
     fix = "Take it from the course's handout again."
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -28,17 +29,24 @@ def draw(grade: Grade, exercise: Exercise, file: Path, scenario: str = "") -> No
     Each panel shows one element over simulated time; the first sample that differs is marked. Raises OSError when the
     file can't be written.
     """
-    name = scenario or _first_wrong(grade)
+    _save(figure(grade, exercise, scenario or _first_wrong(grade)), file)
+
+
+def figure(grade: Grade, exercise: Exercise, name: str, *, judged: bool = True) -> Figure:
+    """Return the picture of the scenario `name`, which need not be in the grade's recordings.
+
+    Without `judged`, no sample is marked as wrong.
+    """
     quantity = drawn_quantity(exercise, grade, name)
-    figure = Figure(figsize=(9, 1.2), layout="constrained")
+    drawing = Figure(figsize=(9, 1.2), layout="constrained")
     if name in grade.recordings and (path := path_of(grade, exercise, name)):
-        _path(figure, path)
+        _path(drawing, path)
         quantity = None
     drawn = curves(grade, exercise, name, quantity) if quantity and name in grade.recordings else ()
     if quantity and drawn:
-        _panels(figure, drawn, quantity)
-    figure.suptitle(f"{exercise.title}: {name or grade.outcome}", fontsize=11)
-    _save(figure, file)
+        _panels(drawing, drawn if judged else [replace(one, first_wrong=None) for one in drawn], quantity)
+    drawing.suptitle(f"{exercise.title}: {name or grade.outcome}", fontsize=11)
+    return drawing
 
 
 def _panels(figure: Figure, drawn: Sequence[Curve], quantity: Quantity) -> None:

@@ -10,13 +10,14 @@ from __future__ import annotations
 import heapq
 import struct
 from bisect import bisect_right
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import count
+from typing import Protocol
 
 from grader.exercise.exercise import Qos
 from grader.scenario.scenario import SECOND, START, ComputerTime
-from rmw_lockstep.hub import Hub, HubNode, QosPolicies
+from rmw_lockstep.hub import HubNode, PendingRequest, QosPolicies
 from rmw_lockstep.hub.endpoints import DeliveredMessage, Moment
 from rmw_lockstep.qos import BEST_EFFORT, RELIABLE, TRANSIENT_LOCAL, VOLATILE
 
@@ -85,11 +86,18 @@ def clock_message(at: int) -> bytes:
     return _CLOCK.pack(b"\0\1\0\0", *divmod(at, SECOND))
 
 
+class UnservedRequests(Protocol):
+    """What the grader's side asks the hub: the requests for which there was no server."""
+
+    @property
+    def unserved(self) -> Sequence[PendingRequest]: ...
+
+
 @dataclass(frozen=True)
 class GraderSide:
     """The hub, the grader's node on it, and both clocks."""
 
-    hub: Hub
+    hub: UnservedRequests
     node: HubNode
     clocks: Clocks
 

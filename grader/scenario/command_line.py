@@ -37,10 +37,12 @@ def _full(name: str, namespace: str) -> str:
     return name if name.startswith("/") else f"{namespace}/{name}"
 
 
-def arguments(scenario: Scenario, program: Program | None = None) -> tuple[str, ...]:
-    """Return the arguments that follow a program's name on its command line in a scenario."""
+def arguments(
+    scenario: Scenario, program: Program | None = None, always: tuple[str, ...] = ARGUMENTS
+) -> tuple[str, ...]:
+    """Return the arguments that follow a program's name on its command line in a scenario: its own, and `always`."""
     one = program or Program("")
-    found = [*one.arguments, *scenario.arguments, *ARGUMENTS]
+    found = [*one.arguments, *scenario.arguments, *always]
     for name, value in {**scenario.parameters, **one.parameters}.items():
         found += ["-p", f"{name}:={_yaml(value)}"]
     for name, to in {**scenario.remappings, **one.remappings}.items():

@@ -293,6 +293,13 @@ def _flowing(value: str) -> str:
     return flowing.strip()
 
 
+#: Only in the notebook: a page has no such command.
+_TRY = (
+    "Run the cell above, then try your node out: `%try {0}` in a new cell plays what surrounds it in real time, and "
+    "draws what your node does. When it does what you meant, check it:"
+)
+
+
 def _exercise(cell: ChapterCell, course: Course) -> Iterator[dict[str, Any]]:
     exercise = load(course.root / "exercises" / (cell.name or ""))
     location = Location(course.root, f"exercises/{exercise.name}", course.names, course.repository)
@@ -302,6 +309,7 @@ def _exercise(cell: ChapterCell, course: Course) -> Iterator[dict[str, Any]]:
         source = f"%%node {module}\n{starter(exercise.solution_file.read_text(encoding='utf-8'))}"
         metadata = {"kind": "exercise", "line": cell.line, "node": module, "exercise": exercise.name}
         yield _code(f"{cell.id}-starter", source, metadata)
+        yield _prose(f"{cell.id}-try", _TRY.format(exercise.name), cell.line, location)
         # Not marked as the exercise's: its code is in the cell above.
         yield _code(f"{cell.id}-check", f"%check {exercise.name}", {"kind": "check", "line": cell.line})
 

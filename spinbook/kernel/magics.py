@@ -288,6 +288,19 @@ class SpinbookMagics(Magics):
             check_cell.check_cell(self.session, self.shell, arguments.exercise, arguments.course, arguments.seconds)
 
     @no_var_expand
+    @line_magic("try")  # type: ignore[arg-type]
+    def try_out(self, line: str) -> None:
+        """%try EXERCISE [SCENARIO]: run the exercise's node in real time, among what surrounds it, with a picture."""
+        reader = LineReader("%try", "Run an exercise's node, as you last ran its cell, among what surrounds it.")
+        reader.add_argument("exercise")
+        reader.add_argument("scenario", nargs="?", default="", help="one of the exercise's scenarios, not the first")
+        reader.add_argument("--course", default="", help="the folder of the handout, if it is not this one")
+        if arguments := reader.read(line):
+            from spinbook.kernel import try_cell
+
+            try_cell.try_out(self.session, self.shell, arguments.exercise, arguments.scenario, arguments.course)
+
+    @no_var_expand
     @line_magic
     def hint(self, line: str) -> None:
         """%hint EXERCISE: show the next hint for the first check that failed."""

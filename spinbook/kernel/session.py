@@ -119,6 +119,11 @@ class Session:
         file = self._saved(name, code, start, after)
         self.run_background(name, start.argv(file), self._import_path(file), Path.cwd(), bound)
 
+    def restart(self, name: str, words: Sequence[str]) -> RunningNode:
+        """Start a cell's node again as its cell last ran, with these arguments, and show nothing of it."""
+        file, start = self.starts[name]
+        return self.nodes.start(name, start.argv(file, words), self._import_path(file), Path.cwd())
+
     def replace_node(self, earlier: str | None) -> None:
         """Stop the earlier version of a node that is about to start, and say so; None if there is none."""
         if earlier is not None and self.nodes.get(earlier):

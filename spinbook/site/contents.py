@@ -370,7 +370,7 @@ def _only_exercise(notebook: Mapping[str, Any], cell_id: str) -> dict[str, Any]:
 
     `cell_id` is the id of the exercise's cell in the chapter; the ids of the notebook's cells begin with it.
     """
-    ids = {f"{cell_id}-{part}" for part in ("task", "starter", "check")}
+    ids = {f"{cell_id}-{part}" for part in ("task", "starter", "try", "check")}
     task, *rest = [cell for cell in notebook["cells"] if cell["id"] in ids]
     setup = [cell for cell in notebook["cells"] if cell["id"] == "spinbook-setup"]
     return {**notebook, "cells": [task, *setup, *rest]}

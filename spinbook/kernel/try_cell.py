@@ -1,0 +1,150 @@
+"""`%try`: an exercise's node runs in real time among what surrounds it, and a picture shows what it does."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from IPython.display import display
+
+from grader.exercise.exercise import Exercise, ExerciseError
+from grader.grading.grade import Grade
+from grader.grading.public import playable, read_public
+from grader.recording.events import Goal
+from grader.recording.recording import Recording, from_json
+from grader.report.plot import figure
+from grader.scenario.command_line import arguments
+from grader.scenario.scenario import SECOND, Scenario
+from groundwork.clean_environment import module_command
+from spinbook.kernel.check_cell import exercise_of, notebook_file
+from spinbook.kernel.environment import EXECUTING
+from spinbook.kernel.plot.picture import as_png
+from spinbook.kernel.process import STOP_GRACE, CellFailed
+from spinbook.kernel.session import Session
+from spinbook.kernel.timeline import RecordedEvents, TimelineEvent, in_words, lanes
+from spinbook.kernel.timeline_picture import span_of, still_timeline
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: The name of what surrounds the node, for `%stop` and `%log`.
+SURROUNDINGS = "surroundings"
+#: The time between two looks at the recording (s).
+_LOOK_S = 0.1
+
+
+def try_out(session: Session, shell: Any, name: str, scenario_name: str, course: str) -> None:
+    """Run the node of the exercise `name` among what surrounds it, until that ends or Stop. Raises CellFailed."""
+    exercise = exercise_of(name, course, notebook_file(shell.user_ns, os.environ))
+    node = exercise.file_name.removesuffix(".py")
+    if node not in session.starts:
+        raise CellFailed(f"Run the cell that begins with %%node {node} first. Then run this one again.")
+    scenario = _scenario(exercise, scenario_name)
+    with tempfile.TemporaryDirectory(prefix="spinbook-") as folder:
+        record = Path(folder, "recording.json")
+        command = module_command("spinbook.start", "try", os.fspath(exercise.folder), scenario.name, flags=("-u",))
+        command += ["--record", os.fspath(record)]
+        surroundings = session.nodes.start(SURROUNDINGS, command, {}, Path.cwd())
+        session.restart(node, arguments(scenario, always=("--ros-args",)))
+        picture = TriedPicture(exercise, scenario, record)
+        try:
+            while surroundings.process.status.running:
+                print(surroundings.process.read()[0].decode(errors="replace"), end="")
+                picture.look()
+                time.sleep(_LOOK_S)
+        except KeyboardInterrupt:
+            surroundings.process.stop()
+            surroundings.process.wait(sum(STOP_GRACE) + 1)
+        print(surroundings.process.read()[0].decode(errors="replace"), end="")
+        picture.look(last=True)
+    ended = session.nodes.stop(SURROUNDINGS).status
+    if ended.exit:
+        raise CellFailed("It could not be played: see above.")
+    print(f"— what {node} printed:\n{session.log(node, False).rstrip()}")
+    print(f"— {node} continues in the background: %stop {node} ends it —")
+
+
+def _scenario(exercise: Exercise, name: str) -> Scenario:
+    try:
+        scenarios = {one.name: one for one in playable(exercise, seed=1)}
+    except ExerciseError as error:
+        raise CellFailed(f"The exercise is at fault, not your code.\n{error}") from None
+    if name and name not in scenarios:
+        raise CellFailed(f"{exercise.name} has no scenario `{name}`. There are: {', '.join(scenarios)}.")
+    return scenarios[name] if name else next(iter(scenarios.values()))
+
+
+@dataclass
+class TriedPicture:
+    """The picture below a `%try`, drawn again whenever `record` has changed."""
+
+    exercise: Exercise
+    scenario: Scenario
+    record: Path
+    changed: float = 0.0
+    handle: Any = None
+
+    def look(self, *, last: bool = False) -> None:
+        """Draw what has happened so far, if that is new. Where nobody watches, only the last picture is shown."""
+        with contextlib.suppress(OSError):
+            changed = self.record.stat().st_mtime
+            if changed > self.changed and (last or EXECUTING not in os.environ):
+                self.changed = changed
+                self._show(from_json(self.record.read_text(encoding="utf-8"))[self.scenario.name])
+
+    def _show(self, recording: Recording) -> None:
+        drawn, words = self._timeline(recording) if recording.calls or recording.goals else self._curves(recording)
+        if drawn is None:
+            return
+        bundle = {"image/png": as_png(drawn), "text/plain": words}
+        if self.handle is None:
+            self.handle = display(bundle, raw=True, metadata={"image/png": {"alt": words}}, display_id=True)
+        else:
+            self.handle.update(bundle, raw=True, metadata={"image/png": {"alt": words}})
+
+    def _curves(self, recording: Recording) -> tuple[Figure | None, str]:
+        name, exercise = self.scenario.name, self.exercise
+        known = {} if exercise.solution_folder else read_public(exercise).references
+        references = {name: known.get(name, Recording(name, (), (), (), (), False, recording.ending))}
+        empty = Grade(exercise.name, "", "", "graded", "", 0.0, 0.0, (), "", 1, {})
+        grade = replace(empty, recordings={name: recording}, references=references)
+        drawn = figure(grade, exercise, name, judged=False)
+        return (drawn if drawn.axes else None), f"{exercise.title}: what your node does, and what the solution does"
+
+    def _timeline(self, recording: Recording) -> tuple[Figure | None, str]:
+        drawn = lanes(events_of(recording))
+        if not any(lane.marks for lane in drawn):
+            return None, ""
+        return still_timeline(drawn, self.exercise.title), in_words(drawn, span_of(drawn)[0])
+
+
+def events_of(recording: Recording) -> RecordedEvents:
+    """Return the calls and goals of a recording as a timeline's events, with times in simulated seconds."""
+    found = RecordedEvents()
+    for call in recording.calls:
+        found.kinds[call.service] = "service"
+        answers = [call.answered] if call.answered is not None else []
+        found.events.append(TimelineEvent(call.at / SECOND, call.service, "request"))
+        found.events += [TimelineEvent(at / SECOND, call.service, "response") for at in answers]
+    for goal in recording.goals:
+        found.kinds[goal.action] = "action"
+        found.events += _of_goal(goal)
+    return found
+
+
+def _of_goal(goal: Goal) -> list[TimelineEvent]:
+    asked = ", ".join(f"{name} {value}" for name, value in goal.goal.items())
+    steps: list[tuple[int | None, str]] = [(one.at, one.state.upper()) for one in goal.states]
+    steps += [(one.at, "feedback") for one in goal.feedback]
+    steps += [(goal.answered, "rejected")] if goal.accepted is False else []
+    for one in goal.cancels:
+        steps += [(one.at, "cancel"), (one.answered, "cancel answered")]
+    return [
+        TimelineEvent(goal.at / SECOND, goal.action, "goal", str(goal.number), asked),
+        *(TimelineEvent(at / SECOND, goal.action, what, str(goal.number)) for at, what in steps if at is not None),
+    ]

@@ -1,0 +1,38 @@
+"""`%try` runs an exercise's node in real time among what surrounds it, with a live picture, until that ends or Stop."""
+
+from __future__ import annotations
+
+from notebook_kernel import Kernel
+
+from submit.conftest import node_cell, solution
+
+
+def test_a_cell_that_was_not_run_is_asked_for(kernel: Kernel) -> None:
+    shown = kernel.run("%try joint_velocity")
+
+    assert shown.error == "Run the cell that begins with %%node joint_velocity first. Then run this one again."
+
+
+def test_an_unknown_scenario_lists_those_that_there_are(kernel: Kernel) -> None:
+    kernel.run(node_cell(solution()))
+
+    error = kernel.run("%try joint_velocity late").error
+
+    assert error == "joint_velocity has no scenario `late`. There are: chapter, irregular."
+
+
+def test_the_node_is_started_again_and_drawn_until_stop(kernel: Kernel) -> None:
+    kernel.run(node_cell(solution()))
+    kernel.run("%stop --all")
+
+    stop = kernel.pressing_stop(lambda shown: "from your node: /joint_velocities" in shown.text and bool(shown.updates))
+    shown = kernel.run("%try joint_velocity irregular", stop)
+
+    assert not shown.error
+    assert "to your node: /joint_commands  header: (stamp: (sec: 100" in shown.text
+    assert "what joint_velocity printed:" in shown.text
+    assert len(shown.pictures) == 1
+    assert "what your node does, and what the solution does" in shown.pictures[0]["text/plain"]
+    running = kernel.run("%nodes").text
+    assert "joint_velocity" in running
+    assert "surroundings" not in running
