@@ -49,6 +49,9 @@ AUTHORS = {
 }
 INSTRUCTORS = {
     "grade": Verb("grader.command:grade", "Grade one submission, or a whole class.", needs="rclpy", runs=True),
+    "trace": Verb(
+        "grader.report.trace:trace", "Show what happens in one scenario of an exercise.", needs="rclpy", runs=True
+    ),
     "audit": Verb(
         "grader.audit.command:audit", "Show whether an exercise's checks catch what is wrong.", needs="rclpy", runs=True
     ),

@@ -29,14 +29,16 @@ def judge(
     references: dict[str, Recording],
     titles: dict[str, str],
     seed: int = 1,
+    partly: bool = False,
 ) -> tuple[Verdict, ...]:
     """Return the verdict of every check, in the order of the files.
 
     `recordings` are the student's and `references` the solution's, by scenario. Raises `ExerciseError` if the files of
-    checks are unusable. Runs pytest in this process, without the plugins that are installed on this machine.
+    checks are unusable. Runs pytest in this process, without the plugins that are installed on this machine. With
+    `partly`, only the checks judge that need no other scenarios.
     """
     runs = runs_of(exercise, recordings, references, titles, seed)
-    return judge_when_collected(exercise, runs, lambda: runs)
+    return judge_when_collected(exercise, runs, lambda: runs, partly)
 
 
 def runs_of(
@@ -51,7 +53,7 @@ def runs_of(
 
 
 def judge_when_collected(
-    exercise: Exercise, scenarios: Iterable[str], given: Callable[[], Mapping[str, Run]]
+    exercise: Exercise, scenarios: Iterable[str], given: Callable[[], Mapping[str, Run]], partly: bool = False
 ) -> tuple[Verdict, ...]:
     """Judge as `judge` does, on what `given` returns for these scenarios.
 
@@ -59,7 +61,7 @@ def judge_when_collected(
     process's verdicts.
     """
     runs: dict[str, Run | None] = dict.fromkeys(scenarios)
-    checks = Checks(before_the_first=lambda: runs.update(given()))
+    checks = Checks(before_the_first=lambda: runs.update(given()), partly=partly)
     run_pytest(exercise, runs, checks)
     topics = [topic.name for topic in exercise.topics] + [endpoint.name for endpoint in exercise.endpoints]
     starts = {

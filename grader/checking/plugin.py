@@ -77,8 +77,11 @@ class Checks:
     running them. `fixtures` are the names that each check uses, directly or through another fixture.
     """
 
-    def __init__(self, run: bool = True, before_the_first: Callable[[], None] = lambda: None) -> None:
-        self._run = run
+    def __init__(
+        self, run: bool = True, before_the_first: Callable[[], None] = lambda: None, partly: bool = False
+    ) -> None:
+        """`partly` leaves out checks that need scenarios which are not known."""
+        self._run, self._partly = run, partly
         self._before_the_first = before_the_first
         self.fixtures: dict[str, tuple[str, ...]] = {}
         self.scenarios: tuple[str, ...] = ()
@@ -94,6 +97,8 @@ class Checks:
         A check that another file imports, such as to name it in `depends`, is not collected again.
         """
         items[:] = [item for item in items if _is_defined_here(item)]
+        if self._partly:
+            items[:] = [item for item in items if not self._unknown_scenario(item)]
         for item in items:
             try:
                 self._marks[item.name] = self._mark(item)
@@ -120,7 +125,9 @@ class Checks:
         elif missing := self._unknown_scenario(item):
             problem = f"{item.name} asks for the scenario {missing}, which scenarios.py does not have"
             fix = f"Its scenarios are: {', '.join(self.scenarios)}."
-        elif unknown := [name for name in mark.depends if name not in self._marks]:
+        elif (unknown := [name for name in mark.depends if name not in self._marks]) and self._partly:
+            return replace(mark, depends=tuple(name for name in mark.depends if name in self._marks))
+        elif unknown:
             problem = f"{item.name} depends on {unknown[0]}, but no check above it has that name"
             fix = "A check can depend only on checks above it. Public checks come before hidden ones."
         else:

@@ -125,8 +125,13 @@ def _made(runner: ScenarioRunner) -> dict[str, Recording]:
         ending = recording.ending
         if ending.outcome != "completed":
             problem = f"the solution does not complete the scenario {recording.scenario}: {ending.message}"
-            raise ExerciseError(file, problem, "Fix the solution or the scenario.", ending.line)
+            fix = f"Fix the solution or the scenario. {_see_it(runner.exercise, recording.scenario)}"
+            raise ExerciseError(file, problem, fix, ending.line)
     return recordings
+
+
+def _see_it(exercise: Exercise, scenario: str) -> str:
+    return f"See what it did: spinbook trace {exercise.name}{f' --scenario {scenario}' if scenario else ''}"
 
 
 def _prove(runner: ScenarioRunner, recordings: dict[str, Recording]) -> None:
@@ -142,7 +147,8 @@ def _prove(runner: ScenarioRunner, recordings: dict[str, Recording]) -> None:
         if verdict.status == "failed":
             message = verdict.finding.text if verdict.finding else ""
             problem = f"the solution does not pass the check {verdict.name}: {message}"
-            raise ExerciseError(file, problem, "Fix the check or the solution.", line)
+            scenario = verdict.finding.scenario if verdict.finding else ""
+            raise ExerciseError(file, problem, f"Fix the check or the solution. {_see_it(exercise, scenario)}", line)
     for file in exercise.check_files:
         for fault in same_name_twice(file):
             raise fault

@@ -132,6 +132,8 @@ class ScenarioRunner:
     workers: WorkerPool
     work_stealing: WorkStealing = field(default_factory=WorkStealing, compare=False)
     """Lets idle workers help the `options.parallel` workers of each submission."""
+    partly: bool = False
+    """Whether only the checks judge that need no other scenarios than these."""
 
     def run(self, submission: Submission) -> dict[str, Recording]:
         """Return the recording of each scenario. Raises `HostFault` when there is none.
@@ -157,7 +159,8 @@ class ScenarioRunner:
     def judge(self, recordings: dict[str, Recording], references: dict[str, Recording]) -> tuple[Verdict, ...]:
         """Return the verdicts on a submission's recordings, by scenario. Raises `HostFault` when there are none."""
         titles = {scenario.name: scenario.title for scenario in self.scenarios}
-        return self.workers.judge(JudgeJob(self.exercise, recordings, references, titles, self.options.seed))
+        job = JudgeJob(self.exercise, recordings, references, titles, self.options.seed, self.partly)
+        return self.workers.judge(job)
 
     def share(self, references: Iterable[Recording] = ()) -> None:
         """Give the worker what all jobs need. Call this once, before the first submission."""

@@ -91,13 +91,15 @@ class JudgeJob:
     references: dict[str, Recording]
     titles: dict[str, str]
     seed: int = 1
+    partly: bool = False
+    """Whether only the checks judge that need no other scenarios."""
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
         """Return the verdicts."""
         from grader.checking.judge import judge
 
         ready()
-        return judge(self.exercise, self.recordings, self.references, self.titles, self.seed)
+        return judge(self.exercise, self.recordings, self.references, self.titles, self.seed, self.partly)
 
     def runs(self) -> dict[str, Run]:
         """Return what is judged, for a process that has collected the checks."""

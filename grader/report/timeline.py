@@ -1,0 +1,112 @@
+"""A recording as lines of text: what happened, in order of time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from grader.recording.events import Call, Cancel, Event, Feedback, Fields, Goal, GoalState, ProgramExit
+from grader.recording.events import ParameterChange as Change
+from grader.recording.events import ParameterReading as Reading
+from grader.recording.recording import ReceivedMessage, Recording, SentMessage
+from grader.report.printable import printable
+from grader.scenario.times import SECOND, START
+
+#: So many messages of one topic are shown, spread over the scenario, unless all are asked for.
+MOST_OF_A_TOPIC = 12
+
+#: In characters: the fields of one message.
+_LONGEST = 100
+
+
+def lines_of(recording: Recording, only: tuple[str, ...] = (), everything: bool = False) -> Iterator[str]:
+    """Yield a line for each event. `only` are parts of names of topics, services, actions and parameters.
+
+    Messages sent to the program have the sign →, what it published ←. Without `everything`, of a topic with many
+    messages only some are shown, and the last line says how many are not.
+    """
+    events = [event for event in _with_truth(recording) if not only or any(part in event.what for part in only)]
+    left_out: dict[str, int] = {}
+    shown = {id(event.item) for event in events if not _is_message(event)} if not everything else None
+    if shown is not None:
+        shown |= {id(event.item) for event in _some(events, left_out)}
+    for event in events:
+        if shown is None or id(event.item) in shown:
+            yield f"{(event.at - START) / SECOND:9.3f} s  {printable(_words(event))}"
+    for name, count in left_out.items():
+        yield f"{count} more messages of {name.partition(' ')[2]} are not shown: --all shows them."
+
+
+def _with_truth(recording: Recording) -> list[Event]:
+    truth = [Event(one.at, "truth", one) for one in recording.truth]
+    return sorted([*recording.timeline, *truth], key=lambda event: event.at)
+
+
+def _is_message(event: Event) -> bool:
+    return event.what == "truth" or isinstance(event.item, (SentMessage, ReceivedMessage))
+
+
+def _some(events: Iterable[Event], left_out: dict[str, int]) -> Iterator[Event]:
+    """Yield some messages of each topic: the first and the last, and others at equal distances."""
+    topics: dict[str, list[Event]] = {}
+    for event in filter(_is_message, events):
+        topics.setdefault(event.what, []).append(event)
+    for name, messages in topics.items():
+        count = len(messages)
+        few = min(count, MOST_OF_A_TOPIC)
+        chosen = {round(place * (count - 1) / max(few - 1, 1)) for place in range(few)}
+        yield from (messages[place] for place in sorted(chosen))
+        if count > len(chosen):
+            left_out[name] = count - len(chosen)
+
+
+def _words(event: Event) -> str:
+    item = event.item
+    if isinstance(item, SentMessage):
+        return f"→ {item.topic}  {_fields(item.fields)}{'' if item.heard else '  (nobody subscribes)'}"
+    if isinstance(item, ReceivedMessage):
+        to = f"  (to the subscriber {item.subscriber})" if item.subscriber else ""
+        return f"← {item.topic}  {_fields(item.fields)}{to}"
+    if event.what == "truth":
+        return f"= truth  {_fields(item.values)}"
+    return f"• {event.what}  {_detail(event.what, item)}".rstrip()
+
+
+def _detail(what: str, item: Any) -> str:
+    if isinstance(item, Call):
+        return _fields(item.request if what.startswith("request") else item.response or {})
+    if isinstance(item, Goal):
+        return f"{item.status} {_fields(item.result or {})}" if what.startswith("result") else _fields(item.goal)
+    if isinstance(item, Feedback):
+        return _fields(item.fields)
+    if isinstance(item, GoalState):
+        return item.state
+    if isinstance(item, Cancel):
+        return "accepted" if item.accepted else "not accepted"
+    if isinstance(item, Change):
+        return f"{item.value!r}: {'accepted' if item.taken else f'refused {item.reason}'.rstrip()}"
+    if isinstance(item, Reading):
+        return repr(item.value)
+    return f"by {item.by}" if isinstance(item, ProgramExit) else ""
+
+
+def _fields(fields: Fields) -> str:
+    text = ", ".join(f"{path} = {_number(value)}" for path, value in _leaves(fields))
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
+
+
+def _leaves(fields: Fields, before: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield each field with its full name, without empty ones and without what is 0 in a header."""
+    for name, value in fields.items():
+        if isinstance(value, dict):
+            yield from _leaves(value, f"{before}{name}.")
+        elif value not in ("", [], ()) and (value or not before.startswith("header.")):
+            yield f"{before}{name}", value
+
+
+def _number(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(_number(one) for one in value[:8])}{', …' if len(value) > 8 else ''}]"
+    return repr(value)
