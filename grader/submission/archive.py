@@ -132,7 +132,7 @@ def _keep(entries: Sequence[_Entry], prefix: str, contents: Contents, depth: int
     meant = [(name, load) for name, load in entries if _is_meant(name)]
     own = [(name, load) for name, load in meant if not set(name.split("/")[:-1]) & set(_BUILT)]
     # What colcon built matters only if its source code is missing.
-    meant = own if any(kind_of(name) in ("python", "notebook", "c++") for name, _ in own) else meant
+    meant = own if any(kind_of(name) in ("python", "notebook", "other language") for name, _ in own) else meant
     if len(meant) > MOST_FILES:
         raise Unreadable(f"It holds {len(meant)} files. {ADVICE}")
     for name, load in meant:
@@ -177,7 +177,9 @@ def _unpack(content: bytes, prefix: str, contents: Contents, depth: int) -> None
 def _add(name: str, data: bytes | None, contents: Contents, depth: int) -> None:
     if data is None:
         contents.damaged.append(name)
-    elif kind_of(name) == "archive" and depth < DEEPEST:
+    elif kind_of(name) == "archive" and depth == DEEPEST:
+        raise Unreadable(f"It holds more than {DEEPEST} archives inside each other: {name}. {ADVICE}")
+    elif kind_of(name) == "archive":
         folder = f"{name.partition('.')[0]}/" if "/" not in name else f"{name.rpartition('/')[0]}/"
         try:
             _unpack(data, folder if depth or "/" in name else "", contents, depth + 1)

@@ -81,6 +81,16 @@ def assemble(
     return AssembledProgram(code, tuple(sorted({*taken, *used, *(one.number for one in more)})))
 
 
+def is_complete(code: str) -> bool:
+    """Return whether a program is valid Python, binds the names that it uses, and starts something."""
+    return python_code.tree_of(code) is not None and python_code.starts(code) and not python_code.missing(code)
+
+
+def joined(cells: Sequence[NotebookCell]) -> AssembledProgram:
+    """Return the program whose parts are these cells, each below its own magic."""
+    return AssembledProgram("".join(_marked(one.number, 1, one.code) for one in cells), tuple(c.number for c in cells))
+
+
 def _options(cell: NotebookCell) -> _Options:
     if cell.magic.name != "node":
         return _Options()

@@ -18,7 +18,16 @@ from grader.exercise.exercise import Exercise, ProgramFile
 from grader.exercise.starter import MarkerError, starter
 from grader.submission import packages, python_code
 from grader.submission.archive import Contents, unpacked
-from grader.submission.file_kinds import NEITHER, OTHER_ARCHIVES, kind_of, kind_of_content
+from grader.submission.file_kinds import (
+    NEITHER,
+    OTHER_ARCHIVES,
+    kind_of,
+    kind_of_content,
+    language_of,
+    not_graded,
+    original_name,
+)
+from grader.submission.magics import cell_magic, without_commands
 from grader.submission.notebook import Notebook, NotebookCell, read_notebook
 from grader.submission.problems import AmbiguousProgram, Unreadable, merge_conflict
 from grader.submission.program_choice import Choice, choose, digest_of
@@ -29,7 +38,13 @@ from grader.submission.unreadable import not_python
 #: The starter's file in a web page's copy of an exercise.
 STARTER = "starter.py"
 
-NO_CPP = "C++ is not graded yet: hand in Python."
+NO_CPP = not_graded("C++")
+
+_INCLUDES = re.compile(rb"^[ \t]*#[ \t]*include[ \t]*[<\"]", re.MULTILINE)
+_A_CELL = (
+    "Your file has lines that only a notebook understands, such as %%node, ! or >>>. They were left out; Python itself "
+    "can't run the file."
+)
 
 
 @dataclass(frozen=True)
@@ -56,19 +71,24 @@ class _Option:
     file: str = ""
     function: str = ""
     choice: Choice | None = None
-    python: str = ""
+    why: str = ""
 
 
 @dataclass
 class _ReadState:
     """The state of reading the files of one submission."""
 
-    files: Mapping[str, bytes]
+    contents: Contents
     exercise: Exercise
     called: str = ""
     notebooks: dict[str, Notebook] = field(default_factory=dict)
     problems: list[str] = field(default_factory=list)
     questions: list[str] = field(default_factory=list)
+
+    @property
+    def files(self) -> Mapping[str, bytes]:
+        """The files by path."""
+        return self.contents.files
 
 
 def as_text(code: Code) -> str:
@@ -87,8 +107,8 @@ def from_text(text: str) -> Code:
 def code_of(name: str, content: bytes, exercise: Exercise) -> Code:
     """Return the program in a file with this name and content. Raises `Unreadable` and `AmbiguousProgram`."""
     kind = kind_of_content(content, kind_of(name))
-    if kind == "c++":
-        raise Unreadable(NO_CPP)
+    if kind == "other language":
+        raise Unreadable(not_graded(language_of(name)))
     if kind == "archive":
         return code_of_files(unpacked(content), exercise)
     if kind == "notebook":
@@ -111,10 +131,21 @@ def code_of_python(content: bytes, exercise: Exercise) -> Code:
     source = content.decode("utf-8", errors="replace")
     _refuse_conflict(content, "your file")
     notes = newer_syntax(source)
+    if not notes and python_code.tree_of(source) is None:
+        if _INCLUDES.search(content):
+            raise Unreadable(NO_CPP)
+        if code := _as_a_cell(source):
+            source, content, notes = code, code.encode(errors="replace"), (_A_CELL,)
     if exercise.programs:
         files = _parts(source, exercise)
         return Code(files, next(iter(files)), source, notes)
     return Code({exercise.file_name: content}, exercise.file_name, source, notes)
+
+
+def _as_a_cell(source: str) -> str:
+    """Return the Python code of a file into which a notebook's cell was copied with its commands; otherwise ""."""
+    code = without_commands(cell_magic(source).code)
+    return code if code.strip() and python_code.tree_of(code) else ""
 
 
 def _refuse_conflict(content: bytes, where: str) -> None:
@@ -211,7 +242,7 @@ def _package(cell: NotebookCell) -> list[str]:
 
 def code_of_files(contents: Contents, exercise: Exercise, called: str = "") -> Code:
     """Return the program in a folder or an archive; `called` is the folder's name. Raises as `code_of`."""
-    reading = _ReadState(contents.files, exercise, called)
+    reading = _ReadState(contents, exercise, called)
     handed_out = starters(exercise)
     options = {one.file: _chosen(reading, one, handed_out) for one in targets(exercise)}
     if not exercise.programs:
@@ -266,16 +297,26 @@ def _chosen(reading: _ReadState, target: ProgramFile, handed_out: frozenset[str]
     its_own = [one for one in options if _is_it(one.source, target)]
     if not (named or its_own) and reading.questions:
         raise AmbiguousProgram(reading.questions[0])
-    only_program = [] if reading.exercise.programs else _by_content(options)
+    only_program = [] if reading.exercise.programs else _by_content(options, _language(reading))
     for tier in (named, its_own, _by_executable(reading, options, target), *only_program):
         if tier:
             return _decided(tier, reading, target)
     raise Unreadable(_nothing(reading, target))
 
 
-def _by_content(options: list[_Option]) -> list[list[_Option]]:
-    """Return what an exercise with a single program takes for it: executables, then what uses rclpy, then anything."""
-    return [[one for one in options if one.function], [one for one in options if "rclpy" in one.source], options]
+def _by_content(options: list[_Option], language: str) -> list[list[_Option]]:
+    """Return what an exercise with a single program takes for it: executables, what uses rclpy, or any Python.
+
+    Next to a program in another language, a script without rclpy is not the program.
+    """
+    tiers = [[one for one in options if one.function], [one for one in options if "rclpy" in one.source]]
+    return tiers if language else [*tiers, options]
+
+
+def _language(reading: _ReadState) -> str:
+    """Return the language of files that are not Python; C++ goes before C, which its headers look like."""
+    languages = {language_of(name) for name in reading.files if kind_of(name) == "other language"}
+    return "C++" if "C++" in languages else min(languages, default="")
 
 
 def _of_python(name: str, reading: _ReadState) -> _Option:
@@ -298,14 +339,13 @@ def _of_notebooks(reading: _ReadState, target: ProgramFile, handed_out: frozense
         except AmbiguousProgram as error:
             reading.questions.append(f"{name}: {error}")
         else:
-            found.append(_Option(name, choice.code, name, choice=choice, python=notebook.python))
+            found.append(_Option(name, choice.code, name, choice=choice))
     begun = [one for one in found if digest_of(one.source) not in handed_out]
     return begun or found
 
 
 def _is_called(path: str, file: str) -> bool:
-    name = posixpath.basename(path).lower()
-    return name == file or (name.startswith(file) and name.removeprefix(file).startswith("."))
+    return original_name(path).lower() == file
 
 
 def _is_it(source: str, target: ProgramFile) -> bool:
@@ -332,19 +372,19 @@ def _decided(options: Sequence[_Option], reading: _ReadState, target: ProgramFil
     }
     launched = {one.executable for one in packages.launched(reading.files)}
     entries = [entry for entry in packages.entry_points(reading.files) if entry.name in launched]
-    rules: tuple[Callable[[_Option], bool], ...] = (
-        lambda one: digest_of(one.source) in checked,
-        lambda one: _is_called(one.file, target.file),
-        lambda one: _is_it(one.source, target),
-        lambda one: bool(one.function),
-        lambda one: any(entry.file == one.file for entry in entries),
+    rules: tuple[tuple[str, Callable[[_Option], bool]], ...] = (
+        ("", lambda one: True),
+        ("it is the one that %check judged", lambda one: digest_of(one.source) in checked),
+        (f"it is called {target.file}", lambda one: one.choice is not None or _is_called(one.file, target.file)),
+        (f"only it has the program {target.node}", lambda one: _is_it(one.source, target)),
+        ("it is installed as an executable", lambda one: bool(one.function)),
+        ("a launch file starts it", lambda one: any(entry.file == one.file for entry in entries)),
     )
-    for fits in rules:
-        if len({digest_of(one.source) for one in options}) == 1:
-            break
+    for why, fits in rules:
         options = [one for one in options if fits(one)] or options
-    if len({digest_of(one.source) for one in options}) == 1:
-        return min(options, key=lambda one: (one.choice is not None, one.file.count("/"), one.file))
+        if len({python_code.normalized(one.source) for one in options}) == 1:
+            chosen = min(options, key=lambda one: (one.choice is not None, one.file.count("/"), one.file))
+            return replace(chosen, why=why)
     titles = ", ".join(one.title for one in options[:5])
     raise AmbiguousProgram(
         f"{len(options)} programs in it can be {target.file}, and they differ: {titles}. Which one counts? Hand in "
@@ -359,20 +399,29 @@ def _notes(option: _Option, reading: _ReadState) -> tuple[str, ...]:
     others = [name for name in packages.programs(reading.files) if name != option.file]
     notebooks = [name for name in reading.files if kind_of(name) == "notebook" and name != option.file]
     called = any(_is_called(option.file, one.file) for one in targets(reading.exercise))
-    if notebooks or ((others or option.function) and not called):
-        notes.append(f"Taken: {option.title}.")
+    rivals = [] if reading.exercise.programs else [name for name in others if _is_rival(name, option, reading)]
+    if notebooks or rivals or ((others or option.function) and not called):
+        why = option.why or (f"it is called {reading.exercise.file_name}" if rivals and called else "")
+        notes.append(f"Taken: {option.title}{why and ', because '}{why}.")
     if settings := packages.launch_settings(reading.files, option.file):
         found = ", ".join(settings)
         notes.append(f"Not applied from your launch file: {found}. The grader starts the program as the task says.")
     return tuple(notes)
 
 
+def _is_rival(name: str, option: _Option, reading: _ReadState) -> bool:
+    source = reading.files[name].decode("utf-8", errors="replace")
+    same = python_code.normalized(source) == python_code.normalized(option.source)
+    return not same and any(_is_it(source, target) for target in targets(reading.exercise))
+
+
 def _refuse_own_interfaces(option: _Option, reading: _ReadState) -> None:
     """Raise `AmbiguousProgram` if a program needs messages of the submission's own, unless they are installed here.
 
-    Compiling what a student defines would run a compiler on it, so it is for the instructor to decide.
+    It is for the instructor to decide, as the definitions would be compiled outside of any sandbox: comments of a
+    definition get into the code that gcc reads, and gcc can be told to copy any file into the result.
     """
-    used = {module.partition(".")[0] for module in python_code.imported(option.source)}
+    used = packages.packages_of_messages(option.source, reading.files)
     for package in sorted(packages.own_interfaces(reading.files) & used):
         raise AmbiguousProgram(
             f"The program imports {package}, a package of messages that was handed in with it, and the grader does not "
@@ -384,12 +433,18 @@ def _refuse_own_interfaces(option: _Option, reading: _ReadState) -> None:
 def _nothing(reading: _ReadState, target: ProgramFile) -> str:
     if reading.problems:
         return reading.problems[0]
-    if any(kind_of(name) == "c++" for name in reading.files):
-        return NO_CPP
+    if language := _language(reading):
+        return not_graded(language)
+    if lost := [*reading.contents.links, *reading.contents.damaged]:
+        what = "is a symbolic link" if reading.contents.links else "can't be read"
+        return (
+            f"{lost[0]} in it {what}, and there is no other code for {reading.exercise.name}. Hand in the file itself."
+        )
     if reading.exercise.programs:
         there = ", ".join(packages.programs(reading.files)[:5]) or "none"
         return f"There is no {target.file} in it, and no program of the node {target.node}. Python files: {there}."
-    return f"There is no code for {reading.exercise.name} in it. Hand in the file that `spinbook submit` writes."
+    there = f" It holds: {', '.join(sorted(reading.files)[:5])}." if reading.files else ""
+    return f"There is no code for {reading.exercise.name} in it.{there} Hand in the file that `spinbook submit` writes."
 
 
 def starters(exercise: Exercise) -> frozenset[str]:

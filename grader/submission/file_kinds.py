@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Literal
 
-Kind = Literal["python", "notebook", "archive", "c++", "other"]
+Kind = Literal["python", "notebook", "archive", "other language", "other"]
 
 _SUFFIXES: dict[str, Kind] = {
     ".py": "python",
@@ -18,20 +18,24 @@ _SUFFIXES: dict[str, Kind] = {
     ".tar.bz2": "archive",
     ".tar.xz": "archive",
     ".txz": "archive",
-    **dict.fromkeys((".cpp", ".cc", ".cxx", ".c++", ".hpp", ".hh", ".hxx"), "c++"),
+}
+_LANGUAGES = {
+    **dict.fromkeys((".cpp", ".cc", ".cxx", ".c++", ".hpp", ".hh", ".hxx", ".ino"), "C++"),
+    **{".c": "C", ".h": "C", ".rs": "Rust", ".java": "Java", ".js": "JavaScript", ".m": "MATLAB", ".jl": "Julia"},
 }
 
-#: What browsers, mail programs and editors append to a file's name.
+#: What browsers, mail programs, file managers and editors append to a file's name, and what they put before it.
 _ADDED = re.compile(
-    r"(?:\.(?:txt|text|json|download|bin|zip\.zip|py\.py))+$|(?: \(\d+\)| - copy| copy)$", re.IGNORECASE
+    r"(?:\.(?:txt|text|json|download|bin|bak|old|orig|part|\d{1,2})?|~| ?\(\d{1,3}\)| - [^\W\d]+| copy| kopie)$", re.I
 )
+_BEFORE = re.compile(r"^(?:copy of|copy \(\d+\) of|kopie von|copie de|copia de|copia di) ", re.IGNORECASE)
 
 #: The largest submission of each kind (bytes).
 MOST_BYTES_OF: dict[Kind, int] = {
     "python": 1_000_000,
     "notebook": 30_000_000,
     "archive": 30_000_000,
-    "c++": 1_000_000,
+    "other language": 1_000_000,
     "other": 1_000_000,
 }
 
@@ -39,20 +43,46 @@ _ARCHIVES = (b"PK\x03\x04", b"PK\x05\x06", b"\x1f\x8b", b"BZh", b"\xfd7zXZ\x00")
 #: RAR and 7z, which Python can't unpack.
 OTHER_ARCHIVES = (b"Rar!\x1a\x07", b"7z\xbc\xaf\x27\x1c")
 
+_IMPORTS_ROS = re.compile(rb"^(?:import|from)[ \t]+rclpy\b", re.MULTILINE)
+
 NEITHER = "neither Python, nor a notebook, nor an archive"
 
 
 def kind_of(name: str) -> Kind:
     """Return the kind of a file by its name, ignoring case and what a browser appended: `node.py.txt`."""
-    lower = name.rpartition("/")[2].strip().lower()
-    while True:
-        for suffix, kind in _SUFFIXES.items():
-            if lower.endswith(suffix):
-                return kind
-        shorter = _ADDED.sub("", lower)
-        if shorter == lower:
-            return "other"
-        lower = shorter
+    lower = without_additions(name).lower()
+    for suffix, kind in _SUFFIXES.items():
+        if lower.endswith(suffix):
+            return kind
+    return "other language" if language_of(name) else "other"
+
+
+def language_of(name: str) -> str:
+    """Return the programming language of a file by its name; "" for Python, and if it is not known."""
+    lower = without_additions(name).lower()
+    return next((language for suffix, language in _LANGUAGES.items() if lower.endswith(suffix)), "")
+
+
+def not_graded(language: str) -> str:
+    """Return what a student reads who handed in a program in another language than Python."""
+    return f"{language} is not graded yet: hand in Python."
+
+
+def without_additions(name: str) -> str:
+    """Return a file's name without its folders and what a browser or file manager added: `node.py` for `node.py (1)`.
+
+    A number or the like before the suffix stays: see `original_name`.
+    """
+    name = name.rpartition("/")[2].strip()
+    while not name.lower().endswith((*_SUFFIXES, *_LANGUAGES)) and (match := _ADDED.search(name)):
+        name = name[: match.start()]
+    return name
+
+
+def original_name(name: str) -> str:
+    """Return the name of the file of which this is a copy: `node.py` for `node (1).py` and `Kopie von node.py`."""
+    stem, dot, suffix = without_additions(name).rpartition(".")
+    return _BEFORE.sub("", _ADDED.sub("", stem)) + dot + suffix
 
 
 def can_be_read(name: str) -> bool:
@@ -64,9 +94,9 @@ def kind_of_content(content: bytes, kind: Kind) -> Kind:
     """Return the kind by a file's content, such as a notebook that was saved as .py, or a zip as .ipynb."""
     if content.startswith(_ARCHIVES):
         return "archive"
-    if kind == "other" and content.lstrip()[:1] != b"{":
-        return kind
-    cells = re.search(rb'"(?:cells|worksheets)"\s*:', content)
-    if kind in ("python", "other") and content.lstrip()[:1] == b"{" and cells:
+    is_json = content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{")
+    if kind in ("python", "other") and is_json and re.search(rb'"(?:cells|worksheets)"\s*:', content):
         return "notebook"
+    if kind in ("notebook", "other") and not is_json and _IMPORTS_ROS.search(content):
+        return "python"
     return kind

@@ -46,7 +46,7 @@ class Magic:
 
 def cell_magic(source: str) -> Magic:
     """Split a cell's magic from its code. Empty lines and comments above the magic do not matter."""
-    lines = source.replace("\r\n", "\n").split("\n")
+    lines = _without_indentation(source.replace("\r\n", "\n").split("\n"))
     for number, line in enumerate(lines):
         if match := _CELL.fullmatch(line.rstrip()):
             return Magic(match["name"], match["line"], "\n" * (number + 1) + "\n".join(lines[number + 1 :]))
@@ -57,12 +57,12 @@ def cell_magic(source: str) -> Magic:
 
 def _without_prompts(lines: list[str]) -> list[str]:
     first = next((line for line in lines if line.strip()), "")
-    if _PROMPT.match(first):
-        return [_PROMPT.sub("", line) for line in lines]
-    indent = first[: len(first) - len(first.lstrip())]
-    if indent and all(line.startswith(indent) or not line.strip() for line in lines):
-        return [line[len(indent) :] for line in lines]
-    return lines
+    return [_PROMPT.sub("", line) for line in lines] if _PROMPT.match(first) else lines
+
+
+def _without_indentation(lines: list[str]) -> list[str]:
+    first = next((line for line in lines if line.strip()), "")
+    return [line.removeprefix(first[: len(first) - len(first.lstrip())]) for line in lines]
 
 
 def without_commands(code: str, automagic: bool = False) -> str:

@@ -75,23 +75,29 @@ class NotebookCell:
 
 @dataclass(frozen=True)
 class Notebook:
-    """A notebook: its code cells in their order, and the version of Python that saved it, if known."""
+    """A notebook: its code cells in their order, its language, and the version of Python that saved it, if known."""
 
     cells: tuple[NotebookCell, ...]
     python: str = ""
+    language: str = ""
 
 
 def read_notebook(content: bytes) -> Notebook:
     """Read a notebook's file. Raises `Unreadable`."""
     data = _json(content)
     cells = _cells(data)
-    metadata = data.get("metadata")
-    info = metadata.get("language_info") if isinstance(metadata, dict) else None
-    version = info.get("version") if isinstance(info, dict) else ""
+    version, language = (_of_language(data.get("metadata"), key) for key in ("version", "name"))
     return Notebook(
         tuple(_cell(number, cell) for number, cell in enumerate(cells, start=1)),
-        version if isinstance(version, str) and re.fullmatch(r"3\.\d{1,2}(\.\w{1,8})?", version) else "",
+        version if re.fullmatch(r"3\.\d{1,2}(\.\w{1,8})?", version) else "",
+        language[:20],
     )
+
+
+def _of_language(metadata: Any, key: str) -> str:
+    info = metadata.get("language_info") if isinstance(metadata, dict) else None
+    value = info.get(key) if isinstance(info, dict) else ""
+    return value if isinstance(value, str) else ""
 
 
 def _json(content: bytes) -> dict[str, Any]:
@@ -109,17 +115,22 @@ def _json(content: bytes) -> dict[str, Any]:
         raise Unreadable(_not_json(content, error)) from None
     except RecursionError:
         raise Unreadable("It is not a valid notebook: its file is nested too deeply. Save it in Jupyter.") from None
-    except ValueError as error:
-        raise Unreadable(f"It is not a valid notebook: {error}. Open it in Jupyter and save it again.") from None
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise Unreadable(
+            f"It is not a valid notebook: line {line} of the file is not UTF-8. An editor has saved it in another "
+            "encoding: save it as UTF-8, or open your own copy in Jupyter, save it, and hand it in again."
+        ) from None
     if not isinstance(data, dict):
         raise Unreadable("It is not a valid notebook: its file holds no cells. Hand in the .ipynb that Jupyter saves.")
     return data
 
 
 def _not_json(content: bytes, error: json.JSONDecodeError) -> str:
-    if content.lstrip()[:1] == b"<":
+    content = content.removeprefix(b"\xef\xbb\xbf").lstrip()
+    if content.startswith(b"<"):
         return "It is not a valid notebook but a web page. Download the notebook's own file, which ends with .ipynb."
-    if not content.lstrip().startswith(b"{"):
+    if not content.startswith(b"{"):
         return "It is not a valid notebook. Open it in Jupyter, save it, and hand it in again."
     if error.pos >= len(error.doc.rstrip()) or "Unterminated" in error.msg:
         return (
@@ -146,7 +157,7 @@ def _cell(number: int, cell: dict[str, Any]) -> NotebookCell:
     ran = cell.get("execution_count", cell.get("prompt_number"))
     return NotebookCell(
         number,
-        _text(cell.get("source", cell.get("input", ""))),
+        _text(next((cell[key] for key in ("source", "input", "code") if key in cell), "")),
         _exercise(cell.get("metadata")),
         ran if isinstance(ran, int) else None,
         dict(_checked(cell.get("outputs"))),
@@ -154,8 +165,10 @@ def _cell(number: int, cell: dict[str, Any]) -> NotebookCell:
 
 
 def _text(source: Any) -> str:
-    lines = source if isinstance(source, list) else [source]
-    return "".join(line for line in lines if isinstance(line, str)).replace("\r\n", "\n")
+    lines = [line for line in (source if isinstance(source, list) else [source]) if isinstance(line, str)]
+    # Some programs write a cell's lines without their ends.
+    joint = "" if any("\n" in line for line in lines) else "\n"
+    return joint.join(lines).replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _exercise(metadata: Any) -> str:

@@ -14,15 +14,26 @@ import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from grader.submission import python_code
 from grader.submission.file_kinds import kind_of
 from grader.submission.places import LAUNCHER
 
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
 #: A line of an entry point: `beat = my_robot.beat_node:main`.
-_ENTRY = re.compile(r"\s*(?P<name>[\w.-]+)\s*=\s*(?P<module>[\w.]+)\s*(?::\s*(?P<function>\w+))?\s*")
+_ENTRY = re.compile(
+    r"\s*(?P<name>[^\s=]+)\s*=\s*(?P<module>[\w.]+)\s*(?::\s*(?P<function>[\w.]+))?\s*(?:\[[^\]]*\])?\s*"
+)
 _PACKAGE_NAME = re.compile(rb"<name>\s*([\w-]+)\s*</name>")
 _MANIFESTS = ("package.xml", "setup.py", "setup.cfg", "pyproject.toml")
+
+#: Where pyproject.toml has the executables.
+_SCRIPTS = (("project", "scripts"), ("project", "entry-points", "console_scripts"), ("tool", "poetry", "scripts"))
 
 #: Python files that are never the student's program.
 _NOT_PROGRAMS = re.compile(r"(?:setup|conftest|__init__|test_\w*|\w*_test|\w*[._]launch)\.py", re.IGNORECASE)
@@ -53,10 +64,23 @@ SETTINGS = {
     **{"namespace": "namespace", "arguments": "arguments", "args": "arguments", "ros_arguments": "arguments"},
 }
 
+_LAUNCH_FILE = re.compile(r"launch\.(?:py|xml|ya?ml)$|\.launch$")
+#: What a launch file can set for all nodes of a group, in Python, XML and YAML.
+_OF_GROUPS = re.compile(rb"SetRemap|SetParameters?|PushRosNamespace|set_remap|set_parameter|push[-_]ros[-_]namespace")
+
 
 def programs(files: Mapping[str, bytes]) -> list[str]:
-    """Return the paths of the Python files that can be programs."""
-    return [name for name in sorted(files) if kind_of(name) == "python" and not _is_support(name)]
+    """Return the paths of the Python files that can be programs.
+
+    Setup files, tests and launch files count only if they use rclpy and nothing else is there.
+    """
+    python = [name for name in sorted(files) if kind_of(name) == "python"]
+    own = [name for name in python if not _is_support(name) or _is_package_with_node(name, files)]
+    return own or [name for name in python if b"rclpy" in files[name]]
+
+
+def _is_package_with_node(name: str, files: Mapping[str, bytes]) -> bool:
+    return posixpath.basename(name) == "__init__.py" and b"rclpy" in files[name]
 
 
 def _is_support(name: str) -> bool:
@@ -76,13 +100,18 @@ def entry_points(files: Mapping[str, bytes]) -> list[EntryPoint]:
 
 def _entry_points(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoint]:
     for line in (*_of_setup(files, root), *_of_configuration(files, root), *_of_pyproject(files, root)):
-        if match := _ENTRY.fullmatch(line):
-            path = match["module"].replace(".", "/")
-            for file in (f"{path}.py", f"src/{path}.py", f"{path}/__init__.py"):
-                if posixpath.join(root, file) in files:
-                    yield EntryPoint(match["name"], posixpath.join(root, file), match["function"] or "main")
-                    break
+        if (match := _ENTRY.fullmatch(line)) and (file := _module_file(match["module"], root, files)):
+            yield EntryPoint(match["name"], file, match["function"] or "main")
     yield from _of_cmake(files, root)
+
+
+def _module_file(module: str, root: str, files: Mapping[str, bytes]) -> str:
+    """Return the file of a module in the package in `root`, in whatever folder its setup puts it; otherwise ""."""
+    path = module.replace(".", "/")
+    inside = {posixpath.relpath(name, root or "."): name for name in files if _below(name, root)}
+    ends = (f"{path}.py", f"{path}/__init__.py")
+    fitting = [file for file in inside if file in ends or file.endswith(tuple(f"/{end}" for end in ends))]
+    return inside[min(fitting, key=lambda file: (file.count("/"), file))] if fitting else ""
 
 
 def _text(files: Mapping[str, bytes], root: str, name: str) -> str:
@@ -91,10 +120,57 @@ def _text(files: Mapping[str, bytes], root: str, name: str) -> str:
 
 def _of_setup(files: Mapping[str, bytes], root: str) -> Iterator[str]:
     """Yield the strings in setup.py that have the form of an entry point."""
-    tree = python_code.tree_of(_text(files, root, "setup.py"))
+    tree = python_code.tree_of(_text(files, root, "setup.py")[:_LONGEST])
+    known: dict[str, str] = {}
+    for statement in tree.body if tree else ():
+        if isinstance(statement, ast.Assign) and (value := _string(statement.value, known)) is not None:
+            known |= {target.id: value for target in statement.targets if isinstance(target, ast.Name)}
     for node in ast.walk(tree) if tree else ():
-        if isinstance(node, ast.Constant) and isinstance(node.value, str) and ":" in node.value:
-            yield from node.value.splitlines()
+        text = _string(node, known) or ""
+        if ":" in text:
+            yield from text.splitlines()
+
+
+#: The longest setup.py (characters), and the longest string in it, that are read.
+_LONGEST = 20_000
+
+
+def _string(node: ast.AST, known: Mapping[str, str]) -> str | None:
+    """Return the string that an expression of strings and known names is, such as `f"beat = {package}.beat:main"`."""
+    try:
+        text = _folded(node, known)
+    except RecursionError:
+        return None
+    return text if text is not None and len(text) < _LONGEST else None
+
+
+def _folded(node: ast.AST, known: Mapping[str, str]) -> str | None:
+    if isinstance(node, ast.Constant):
+        return node.value if isinstance(node.value, str) else None
+    if isinstance(node, ast.Name):
+        return known.get(node.id)
+    if isinstance(node, ast.FormattedValue):
+        return _folded(node.value, known)
+    if isinstance(node, ast.JoinedStr):
+        parts = [_folded(part, known) for part in node.values]
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        parts = [_folded(node.left, known), _folded(node.right, known)]
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mod):
+        parts = _filled(_folded(node.left, known), "%s", node.right, known)
+    elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "format":
+        parts = _filled(_folded(node.func.value, known), "{}", ast.Tuple(node.args), known)
+    else:
+        return None
+    return None if None in parts else "".join(part for part in parts if part is not None)
+
+
+def _filled(pattern: str | None, hole: str, values: ast.expr, known: Mapping[str, str]) -> list[str | None]:
+    """Return a pattern's texts with the values between them; [None] if they do not fit."""
+    filling = [_folded(one, known) for one in (values.elts if isinstance(values, ast.Tuple) else [values])]
+    texts = (pattern or "").split(hole)
+    if len(texts) != len(filling) + 1:
+        return [None]
+    return [texts[0], *(part for pair in zip(filling, texts[1:], strict=True) for part in pair)]
 
 
 def _of_configuration(files: Mapping[str, bytes], root: str) -> Iterator[str]:
@@ -107,8 +183,16 @@ def _of_configuration(files: Mapping[str, bytes], root: str) -> Iterator[str]:
 
 
 def _of_pyproject(files: Mapping[str, bytes], root: str) -> Iterator[str]:
-    section = re.search(r"^\[project\.scripts\]\s*$(.*?)(?=^\[|\Z)", _text(files, root, "pyproject.toml"), re.M | re.S)
-    yield from section[1].replace('"', "").replace("'", "").splitlines() if section else ()
+    try:
+        whole = tomllib.loads(_text(files, root, "pyproject.toml"))
+    except (ValueError, RecursionError):
+        return
+    for place in _SCRIPTS:
+        scripts: Any = whole
+        for key in place:
+            scripts = scripts.get(key) if isinstance(scripts, dict) else None
+        for name, value in scripts.items() if isinstance(scripts, dict) else ():
+            yield f"{name} = {value}"
 
 
 def _of_cmake(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoint]:
@@ -164,7 +248,11 @@ def launch_settings(files: Mapping[str, bytes], file: str) -> list[str]:
     stem = posixpath.basename(file).removesuffix(".py")
     names = {stem, f"{stem}.py"} | {entry.name for entry in entry_points(files) if entry.file == file}
     nodes = [node for node in launched(files) if node.executable in names]
-    return list(dict.fromkeys(setting for node in nodes for setting in node.settings))
+    settings = [setting for node in nodes for setting in node.settings]
+    code = files[file].decode("utf-8", errors="replace")
+    settings += ["the node's name" for node in nodes if node.name and not python_code.creates(code, node.name)]
+    is_in_group = any(_OF_GROUPS.search(data) for name, data in files.items() if _LAUNCH_FILE.search(name))
+    return list(dict.fromkeys([*settings, *(["what it sets for a group"] if nodes and is_in_group else [])]))
 
 
 @dataclass(frozen=True)
@@ -197,7 +285,11 @@ def layout_of(file: str, files: Mapping[str, bytes], called: str = "") -> Layout
         chosen = {f"{missing}/{name}": data for name, data in chosen.items()}
         inside = f"{missing}/{inside}"
     chosen |= dict(_other_packages(chosen, files, root))
-    chosen = {name: data for name, data in chosen.items() if not _is_support(name) or name.endswith("__init__.py")}
+    chosen = {
+        name: data
+        for name, data in chosen.items()
+        if name == inside or not _is_support(name) or name.endswith("__init__.py")
+    }
     return Layout(chosen, inside, inside.removesuffix(".py").replace("/", ".") if "/" in inside else "")
 
 
@@ -256,6 +348,19 @@ def _has_package(root: str, files: Mapping[str, bytes]) -> bool:
     return any(_below(name, root) and name.endswith("/__init__.py") for name in files)
 
 
+def packages_of_messages(source: str, files: Mapping[str, bytes]) -> set[str]:
+    """Return the packages whose messages, services or actions a program imports, also in its modules among `files`."""
+    by_name = {posixpath.basename(name).removesuffix(".py"): name for name in files if name.endswith(".py")}
+    modules: set[str] = set()
+    texts = [source]
+    while texts:
+        new = python_code.imported(texts.pop(), relative=True) - modules
+        modules |= new
+        own = {by_name.pop(part, "") for module in new for part in module.split(".")} - {""}
+        texts += [files[name].decode("utf-8", errors="replace") for name in sorted(own)]
+    return {module.split(".")[0] for module in modules if module.split(".")[1:2] in (["msg"], ["srv"], ["action"])}
+
+
 def own_interfaces(files: Mapping[str, bytes]) -> set[str]:
     """Return the packages that define messages, services or actions, and are not installed here as well."""
     found = set()
@@ -277,12 +382,12 @@ def _is_installed(package: str) -> bool:
 #: Runs a module as `python -m` would, or its function as an installed executable does.
 _LAUNCHER = """\
 {note}
-import importlib, os, runpy, sys
+import importlib, operator, os, runpy, sys
 
 _here = os.path.dirname(os.path.abspath(__file__))
 sys.path[:1] = [_here, os.path.join(_here, {folder!r})]
 if {function!r}:
-    sys.exit(getattr(importlib.import_module({module!r}), {function!r})())
+    sys.exit(operator.attrgetter({function!r})(importlib.import_module({module!r}))())
 runpy.run_module({module!r}, run_name="__main__", alter_sys=True)
 """
 

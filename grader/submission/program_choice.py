@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 from grader.exercise.exercise import Exercise, ProgramFile
 from grader.submission import python_code
-from grader.submission.assembled_program import AssembledProgram, assemble
+from grader.submission.assembled_program import AssembledProgram, assemble, is_complete, joined
+from grader.submission.file_kinds import not_graded
 from grader.submission.notebook import Notebook, NotebookCell
 from grader.submission.places import without_marks
 from grader.submission.problems import AmbiguousProgram, Unreadable
@@ -39,13 +40,20 @@ def choose(notebook: Notebook, exercise: Exercise, target: ProgramFile, starters
     if not begun:
         if candidates:
             raise Unreadable(f"Your program is empty: there is no code in {candidates[-1].title} of the notebook.")
+        if "python" not in (notebook.language or "python").lower():
+            raise Unreadable(not_graded(notebook.language.capitalize()))
         raise Unreadable(_no_cell(notebook, target))
     # A piece that an editor split from the cell keeps the cell's metadata.
     numbers = {one.number for one in begun if one.name or _is_it(one.code, target)}
     programs = [(one, assemble(one, notebook.cells, exercise, numbers - {one.number})) for one in begun]
+    if len(begun) > 1 and not any(is_complete(program.code) for _, program in programs):
+        whole = joined(begun)
+        if is_complete(whole.code):
+            return Choice(whole.code, whole.cells, (_consists_of(whole),))
     chosen, why = _decided(programs, notebook, exercise, target, starters)
     cell, program = chosen
-    return Choice(program.code, program.cells, tuple(_notes(cell, program, candidates, why)))
+    others = _others(cell, program, candidates, notebook, target)
+    return Choice(program.code, program.cells, tuple(_notes(cell, program, others, why)))
 
 
 def _candidates(cells: Sequence[NotebookCell], exercise: Exercise, target: ProgramFile) -> list[NotebookCell]:
@@ -86,7 +94,7 @@ def _decided(
     starters: frozenset[str],
 ) -> tuple[tuple[NotebookCell, AssembledProgram], str]:
     """Return the cell that counts, with its program, and the reason."""
-    if len({digest_of(program.code) for _, program in programs}) == 1:
+    if _are_equal(programs):
         return programs[-1], ""
     if checked := _checked(programs, notebook, exercise, target):
         return checked, "it is the one that %check judged last"
@@ -99,13 +107,17 @@ def _decided(
         left = [one for one in programs if fits(*one)]
         if left:
             programs = left
-        if len({digest_of(program.code) for _, program in programs}) == 1:
+        if _are_equal(programs):
             return programs[-1], why
     titles = ", ".join(cell.title for cell, _ in programs)
     raise AmbiguousProgram(
         f"{len(programs)} cells of the notebook can be {target.file}, they differ, and no saved %check says which one "
         f"counts: {titles}. Delete or empty the others, or run %check and save the notebook."
     )
+
+
+def _are_equal(programs: Sequence[tuple[NotebookCell, AssembledProgram]]) -> bool:
+    return len({python_code.normalized(program.code) for _, program in programs}) == 1
 
 
 def _is_it(code: str, target: ProgramFile) -> bool:
@@ -140,23 +152,39 @@ def _run_before(
     """Return the program whose cell was the last to run before a check: an older Spinbook, which saved no record,
     judged that one.
     """
-    if len({digest_of(program.code) for _, program in programs}) == 1:
+    if _are_equal(programs):
         return programs[-1]
     earlier = [program for program in programs if check.ran and 0 < (program[0].ran or 0) < check.ran]
     return max(earlier, key=lambda program: program[0].ran or 0) if earlier else None
 
 
-def _notes(cell: NotebookCell, program: AssembledProgram, candidates: Sequence[NotebookCell], why: str) -> list[str]:
-    notes = []
-    others = [one for one in candidates if one.number not in program.cells and one.code.strip() != cell.code.strip()]
+def _others(
+    cell: NotebookCell,
+    program: AssembledProgram,
+    candidates: Sequence[NotebookCell],
+    notebook: Notebook,
+    target: ProgramFile,
+) -> list[NotebookCell]:
+    """Return the cells that did not become part of the program, but are for the exercise as well."""
+    like_it = [one for one in notebook.cells if one.magic.name != "part" and _is_it(one.code, target)]
+    numbers = {one.number for one in (*candidates, *like_it)} - set(program.cells)
+    same = python_code.normalized(cell.code)
+    return [one for one in notebook.cells if one.number in numbers and python_code.normalized(one.code) != same]
+
+
+def _notes(cell: NotebookCell, program: AssembledProgram, others: Sequence[NotebookCell], why: str) -> Iterator[str]:
     if others:
+        if not why and any(not python_code.is_empty(one.code) for one in others):
+            why = "it is the exercise's own cell"
         reason = why or ("the others have no program" if len(others) > 1 else "the other one has no program")
         text = f"{len(others) + 1} cells of the notebook are for this exercise."
-        notes.append(f"{text} Taken: {cell.title}, because {reason}.")
+        yield f"{text} Taken: {cell.title}, because {reason}."
     if len(program.cells) > 1:
-        numbers = ", ".join(map(str, program.cells))
-        notes.append(f"Your program consists of the code cells {numbers} of the notebook.")
-    return notes
+        yield _consists_of(program)
+
+
+def _consists_of(program: AssembledProgram) -> str:
+    return f"Your program consists of the code cells {', '.join(map(str, program.cells))} of the notebook."
 
 
 def _no_cell(notebook: Notebook, target: ProgramFile) -> str:

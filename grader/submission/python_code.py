@@ -58,6 +58,12 @@ def bare(code: str) -> str:
     return "\n".join(line.rstrip() for line in code.replace("\r\n", "\n").split("\n")).strip()
 
 
+def normalized(code: str) -> str:
+    """Return a text that is equal for programs that differ only in comments and layout."""
+    tree = tree_of(code)
+    return ast.dump(tree) if tree else bare(code)
+
+
 def defines(code: str, class_name: str) -> bool:
     """Return whether the code defines this class."""
     return bool(class_name) and bool(re.search(rf"^class\s+{re.escape(class_name)}\b", code, re.MULTILINE))
@@ -160,13 +166,17 @@ def imports(code: str) -> set[str]:
     return bound(one for one in tree.body if isinstance(one, ast.Import | ast.ImportFrom)) if tree else set()
 
 
-def imported(code: str) -> set[str]:
-    """Return the modules that the code imports anywhere, with `package.name` for `from package import name`."""
+def imported(code: str, relative: bool = False) -> set[str]:
+    """Return the modules that the code imports anywhere, with `package.name` for `from package import name`.
+
+    With `relative`, `from .module import name` counts as `module` and `module.name`.
+    """
     tree = tree_of(code)
     found: set[str] = set()
     for node in ast.walk(tree) if tree else ():
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and not node.level and node.module:
-            found |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+        elif isinstance(node, ast.ImportFrom) and (relative or not node.level):
+            module = node.module or ""
+            found |= {module, *(f"{module}.{alias.name}".lstrip(".") for alias in node.names)} - {""}
     return found

@@ -25,7 +25,7 @@ from grader.submission.code import Code, code_of
 from grader.submission.places import place_of
 from grader.submission.problems import AmbiguousProgram, Unreadable
 from grader.submission.program_choice import digest_of
-from grader.submission.python_code import missing, starts
+from grader.submission.python_code import missing, normalized, starts
 from grader.submission.reader import of_code
 
 
@@ -34,7 +34,7 @@ def code_in(content: bytes, exercise: Exercise) -> Code:
 
 
 def is_program(code: Code, expected: str = PROGRAM) -> bool:
-    return digest_of(code.source) == digest_of(expected)
+    return normalized(code.source) == normalized(expected)
 
 
 def handed_out(exercise: Exercise) -> str:
@@ -49,6 +49,9 @@ BESIDE = {
     "a copy with its first line alone": cell("%%node heartbeat\n", EXERCISE),
     "a copy with only comments": cell("%%node heartbeat\n# TODO\n", EXERCISE),
     "the same once more": cell(NODE, EXERCISE),
+    "the same with notes in it": cell(
+        NODE.replace("    def beat", "    # 4 Hz!\n\n    def beat") + "# done\n", EXERCISE
+    ),
     "a scratch cell with its own magic": cell("%%node scratch\n" + PROGRAM.replace("0.25", "1.0"), EXERCISE),
     "a try of something else": cell("%%node heartbeat\nprint('hello')\n", EXERCISE),
     "bash": cell("%%bash\nclass Heartbeat\n", EXERCISE),
@@ -70,6 +73,9 @@ def test_which_cell_was_taken_is_said_and_why(exercise: Exercise) -> None:
         "has no program.",
     )
     assert code_in(notebook(NODE, "x = 1"), exercise).notes == ()
+    # An older version in an ordinary cell, or below another name, is not hidden.
+    for other in (PROGRAM.replace("0.25", "0.5"), OLD.replace("%%node heartbeat", "%%node try1")):
+        assert "because it is the exercise's own cell" in code_in(notebook(other, NODE), exercise).notes[0]
 
 
 @pytest.mark.parametrize("order", [(NODE, OLD), (OLD, NODE)])
@@ -154,6 +160,11 @@ PIECES = {
     "a class that Spinbook starts": [f"%%node heartbeat --class Heartbeat\n{IMPORTS}\n{CLASS}"],
     "a main that Spinbook calls": [f"%%node heartbeat --main\n{IMPORTS}\n{CLASS}\n{MAIN}"],
     "imports that Spinbook adds": [f"%%node heartbeat --usual-imports --main\n{CLASS}\n{MAIN}"],
+    "parts that all have the exercise's magic": [
+        f"%%node heartbeat\n{IMPORTS}\n{INIT}",
+        f"%%node heartbeat\n{BEAT}",
+        f"%%node heartbeat\n{MAIN}\n{GUARD}",
+    ],
     "other cells between": [
         IMPORTS,
         "import matplotlib.pyplot as plt\nplt.plot([1])\n",

@@ -15,6 +15,7 @@ from grader.submission import NoSubmission, read
 from grader.submission.code import NO_CPP
 from grader.submission.file_kinds import can_be_read
 from grader.submission.program_choice import digest_of
+from grader.submission.python_code import normalized
 from grader.submission.python_version import newer_name, newer_syntax, running
 from grader.submission.reader import of_content
 
@@ -27,6 +28,12 @@ NAMES = {
     "heartbeat (1).py": PROGRAM.encode(),
     "heartbeat.py (1)": PROGRAM.encode(),
     "heartbeat.py.download": PROGRAM.encode(),
+    "heartbeat.py(2)": PROGRAM.encode(),
+    "heartbeat.py - Kopie": PROGRAM.encode(),
+    "heartbeat.py.bak": PROGRAM.encode(),
+    "heartbeat.txt": PROGRAM.encode(),
+    "heartbeat": PROGRAM.encode(),
+    "week3.ipynb": PROGRAM.encode(),
     "week3.IPYNB": notebook(NODE),
     "week3.ipynb.json": notebook(NODE),
     "week3.ipynb.txt": notebook(NODE),
@@ -45,7 +52,7 @@ def test_any_suffix_in_any_case_is_read(name: str, tmp_path: Path, exercise: Exe
     submission = read(str(tmp_path / name), exercise)
     assert submission.program, submission.problem
     assert digest_of(submission.source) == digest_of(PROGRAM)
-    assert can_be_read(name) or name == "week3.json"
+    assert can_be_read(name) or name in ("week3.json", "heartbeat.txt", "heartbeat")
 
 
 SAVED = notebook(NODE)
@@ -66,7 +73,13 @@ BROKEN = {
     "deeply nested": (b"[" * 100_000, "It is not a valid notebook"),
     "deeply nested cells": (b'{"cells": ' + b"[" * 100_000, "It is not a valid notebook"),
     "half of UTF-16": (SAVED.decode().encode("utf-16")[:201], "It is not a valid notebook"),
-    "text": (b"import rclpy\n", "It is not a valid notebook"),
+    "text": (b"hello\n", "It is not a valid notebook"),
+    "a web page with a BOM": (b"\xef\xbb\xbf<!DOCTYPE html>\n", "a web page. Download the notebook's own file"),
+    "Latin-1": (notebook(NODE + "# M\u00fcller").replace(b"\\u00fc", b"\xfc"), "line 1 of the file is not UTF-8"),
+    "a C++ notebook": (
+        notebook("int main() {}", language_info={"name": "c++"}),
+        "C++ is not graded yet: hand in Python.",
+    ),
 }
 
 
@@ -97,6 +110,10 @@ READABLE = {
     "text with line ends of Windows": json.dumps(
         {"cells": [{**cell(""), "source": NODE.replace("\n", "\r\n")}], "metadata": {}, "nbformat": 4}
     ).encode(),
+    "lines without their ends": json.dumps({"cells": [{**cell(""), "source": NODE.split("\n")}]}).encode(),
+    "line ends of an old Macintosh": json.dumps({"cells": [{**cell(""), "source": NODE.replace("\n", "\r")}]}).encode(),
+    "a blank before the magic": notebook(" " + NODE),
+    "nbformat 1": json.dumps({"cells": [{"cell_type": "code", "code": NODE}], "nbformat": 1}).encode(),
     "odd cells": json.dumps(
         {"cells": [None, 3, {"cell_type": 4}, {"cell_type": "code", "source": {"a": 1}, "metadata": [1], "outputs": 7},
                    {"cell_type": "code", "source": ["x = 1", 3], "outputs": [None, {"text": [1], "metadata": 2}]},
@@ -107,7 +124,7 @@ READABLE = {
 
 @pytest.mark.parametrize("content", READABLE.values(), ids=READABLE)
 def test_other_forms_of_a_notebook_are_read(content: bytes, exercise: Exercise) -> None:
-    assert digest_of(of_content("week3.ipynb", content, exercise).source) == digest_of(PROGRAM)
+    assert normalized(of_content("week3.ipynb", content, exercise).source) == normalized(PROGRAM)
 
 
 def test_jupyters_own_copy_is_read_with_a_word(exercise: Exercise) -> None:
@@ -145,6 +162,8 @@ def test_a_file_of_another_kind_is_a_submission_with_a_problem(name: str, tmp_pa
         ("heartbeat.cpp", b"int main() {}\n"),
         ("heartbeat.HPP", b""),
         ("beat.zip", zipped({"p/package.xml": "<name>p</name>", "p/src/heartbeat.cpp": "int main() {}\n"})),
+        ("heartbeat.py", b"#include <rclcpp/rclcpp.hpp>\nint main() {}\n"),
+        ("beat.zip", zipped({"src/heartbeat.cpp": "", "src/heartbeat.h": "", "tools/plot.py": "print(1)\n"})),
     ],
 )
 def test_cpp_is_refused_by_name(name: str, content: bytes, exercise: Exercise, grading: Grading) -> None:
@@ -152,6 +171,21 @@ def test_cpp_is_refused_by_name(name: str, content: bytes, exercise: Exercise, g
     grade = grading.grade(of_content(name, content, exercise))
     assert (grade.outcome, grade.score, grade.message) == ("did-not-start", 0.0, NO_CPP)
     assert NO_CPP == "C++ is not graded yet: hand in Python."
+
+
+def test_other_languages_are_refused_by_name_too(exercise: Exercise) -> None:
+    assert of_content("heartbeat.rs", b"", exercise).problem == "Rust is not graded yet: hand in Python."
+    crate = zipped({"Cargo.toml": "", "src/main.rs": ""})
+    assert of_content("beat.zip", crate, exercise).problem == "Rust is not graded yet: hand in Python."
+
+
+@pytest.mark.parametrize("before", ["%%node heartbeat\n", "!pip install rclpy\n", "# mine\n%matplotlib inline\n"])
+def test_a_notebooks_commands_in_a_file_are_left_out_with_a_word(before: str, exercise: Exercise) -> None:
+    submission = of_content("heartbeat.py", (before + PROGRAM).encode(), exercise)
+    assert submission.source.endswith(PROGRAM)
+    assert "lines that only a notebook understands" in submission.notes[0]
+    assert submission.source.count("\n") == (before + PROGRAM).count("\n")
+    assert of_content("heartbeat.py", b"x = = 1\n%time y\n", exercise).notes == ()
 
 
 #: Programs that only a newer Python reads -> its version.

@@ -122,6 +122,34 @@ UPLOADS = {
             }
         ),
     ),
+    "entry points in pyproject.toml": (
+        "beat.zip",
+        zipped(
+            {
+                **inside("p/lib", {name: PACKAGE[name] for name in PACKAGE if name.startswith("my_robot/")}),
+                "p/pyproject.toml": "[project]\nscripts = {beat = 'my_robot.beat_node:main'} # installed\n",
+            }
+        ),
+    ),
+    "an entry point from parts": (
+        "beat.zip",
+        zipped({**inside("p"), "p/setup.py": SETUP.replace("'beat = my_robot.beat", "f'beat = {package_name}.beat")}),
+    ),
+    "a program in a folder of tests": (
+        "beat.zip",
+        zipped({"tests/test_beat.py": IN_PACKAGE.replace("my_robot.rates", "rates"), "tests/rates.py": RATES}),
+    ),
+    "a program in __init__.py": (
+        "beat.zip",
+        zipped(
+            {
+                **inside("p"),
+                "p/my_robot/__init__.py": IN_PACKAGE,
+                "p/my_robot/beat_node.py": "",
+                "p/setup.py": SETUP.replace("my_robot.beat_node", "my_robot"),
+            }
+        ),
+    ),
     "files beside each other": (
         "beat.zip",
         zipped({"beat.py": IN_PACKAGE.replace("my_robot.rates", "rates"), "rates.py": RATES}),
@@ -139,7 +167,7 @@ def test_the_program_of_an_upload_is_found_with_its_modules(name: str, content: 
 
 @pytest.mark.parametrize(
     "name",
-    ["a workspace with what was built", "the inner folder's content", "installed by CMake", "files beside each other"],
+    ["a workspace with what was built", "the inner folder's content", "installed by CMake", "a program in __init__.py"],
 )
 def test_the_program_of_an_upload_runs(name: str, exercise: Exercise, grading: Grading) -> None:
     grade = grading.grade(of_content(*UPLOADS[name], exercise))
@@ -238,6 +266,8 @@ QUESTIONS = {
     "two of other names": {"new.py": PROGRAM, "old.py": OLD.partition("\n")[2]},
     "two notebooks": {"a.ipynb": notebook(NODE), "b.ipynb": notebook(OLD)},
     "cells": {"a.ipynb": notebook(NODE, OLD)},
+    "a file and a notebook": {"heartbeat.py": PROGRAM, "a.ipynb": notebook(OLD)},
+    "a download and another": {"heartbeat.py": PROGRAM, "heartbeat (1).py": OLD.partition("\n")[2]},
 }
 
 
@@ -249,7 +279,8 @@ def test_two_programs_that_differ_are_a_question_and_no_score(
     assert submission.question
     assert not submission.program
     grade = grading.grade(submission)
-    assert (grade.outcome, grade.score, grade.verdicts, grade.message) == ("undecided", 0.0, (), submission.question)
+    assert (grade.outcome, grade.score, grade.verdicts) == ("undecided", 0.0, ())
+    assert grade.message.endswith(submission.question)
     assert not grade.has_score
 
 
@@ -287,6 +318,10 @@ HOSTILE = {
     "a truncated tar": tarred({"heartbeat.py": PROGRAM})[:100],
     "not an archive": b"PK\3\4",
     "a setup.py without end": zipped({"setup.py": "(" * 100_000, "package.xml": "<", "heartbeat.py": PROGRAM}),
+    "a setup.py whose strings double": zipped(
+        {"setup.py": "a = ':'\n" + "a = f'{a}{a}'\n" * 99 + "b" + " + b" * 999, "heartbeat.py": PROGRAM}
+    ),
+    "a pyproject.toml of rubbish": zipped({"pyproject.toml": "[project]\nscripts = 3\n[x", "heartbeat.py": PROGRAM}),
     "a setup.cfg of rubbish": zipped({"setup.cfg": "[[[\n=\n", "heartbeat.py": PROGRAM}),
 }
 
@@ -311,6 +346,9 @@ def test_messages_of_their_own_are_a_question_unless_they_are_the_courses(
     assert of_content("ws.zip", zipped(files), exercise).program
     files["src/my_robot/my_robot/beat_node.py"] = f"from my_msgs.msg import Beat\n{IN_PACKAGE}"
     question = of_content("ws.zip", zipped(files), exercise).question
+    helped = {**files, "src/my_robot/my_robot/beat_node.py": IN_PACKAGE}
+    helped["src/my_robot/my_robot/rates.py"] = f"from my_msgs.msg import Beat\n{RATES}"
+    assert of_content("ws.zip", zipped(helped), exercise).question == question
     assert "imports my_msgs" in question
     assert "the course's folder interfaces/my_msgs/" in question
     (tmp_path / "my_msgs").mkdir()
@@ -325,6 +363,9 @@ def test_messages_of_their_own_are_a_question_unless_they_are_the_courses(
         ("a.launch.py", "Node(executable='beat', remappings=[('a', 'b')], namespace='x')", "remappings, namespace"),
         ("a.launch.py", "Node(executable='beat', parameters=[{'rate': 4.0}])", "parameters"),
         ("a.launch.py", "Node(executable='another', namespace='x')", ""),
+        ("a.launch.py", "Node(executable='beat', name='mine')", "the node's name"),
+        ("a.launch.py", "Node(executable='beat', name='heartbeat')", ""),
+        ("a.launch.py", "SetRemap('a', 'b'); Node(executable='beat')", "what it sets for a group"),
         ("a.launch.py", "Node(package='my_robot', executable='beat', output='screen')", ""),
         ("a.launch.xml", '<launch><node exec="beat" namespace="x"/><node exec="y" args="z"/></launch>', "namespace"),
         ("a.launch.xml", '<launch><node exec="beat"><remap from="a" to="b"/></node></launch>', "remappings"),
