@@ -16,11 +16,12 @@ from grader.classroom.formats.format import UploadedFile
 from grader.classroom.formats.per_student import without_suffix
 from grader.classroom.groups import Attempt, Group, Unit, in_groups
 from grader.classroom.names import normal, unique_ids
-from grader.classroom.recogniser import Recogniser, Recognition, can_be_graded
+from grader.classroom.recogniser import GRADABLE, Recogniser, Recognition, can_be_graded
 from grader.classroom.roster import RosterRow, match, signs, with_row
 from grader.classroom.submissions import File, Question, StudentSubmission, Submissions, SubmissionsError
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Skipped, Student
+from grader.submission.file_kinds import can_be_read, kind_of_content
 
 KINDS = "not one of .py, .ipynb, .zip"
 
@@ -54,7 +55,7 @@ def collect(source: Path, exercise: Exercise, unpack_into: Path, options: Collec
         found = ClassFiles(f"the files that {source.name} names", uploads, skipped, absent, together=False)
     else:
         found = _found(source, exercise, unpack_into, options)
-    if not any(can_be_graded(file.name) or file.path.is_dir() for file, _ in found.uploads):
+    if not any(can_be_read(file.name) or file.path.is_dir() for file, _ in found.uploads):
         text = "".join(f"\n  {skip.file}: {skip.why}" for skip in found.skipped[:10])
         raise SubmissionsError(f"There is no submission in it.{text}")
     return Collector(unpack_into, options, found.together).submissions(found)
@@ -239,8 +240,15 @@ def _named(
 
 
 def _not_gradable(handed_in: Sequence[StudentSubmission]) -> list[str]:
-    files = [one.file.name for one in handed_in if not can_be_graded(one.file.name) and not one.file.path.is_dir()]
+    files = [one.file.name for one in handed_in if not can_be_graded(one.file.name) and not _has_work(one.file.path)]
     return [f"handed in, but {KINDS}: {', '.join(files)}"] if files else []
+
+
+def _has_work(path: Path) -> bool:
+    """Return whether this is a folder, or a file whose content is a program though its name does not say so."""
+    if not path.is_file() or path.is_symlink():
+        return path.is_dir()
+    return kind_of_content(path.read_bytes(), "other") in GRADABLE
 
 
 def _notes(handed_in: Sequence[StudentSubmission]) -> list[str]:

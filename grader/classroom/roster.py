@@ -6,15 +6,15 @@ import re
 from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime, tzinfo
+from datetime import tzinfo
 from functools import cache
 from pathlib import Path
 
 from grader.classroom.formats.registry import PLATFORMS
 from grader.classroom.names import comparable, normal, student_id
 from grader.classroom.submissions import SubmissionsError
-from grader.classroom.tables import table_rows
-from grader.classroom.times import UNKNOWN, Time, localized, read_time
+from grader.classroom.tables import platform_rows
+from grader.classroom.times import UNKNOWN, Time, read_time
 from grader.grading.grade import Student
 
 #: Columns in which platforms identify students.
@@ -23,11 +23,11 @@ IDENTITY = {
     *("SIS User ID", "SIS Login ID", "Email", "student", "login", "username"),
 }
 
+#: Columns that say who a student is, in a table that is not a platform's.
+WHO = ("student", "username", "login", "email", "email address")
+
 #: The column with the time of submission, in our own table and in Moodle's grading worksheet.
 SUBMITTED = ("submitted", "Last modified (submission)")
-
-#: How Moodle writes a time in English (langconfig.php, strftimedatetime).
-MOODLE_TIMES = ("%A, %d %B %Y, %I:%M %p", "%A, %d %B %Y, %H:%M", "%d %B %Y, %I:%M %p", "%d/%m/%y, %H:%M")
 
 
 @dataclass(frozen=True)
@@ -40,17 +40,18 @@ class RosterRow:
 
 def read_roster(table: Path, zone: tzinfo | None) -> tuple[RosterRow, ...]:
     """Return the students in a table with the column student, and optionally name, email, submitted and others, or in a
-    list that a platform has exported. Times without a zone are in `zone`.
+    list that a platform has exported. Instead of student, a column may be called username, login or email. Times
+    without a zone are in `zone`.
 
     Raises `SubmissionsError` for a table that has none of these columns, and for a row with a mistake.
     """
     rows: dict[str, RosterRow] = {}
-    for number, row in table_rows(table, ()):
+    for number, row in platform_rows(table, lambda columns: _student(columns) is not None):
         student = _student(row)
         if student is None:
             raise SubmissionsError(
                 f"{table}:{number}: no column says who this is. Add a column student, or give the list of students, "
-                "grades or submissions that your platform exports."
+                "grades or submissions that your platform exports (Moodle: with English as your language there)."
             )
         if student.id:  # a student in two sections is listed twice
             rows.setdefault(student.id, RosterRow(student, _time(row, f"{table}:{number}", zone)))
@@ -58,11 +59,14 @@ def read_roster(table: Path, zone: tzinfo | None) -> tuple[RosterRow, ...]:
 
 
 def _student(row: Mapping[str, str]) -> Student | None:
-    if "student" in row:
-        return generic_student(row) if row["student"] else None
-    if row.get("Student", "").strip() in ("Points Possible", "Student, Test"):  # Canvas's own rows
-        return Student("")
-    return next((student for form in PLATFORMS if form.of_row and (student := form.of_row(row))), None)
+    if {"Student", "ID", "Section"} <= row.keys() and (row["Student"] == "Student, Test" or not row["ID"].isdigit()):
+        return Student("")  # Canvas's own rows
+    known = next((student for form in PLATFORMS if form.of_row and (student := form.of_row(row))), None)
+    own = {name.casefold(): value for name, value in row.items()}
+    who = next((own[name] for name in WHO if own.get(name)), "")
+    name = own.get("name") or own.get("full name") or " ".join(filter(None, map(own.get, ("first name", "last name"))))
+    email = own.get("email") or own.get("email address", "")
+    return known or (generic_student({**row, "student": who, "name": name, "email": email}) if who else None)
 
 
 def generic_student(row: Mapping[str, str]) -> Student:
@@ -76,12 +80,6 @@ def _time(row: Mapping[str, str], place: str, zone: tzinfo | None) -> Time:
     if not column:
         return UNKNOWN
     source = "the roster" if column == "submitted" else "Moodle's worksheet"
-    for written in MOODLE_TIMES:
-        try:
-            text = re.sub(r"\s+", " ", row[column])
-            return Time(localized(datetime.strptime(text, written), zone), source)
-        except ValueError:
-            continue
     time = read_time(row[column], source, zone, zone)
     if time.fault:
         raise SubmissionsError(f"{place}: {column} = {row[column]!r}. Write it as 2026-11-22 23:59.")

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Callable, Iterable, Sequence
+from itertools import zip_longest
 from pathlib import Path
 
 from grader.classroom.submissions import SubmissionsError
@@ -24,25 +26,67 @@ LONGEST_CELL = 20_000
 def table_rows(table: Path, needed: Sequence[str]) -> list[tuple[int, dict[str, str]]]:
     """Return the rows with their line numbers. Spaces around values are removed, and empty rows are left out.
 
-    Commas, semicolons or tabs separate columns. Raises `SubmissionsError` if the file can't be read or lacks a column.
+    Commas, semicolons or tabs separate columns; names of `needed` columns may be in any case. Raises `SubmissionsError`
+    if the file can't be read, lacks a column, or has a row with more values than columns.
     """
-    try:
-        text = table.read_bytes().decode("utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise SubmissionsError(f"{table}: it can't be read: {error}. Save it as CSV in UTF-8.") from None
-    first = text.partition("\n")[0]
-    reader = csv.DictReader(io.StringIO(text), delimiter=max(",;\t", key=first.count), restval="")
-    columns = [column.strip() for column in reader.fieldnames or []]
+    number, columns, rows = _read(table, lambda columns: {*needed} <= {column.casefold() for column in columns})
+    known = {column.casefold() for column in columns}
     for column in needed:
-        if column not in columns:
-            there = ", ".join(columns) or "none"
-            raise SubmissionsError(f"{table}:1: there is no column {column!r} (there are: {there}).")
-    reader.fieldnames = columns
+        if column not in known:
+            raise SubmissionsError(
+                f"{table}:{number}: there is no column {column!r} (there are: {', '.join(columns) or 'none'})."
+            )
+    return _by_column(table, [one.casefold() if one.casefold() in needed else one for one in columns], rows)
+
+
+def platform_rows(table: Path, is_header: Callable[[dict[str, str]], bool]) -> list[tuple[int, dict[str, str]]]:
+    """Return the rows below the header, which may have a title above it. Raises `SubmissionsError` as `table_rows`."""
+    _, columns, rows = _read(table, lambda columns: is_header(dict.fromkeys(columns, "1")))
+    if not rows:
+        raise SubmissionsError(f"{table}: it has no rows below its columns.")
+    return _by_column(table, columns, rows)
+
+
+def _read(table: Path, is_header: Callable[[list[str]], bool]) -> tuple[int, list[str], list[tuple[int, list[str]]]]:
+    """Return the header's line and columns, and the rows below it. It is the first line that fits, or the first one."""
+    text = _text_of(table)
+    hint = re.match(r"sep=(.)\n", text)  # Excel's
+    separator = hint[1] if hint else max(",;\t", key="\n".join(text.split("\n")[:5]).count)
+    reader = csv.reader(io.StringIO(text, newline=None), delimiter=separator, strict=True)
     try:
-        rows = [(reader.line_num, {column: (row[column] or "").strip() for column in columns}) for row in reader]
+        lines = [(reader.line_num, [cell.strip() for cell in cells]) for cells in reader if any(map(str.strip, cells))]
     except csv.Error as error:
-        raise SubmissionsError(f"{table}:{reader.line_num}: {error}") from None
-    return [(number, row) for number, row in rows if any(row.values())]
+        raise SubmissionsError(f"{table}:{reader.line_num}: {error}. Is a quotation mark missing?") from None
+    lines = lines[bool(hint) :]
+    first = next((index for index, (_, cells) in enumerate(lines[:5]) if is_header(cells)), 0)
+    number, columns = lines[first] if lines else (1, [])
+    if double := next((column for column in columns if column and columns.count(column) > 1), ""):
+        raise SubmissionsError(f"{table}:{number}: two columns are called {double!r}. Rename or remove one of them.")
+    return number, columns, lines[first + 1 :]
+
+
+def _text_of(table: Path) -> str:
+    """Return a table's text, in UTF-8 or, as spreadsheets save it with a byte order mark, in UTF-16."""
+    try:
+        content = table.read_bytes()
+        text = content.decode("utf-16" if content.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig")
+        if "\0" in text or content.startswith(b"PK\3\4"):
+            raise ValueError("it is not a text file")
+    except (OSError, ValueError) as error:
+        raise SubmissionsError(f"{table}: it can't be read: {error}. Save it as CSV in UTF-8.") from None
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _by_column(
+    table: Path, columns: list[str], rows: Sequence[tuple[int, list[str]]]
+) -> list[tuple[int, dict[str, str]]]:
+    for number, cells in rows:
+        if any(cells[len(columns) :]):
+            raise SubmissionsError(
+                f"{table}:{number}: {len(cells)} values for {len(columns)} columns. Put a value that has a comma in it "
+                'into quotation marks: "Müller, Anna".'
+            )
+    return [(number, dict(zip_longest(columns, cells[: len(columns)], fillvalue=""))) for number, cells in rows]
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:

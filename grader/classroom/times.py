@@ -40,17 +40,22 @@ _HOURS = {
 #: Each of these means different times in different countries.
 _AMBIGUOUS = {"AST", "BST", "CDT", "CST", "EST", "EDT", "IST", "MST", "PST", "WST"}
 
-_WRITTEN = re.compile(
-    r"(?P<day>\d{4}-\d\d-\d\d)(?:[ T]+(?P<time>\d\d:\d\d(?::\d\d)?)(?:[.,]\d+)?)?\s*(?P<zone>\S.*)?",
-    re.IGNORECASE,
+#: How platforms and people write a time. A date of numbers has its year first, or dots: 11/12/2026 is two dates.
+_CLOCK = r"(?P<hour>\d\d?):?(?P<minute>\d\d)(?::?(?P<second>\d\d)(?:[.,]\d+)?)?(?: ?(?P<half>[ap])\.?m\b\.?)?"
+_REST = rf"(?:(?:T|,? (?:at )?){_CLOCK})? ?(?P<zone>\S.*)?"
+_WRITTEN = tuple(
+    re.compile(pattern, re.IGNORECASE)
+    for pattern in (
+        rf"(?P<year>\d{{4}})([-/]?)(?P<month>\d\d)\2(?P<day>\d\d){_REST}",
+        rf"(?P<day>\d\d?)\.(?P<month>\d\d?)\.(?P<year>\d{{4}}){_REST}",
+        rf"(?:[a-z]+,? )?(?P<day>\d\d?) (?P<month>[a-z]+)\.?,? (?P<year>\d{{4}}){_REST}",
+        rf"(?:[a-z]+,? )?(?P<month>[a-z]+)\.? (?P<day>\d\d?),? (?P<year>\d{{4}}){_REST}",
+        rf"[a-z]{{3}} (?P<month>[a-z]{{3}}) (?P<day>\d\d?) {_CLOCK} (?:(?P<zone>\S+) )?(?P<year>\d{{4}})",  # as `date`
+    )
 )
-#: As `date` and `date -R` write them: "Sun Nov 22 10:00:00 UTC 2026", "Sun, 22 Nov 2026 10:00:00 +0100".
-_MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
-_WORDED = (
-    re.compile(r"[a-z]{3} (?P<month>[a-z]{3}) +(?P<day>\d\d?) (?P<time>[\d:]+) (?P<zone>\S+) (?P<year>\d{4})", re.I),
-    re.compile(
-        r"(?:[a-z]{3}, )?(?P<day>\d\d?) (?P<month>[a-z]{3}) (?P<year>\d{4}) (?P<time>[\d:]+) ?(?P<zone>.*)", re.I
-    ),
+_MONTHS = (
+    *("january", "february", "march", "april", "may", "june"),
+    *("july", "august", "september", "october", "november", "december"),
 )
 _DIGITS = re.compile(r"(\d{14})\d{0,3}")
 _OFFSET = re.compile(r"(?:UTC|GMT)?([+-])(\d\d?)(?::?([0-5]\d))?")
@@ -62,35 +67,33 @@ def read_time(text: str, source: str, zone: tzinfo | None, near: tzinfo | None =
     `zone` applies to a time without one; `near` is preferred if an abbreviation stands for several zones. None is this
     machine's zone. A text that can't be read becomes the `fault`.
     """
-    line = next(iter(text.strip("\ufeff \t\r\n\0").splitlines()), "").strip()
+    line = re.sub(r"\s+", " ", next(iter(text.strip("\ufeff \t\r\n\0").splitlines()), "").strip())
     try:
-        match, digits = _WRITTEN.fullmatch(_in_digits(line)), _DIGITS.fullmatch(line)
-        if digits:  # Sakai's older form, in UTC
+        if digits := _DIGITS.fullmatch(line):  # Sakai's older form, in UTC
             written = datetime.strptime(digits[1], "%Y%m%d%H%M%S")
             return Time(written.replace(tzinfo=timezone.utc), source)
-        if not match:
-            raise ValueError
-        written = datetime.fromisoformat(f"{match['day']} {match['time'] or '00:00'}")
-        at, note = _in_zone(written, (match["zone"] or "").strip(), zone, near)
+        match = next(filter(None, (pattern.fullmatch(line) for pattern in _WRITTEN)))
+        at, note = _in_zone(_as_written(match), (match["zone"] or "").strip("() "), zone, near)
         at.astimezone(timezone.utc)  # times in the years 1 and 9999 can overflow in other zones
-    except (ValueError, OverflowError, OSError) as error:
+    except (StopIteration, ValueError, OverflowError, OSError) as error:
         why = f": {error}" if "zone" in str(error) else ""
         return Time(source=source, fault=f"{source} says {line[:80]!r}, which is not a time that can be read{why}")
     return Time(at, source, note=note)
 
 
-def month_named(name: str) -> int:
-    """Return the number of a month from its English name or the first letters. Raises ValueError."""
-    return _MONTHS.index(name[:3].lower()) + 1
+def _as_written(match: re.Match[str]) -> datetime:
+    """Return the time that a pattern matched, without its zone. Raises ValueError."""
+    hour = int(match["hour"] or 0)
+    if match["half"] and hour <= 12:  # some sites write 13:01 PM
+        hour = hour % 12 + 12 * (match["half"].lower() == "p")
+    month = int(match["month"]) if match["month"].isdecimal() else _month_named(match["month"].lower())
+    return datetime(
+        int(match["year"]), month, int(match["day"]), hour, int(match["minute"] or 0), int(match["second"] or 0)
+    )
 
 
-def _in_digits(line: str) -> str:
-    """Return a time with a month's name in digits; any other text is returned unchanged."""
-    for worded in _WORDED:
-        if match := worded.fullmatch(line):
-            day = f"{match['year']}-{month_named(match['month']):02}-{int(match['day']):02}"
-            return f"{day} {match['time']} {match['zone']}"
-    return line
+def _month_named(name: str) -> int:
+    return next((number for number, full in enumerate(_MONTHS, 1) if name in (full, full[:3], full[:4])), 0)
 
 
 def _in_zone(written: datetime, name: str, zone: tzinfo | None, near: tzinfo | None) -> tuple[datetime, str]:

@@ -7,19 +7,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from datetime import datetime
 
 from grader.classroom.formats.format import OWN, Export, Format, Interpretation, Parts, UploadedFile, person
-from grader.classroom.times import Time, localized, month_named, without_zone
+from grader.classroom.times import read_time
 from grader.grading.grade import Student
 
 NAME = re.compile(
     r"(?P<user>\d+)-(?P<folder>\d+) ?- ?(?P<name>.+?) ?- ?(?P<time>[^-]*\d{4},? \d{3,4}(?: ?[AP]M)?)", re.I
-)
-TIME = re.compile(
-    r"(?:(?P<month>[A-Za-z]{3,9})\.? (?P<day>\d\d?)|(?P<day2>\d\d?) (?P<month2>[A-Za-z]{3,9})),? "
-    r"(?P<year>\d{4}),? (?P<hour>\d\d?)(?P<minute>\d\d)(?: ?(?P<half>[AP]M))?",
-    re.IGNORECASE,
 )
 SOURCE = "Brightspace"
 
@@ -33,27 +27,11 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
         match = NAME.fullmatch(parts[0])
         if not match or len(parts) < 2:
             return None
-        time = _time(match["time"], export)
+        time = read_time(match["time"].strip(), SOURCE, export.zone)
         student = person(f"{match['name']}_{match['user']}", match["name"], UserID=match["user"])
         return UploadedFile((student,), parts[1:], time.at.isoformat() if time.at else match["time"], time)
 
     return understand
-
-
-def _time(text: str, export: Export) -> Time:
-    match = TIME.fullmatch(text.strip())
-    try:
-        if not match:
-            raise ValueError
-        month = month_named(match["month"] or match["month2"])
-        hour = int(match["hour"])
-        if match["half"] and hour <= 12:  # some sites write 1301 PM
-            hour = hour % 12 + 12 * (match["half"].upper() == "PM")
-        day = int(match["day"] or match["day2"])
-        written = datetime(int(match["year"]), month, day, hour, int(match["minute"]))
-    except ValueError:
-        return Time(source=SOURCE, fault=f"{SOURCE} says {text!r}, which is not a time that can be read")
-    return Time(localized(written, export.zone), SOURCE, note=without_zone(export.zone))
 
 
 def of_row(row: Mapping[str, str]) -> Student | None:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from grader.classroom.formats.format import Export, Format, Interpretation, Parts, UploadedFile, person
 from grader.classroom.names import normal, student_id
 from grader.classroom.times import UNKNOWN
+from grader.submission.file_kinds import original_name
 
 SUFFIX = re.compile(r"(\.py\.txt|\.ipynb\.(json|txt)|\.tar\.\w+|\.[^.]+)$", re.IGNORECASE)
 
@@ -16,17 +17,28 @@ NOT_WORK = (".csv", ".tsv", ".xls", ".xlsx", ".ods", ".md", ".yml", ".yaml", ".t
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation]:
-    """Return how to read the paths: every name is a student's."""
+    """Return how to read the paths: every name is a student's; `anna (1).py` is anna's, unless there is `anna (2).py`.
+
+    If `anna.py` is there as well, all three are anna's.
+    """
+    names = {_name(parts): _name((original_name(parts[0]), *parts[1:])) for parts in export.files}
+    originals = list(names.values())
 
     def understand(parts: Parts) -> Interpretation:
         if len(parts) == 1 and parts[0].lower().endswith(NOT_WORK):
             return "a table, a note or a page, not a submission"
-        name = normal(parts[0]) if len(parts) > 1 else without_suffix(parts[0])
+        name = _name(parts)
+        if names[name] in names or originals.count(names[name]) == 1:
+            name = names[name]
         file = export.files.get(parts)
         student = person(name, name if name != student_id(name) else "")
         return UploadedFile((student,), parts[1:] or parts, time=file.time if file else UNKNOWN)
 
     return understand
+
+
+def _name(parts: Parts) -> str:
+    return normal(parts[0]) if len(parts) > 1 else without_suffix(parts[0])
 
 
 def without_suffix(name: str) -> str:

@@ -73,9 +73,9 @@ def test_all_files_of_one_student_are_one_submission(tmp_path: Path) -> None:
 
 
 def test_a_students_name_becomes_the_name_of_a_folder(tmp_path: Path) -> None:
-    collected = taken(written(tmp_path / "s", "Anna Müller (2).py", "-x y-/n.py", "$$$/n.py"), tmp_path)
+    collected = taken(written(tmp_path / "s", "Anna Müller (A2).py", "-x y-/n.py", "$$$/n.py"), tmp_path)
     assert {one.student.id: one.student.name for one in collected.handed_in} == {
-        "Anna_Müller_2": "Anna Müller (2)",
+        "Anna_Müller_A2": "Anna Müller (A2)",
         "-x_y-": "-x y-",
         "nameless": "$$$",
     }

@@ -85,6 +85,18 @@ def sakai() -> Exported:
     return Exported(made, "sakai", attempts=False)
 
 
+def sakai_without_folders() -> Exported:
+    made = {"Lab 3/grades.csv": '"Lab 3","Points"\n\n"Display ID","ID","Last Name","First Name","grade","Submitted"\n'}
+    for _, name, login in logins():
+        last_first = f"{name.rpartition(' ')[2]}, {name.rpartition(' ')[0]}".replace("(", "").replace(")", "")
+        inside = f"Lab 3/{last_first}({login})_"
+        made[f"{inside}Submission attachment(s)_joint_velocity.py"] = login
+        made[f"{inside}_submissionText.html"] = made[f"{inside}comments.txt"] = ""
+        made[f"{inside}Feedback Attachment(s)corrected.py"] = "by the instructor"
+        made["Lab 3/grades.csv"] += f'"{login}","{login}","x","y","","2026-11-20T22:01:00Z"\n'
+    return Exported(made, "sakai", attempts=False)
+
+
 def ilias() -> Exported:
     ascii_only = lambda name: "".join(char for char in name if char.isascii() and (char.isalnum() or char == " "))  # noqa: E731
     made = {}
@@ -117,7 +129,7 @@ def nbgrader() -> Exported:
     return Exported(made, "nbgrader", attempts=False)
 
 
-EXPORTS = [canvas, moodle, blackboard, brightspace, sakai, ilias, gradescope, nbgrader]
+EXPORTS = [canvas, moodle, blackboard, brightspace, sakai, sakai_without_folders, ilias, gradescope, nbgrader]
 
 
 @pytest.mark.parametrize("packed", [True, False])
@@ -169,7 +181,13 @@ def test_one_odd_file_changes_nothing_for_the_others_and_is_never_left_out_in_si
     made = export()
     whole = collected(archive(tmp_path / "whole.zip", made.files), attempts="last", zone=UTC)
     inside = "course/submitted/" if export is nbgrader else next(iter(made.files)).rpartition("/")[0].split("/")[0]
-    top = inside if inside.endswith("/") else f"{inside}/" if export in (sakai, gradescope, ilias) else ""
+    top = (
+        inside
+        if inside.endswith("/")
+        else f"{inside}/"
+        if export not in (canvas, moodle, blackboard, brightspace)
+        else ""
+    )
     top = "Lab_3/Submissions/" if export is ilias else top
     odd = {f"{top}zed.py": "# zed", f"{top}notes.txt": "mine"}
     odded = collected(archive(tmp_path / "odd.zip", {**made.files, **odd}), attempts="last", zone=UTC)
@@ -231,7 +249,7 @@ def test_sakai_and_gradescope_say_who_is_in_a_group(tmp_path: Path) -> None:
 
 MOODLES = "Identifier,Full name,Email address,Status,Last modified (submission)\n"
 ROSTERS = {
-    canvas: "Student,ID,SIS Login ID,Section\n    Points Possible,,,\n"
+    canvas: "Student,ID,SIS Login ID,Section\n,,,Manual Posting\n    Points Possible,,,\n"
     + "".join(
         f'"{name.rpartition(" ")[2]}, {name.rpartition(" ")[0]}",{1000 + n},s{n:02},A\n'
         for n, name in enumerate(NAMES, 1)
@@ -242,7 +260,7 @@ ROSTERS = {
         for n, name in enumerate(NAMES, 1)
     ),
     blackboard: "Last Name,First Name,Username\n" + "".join(f"{name},,s{n:02}\n" for n, name in enumerate(NAMES, 1)),
-    sakai: "Display ID,ID,Last Name,First Name\n"
+    sakai: '"Lab 3","Points"\n\nDisplay ID,ID,Last Name,First Name\n'
     + "".join(f"s{n:02},s{n:02},{name},\n" for n, name in enumerate(NAMES, 1)),
     gradescope: "First Name,Last Name,SID,Email\n"
     + "".join(f"{name},,{1000 + n},s{n:02}@x.org\n" for n, name in enumerate(NAMES, 1)),

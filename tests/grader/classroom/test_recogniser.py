@@ -94,3 +94,16 @@ def test_a_package_is_one_submission_with_the_names_that_the_student_gave(tmp_pa
         "ws/pkg/pkg/node.py",
         "ws/pkg/setup.py",
     ]
+
+
+def test_a_copy_beside_a_students_file_is_not_another_student(tmp_path: Path) -> None:
+    copies = ["anna.py", "anna (1).py", "Kopie von anna.py", "bert (1).py", "carl (1).py", "carl (2).py"]
+    found = collected(folder(tmp_path / "class", copies))
+    assert list(files(found)) == ["anna", "bert", "carl_1", "carl_2"]
+    assert found.handed_in[0].file.path.is_dir()
+
+
+def test_a_class_that_handed_in_another_language_has_its_rows(tmp_path: Path) -> None:
+    found = collected(folder(tmp_path / "class", {"anna.cpp": "", "bert.rs": "", "carl.txt": "import rclpy\n"}))
+    assert list(files(found)) == ["anna", "bert", "carl"]
+    assert found.notes == ("handed in, but not one of .py, .ipynb, .zip: anna.cpp, bert.rs",)

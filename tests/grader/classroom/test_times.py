@@ -42,6 +42,13 @@ def read(text: str, near: ZoneInfo | None = None) -> datetime | None:
         ("20261122100000123", 10),
         ("Sun Nov 22 10:00:00 CET 2026", 9),
         ("Sun, 22 Nov 2026 10:00:00 +0100", 9),
+        ("Sun Nov 22 10:00:00 2026", 10),
+        ("20261122T100000Z", 10),
+        ("2026/11/22 10:00 (UTC)", 10),
+        ("22.11.2026 10:00", 10),
+        ("November 22, 2026 at 10:00 AM", 10),
+        ("Sunday, 22 November 2026, 10:00\u202fAM", 10),
+        ("Sunday, November 22, 2026, 11:00 AM CET", 10),
     ],
 )
 def test_a_time_is_read_as_it_was_written(text: str, hour: int) -> None:
@@ -50,8 +57,8 @@ def test_a_time_is_read_as_it_was_written(text: str, hour: int) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["", "yesterday", "22.11.2026 10:00", "11/22/2026 10:00", "2026-11-22 25:00", "2026-13-22 10:00",
-     "2026-11-22 10:00 XYZ", "2026-11-22 10:00 Mars/Phobos", "2026-11-22 10:00 ../../etc/passwd",
+    ["", "yesterday", "22.13.2026 10:00", "11/22/2026 10:00", "22 mardi 2026 10:00", "2026-11-22 25:00",
+     "2026-13-22 10:00", "2026-11-22 10:00 XYZ", "2026-11-22 10:00 Mars/Phobos", "2026-11-22 10:00 ../../etc/passwd",
      "9999-12-31 23:59 -1200", "x" * 10_000],
 )  # fmt: skip
 def test_what_can_not_be_read_is_an_error_and_never_another_date(text: str) -> None:
