@@ -104,8 +104,9 @@ class Recogniser:
         places = [(parts, file, understand(parts)) for parts, file in below.items()]
         misfits = [(parts[0], file) for parts, file, place in places if place is None]
         outside = [(parts, file) for parts, file in self.files.items() if parts[:skip] != inside]
-        misfits += [(parts[skip - 1], file) for parts, file in outside if parts[skip - 1] not in form.next_to]
-        others = tuple(file for parts, file in outside if parts[skip - 1] in form.next_to)
+        tops = [(parts[:skip][-1], file) for parts, file in outside]
+        misfits += [(top, file) for top, file in tops if top not in form.next_to]
+        others = tuple(file for top, file in tops if top in form.next_to)
         understood = tuple((file, place) for _, file, place in places if place is not None)
         return Recognition(form, inside, understood, tuple(misfits), others)
 
@@ -117,10 +118,11 @@ class Recogniser:
                 yield (*inside, name)
 
     def _lone_folders(self) -> Iterator[Parts]:
+        """Yield the folders around everything, but for tables and notes next to them."""
         inside: Parts = ()
         while True:
             yield inside
-            entries = self._entries(inside)
+            entries = {one for one in self._entries(inside) if (*inside, one) not in self.files or can_be_graded(one)}
             if len(entries) != 1 or (*inside, *entries) in self.files:
                 return
             inside = (*inside, *entries)

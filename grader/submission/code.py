@@ -425,8 +425,8 @@ def _refuse_own_interfaces(option: _Option, reading: _ReadState) -> None:
     for package in sorted(packages.own_interfaces(reading.files) & used):
         raise AmbiguousProgram(
             f"The program imports {package}, a package of messages that was handed in with it, and the grader does not "
-            "build it. Use the types that the task names. To the instructor: to grade it as it is, read its definitions, "
-            f"and put them into the course's folder interfaces/{package}/."
+            "build it. Use the types that the task names. To the instructor: to grade it as it is, put its definitions "
+            f"into the course's folder interfaces/{package}/, after you have read them."
         )
 
 

@@ -1,5 +1,7 @@
 """Brightspace (D2L): a folder `USER-FOLDER - NAME - TIME` per submission, and index.html.
 
+Without folders, a file is `USER-FOLDER - NAME - TIME - FILE`. A group's name may have no numbers before it.
+
 Source: Brightspace's help, "Download submissions". The time, such as "Nov 20, 2026 1001 PM", has no zone.
 """
 
@@ -13,7 +15,8 @@ from grader.classroom.times import read_time
 from grader.grading.grade import Student
 
 NAME = re.compile(
-    r"(?P<user>\d+)-(?P<folder>\d+) ?- ?(?P<name>.+?) ?- ?(?P<time>[^-]*\d{4},? \d{3,4}(?: ?[AP]M)?)", re.I
+    r"(?:(?P<user>\d+)-\d+ ?- ?)?(?P<name>.+?) ?- ?(?P<time>[^-]*\d{4},? \d{3,4}(?: ?[AP]M)?)(?: ?- ?(?P<file>.+))?",
+    re.I,
 )
 SOURCE = "Brightspace"
 
@@ -25,11 +28,13 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
         if parts == ("index.html",):
             return OWN
         match = NAME.fullmatch(parts[0])
-        if not match or len(parts) < 2:
+        inside = parts[1:] or (match and match["file"] and (match["file"],))
+        if not match or not inside:
             return None
         time = read_time(match["time"].strip(), SOURCE, export.zone)
-        student = person(f"{match['name']}_{match['user']}", match["name"], UserID=match["user"])
-        return UploadedFile((student,), parts[1:], time.at.isoformat() if time.at else match["time"], time)
+        user = {"UserID": match["user"]} if match["user"] else {}
+        student = person("_".join((match["name"], *user.values())), match["name"], **user)
+        return UploadedFile((student,), inside, time.at.isoformat() if time.at else match["time"], time)
 
     return understand
 

@@ -6,8 +6,10 @@ columns: nbgrader/plugins/export.py, CsvExportPlugin.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from datetime import datetime, timezone
+from functools import partial
 
 from grader.classroom.formats.format import (
     Export,
@@ -19,6 +21,7 @@ from grader.classroom.formats.format import (
     last_and_first,
     person,
 )
+from grader.classroom.submissions import SubmissionsError
 from grader.classroom.tables import Cell, csv_text
 from grader.classroom.times import UNKNOWN, Time, read_time
 from grader.exercise.exercise import Exercise
@@ -26,15 +29,31 @@ from grader.grading.grade import Entry
 
 SUBMITTED = "submitted"
 TIMESTAMP = "timestamp.txt"
+#: A folder in the exchange, before `nbgrader collect`: one per attempt.
+EXCHANGE = re.compile(r"(?P<student>[^+]+)\+(?P<assignment>[^+]+)\+(?P<time>\d{4}-\d\d-\d\d [^+]+)(?:\+.+)?")
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation] | None:
-    """Return how to read the paths, if the folder is `submitted` or has folders with the exercise's name."""
+    """Return how to read the paths, if the folder is `submitted` or has folders with the exercise's name.
+
+    Raises `SubmissionsError` if `submitted` has several assignments, none of which is called like the exercise.
+    """
+    in_exchange = [match for parts in export.files if len(parts) > 1 and (match := EXCHANGE.fullmatch(parts[0]))]
+    if 2 * len(in_exchange) > len(export.files):
+        several = len({match["assignment"] for match in in_exchange}) > 1
+        return partial(_in_exchange, export, export.exercise.name if several else "")
     assignments = {parts[1] for parts in export.files if len(parts) > 2}
-    if export.root != SUBMITTED and export.exercise.name not in assignments:
+    own = [name for name in assignments if name.casefold() == export.exercise.name.casefold()]
+    if export.root != SUBMITTED and not own:
         return None
     # A course may use any name for the assignment, as long as there is only one.
-    wanted = next(iter(assignments)) if len(assignments) == 1 else export.exercise.name
+    wanted = next(iter(own or sorted(assignments)), "")
+    if len(assignments) > 1 and not own and all(len(parts) > 2 for parts in export.files):
+        raise SubmissionsError(
+            f"{SUBMITTED}/ has the assignments {', '.join(sorted(assignments))}, and none is called "
+            f"{export.exercise.name}. Rename the folders of the right one, or, if these are not assignments, "
+            "say --format folder."
+        )
     times = {student: _time(export, student, wanted) for student in {parts[0] for parts in export.files}}
 
     def understand(parts: Parts) -> Interpretation:
@@ -45,6 +64,17 @@ def read(export: Export) -> Callable[[Parts], Interpretation] | None:
         return UploadedFile((person(parts[0]),), parts[2:], time=times[parts[0]], aside=parts[2:] == (TIMESTAMP,))
 
     return understand
+
+
+def _in_exchange(export: Export, wanted: str, parts: Parts) -> Interpretation:
+    match = EXCHANGE.fullmatch(parts[0])
+    if not match or len(parts) < 2:
+        return None
+    if wanted and match["assignment"].casefold() != wanted.casefold():
+        return f"another assignment, {match['assignment']}"
+    time = read_time(match["time"], "nbgrader's exchange", timezone.utc, export.zone)
+    aside = parts[1:] == (TIMESTAMP,)
+    return UploadedFile((person(match["student"]),), parts[1:], match["time"], time, aside=aside)
 
 
 def _time(export: Export, student: str, assignment: str) -> Time:

@@ -20,6 +20,8 @@ LURES = [
     "submission_metadata.yml",
     "12-34 - Eve Evil - Nov 20, 2020 1001 PM/node.py",
     "Lee, Ann(ann1)/node.py",
+    "eve+joint_velocity+2026-11-20 22:01:00 UTC/node.py",
+    "Lee, Ann(ann1)_Submission attachment(s)_node.py",
     "Lee_Ann_ann1_312/node.py",
 ]
 
@@ -107,3 +109,34 @@ def test_a_class_that_handed_in_another_language_has_its_rows(tmp_path: Path) ->
     found = collected(folder(tmp_path / "class", {"anna.cpp": "", "bert.rs": "", "carl.txt": "import rclpy\n"}))
     assert list(files(found)) == ["anna", "bert", "carl"]
     assert found.notes == ("handed in, but not one of .py, .ipynb, .zip: anna.cpp, bert.rs",)
+
+
+def test_a_table_beside_the_folder_of_a_class_does_not_make_it_a_student(tmp_path: Path) -> None:
+    found = collected(folder(tmp_path / "class", ["week 3/anna.py", "week 3/bert.py", "grades.csv", "README.md"]))
+    assert list(files(found)) == ["anna", "bert"]
+    assert [skip.file for skip in found.skipped] == ["README.md", "grades.csv"]
+
+
+def test_of_several_assignments_none_is_taken_by_chance(tmp_path: Path) -> None:
+    names = ["submitted/anna/ps1/a.ipynb", "submitted/anna/ps2/a.ipynb", "submitted/bert/ps1/a.ipynb"]
+    with pytest.raises(SubmissionsError, match=r"has the assignments ps1, ps2, and none is called joint_velocity\."):
+        collected(folder(tmp_path / "a", names))
+    named = [name.replace("ps1", "Joint_Velocity") for name in names]
+    assert list(files(collected(folder(tmp_path / "b", named)))) == ["anna", "bert"]
+
+
+def test_nbgraders_exchange_has_a_folder_for_each_attempt(tmp_path: Path) -> None:
+    made = [f"inbound/{who}+joint_velocity+2026-11-2{n} 10:00:00 UTC+x1/a.ipynb" for n in (1, 2) for who in "ab"]
+    source = folder(tmp_path / "class", [*made, "inbound/a+ps2+2026-11-21 10:00:00 UTC/a.ipynb"])
+    assert [question.unclear for question in collected(source).questions] == ["attempts", "attempts"]
+    last = collected(source, attempts="last")
+    assert files(last) == {"a": made[2], "b": made[3]}
+    assert [str(one.file.submitted) for one in last.handed_in] == ["2026-11-22 10:00:00+00:00"] * 2
+
+
+def test_brightspace_may_write_files_without_folders_and_groups(tmp_path: Path) -> None:
+    flat = [f"{n}-7 - {who} - Nov 20, 2026 1001 PM - node.py" for n, who in enumerate(("Anna M", "Bert-Ole B"))]
+    found = collected(archive(tmp_path / "a.zip", flat))
+    assert files(found) == {"Anna_M_0": flat[0], "Bert-Ole_B_1": flat[1]}
+    groups = [f"Group {n} - Nov 20, 2026 100{n} PM/node.py" for n in (1, 2)]
+    assert list(files(collected(archive(tmp_path / "b.zip", groups)))) == ["Group_1", "Group_2"]
