@@ -8,6 +8,8 @@ import re
 import textwrap
 from collections.abc import Sequence
 
+from spinbook.chapter.syntax import descendants, syntax_tree
+
 _INDENT = " " * 4
 
 
@@ -36,7 +38,7 @@ def methods_alone(tree: ast.Module) -> frozenset[str]:
 def uses_super_outside(tree: ast.Module) -> bool:
     """Return whether code that is in no class calls `super()`."""
     outside = (item for item in tree.body if not isinstance(item, ast.ClassDef))
-    calls = (item for statement in outside for item in ast.walk(statement) if isinstance(item, ast.Call))
+    calls = (item for statement in outside for item in descendants(statement) if isinstance(item, ast.Call))
     return any(isinstance(call.func, ast.Name) and call.func.id == "super" and not call.args for call in calls)
 
 
@@ -83,6 +85,6 @@ def _as_body(code: str) -> str:
 
 def _parsed(code: str) -> ast.Module | None:
     try:
-        return ast.parse(code)
+        return syntax_tree(code)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None

@@ -15,6 +15,7 @@ from interface_compiler import prefixes
 from ros_in_python.ros2 import interfaces
 from spinbook.chapter.class_pieces import assembled
 from spinbook.chapter.python_code import CodeError, PythonCode, inspect
+from spinbook.chapter.syntax import descendants, syntax_tree
 
 #: Module -> the names that ROS 2's own tutorials import from it.
 _USUAL = {
@@ -145,7 +146,7 @@ def join(code: str, pieces: Sequence[str]) -> CompleteProgram:
 def _amended(code: str, pieces: Sequence[str]) -> tuple[str, str]:
     """Return (class, its base) of a class in `code` that only adds methods to an earlier one; otherwise ("", "")."""
     facts = inspect(code)
-    for item in ast.parse(code).body if facts.lacking or facts.nameless else ():
+    for item in syntax_tree(code).body if facts.lacking or facts.nameless else ():
         if not isinstance(item, ast.ClassDef) or item.name not in facts.node_classes:
             continue
         binding = _binding(item.name, pieces)
@@ -200,7 +201,7 @@ def _as_main(body: str, statements: Iterable[ast.stmt]) -> str:
 
 
 def _uses(statement: ast.stmt, names: set[str]) -> bool:
-    return any(isinstance(item, ast.Name) and item.id in names for item in ast.walk(statement))
+    return any(isinstance(item, ast.Name) and item.id in names for item in descendants(statement))
 
 
 def _above(imports: Iterable[str], taken: Mapping[int, set[int]], pieces: Sequence[str]) -> str:
@@ -245,7 +246,7 @@ def _is_plain(statement: ast.stmt) -> bool:
     """Return whether a statement only gives a name to a value, and calls nothing that has an effect."""
     if not isinstance(statement, ast.Assign | ast.AnnAssign) or statement.value is None:
         return False
-    calls = [item for item in ast.walk(statement.value) if isinstance(item, ast.Call)]
+    calls = [item for item in descendants(statement.value) if isinstance(item, ast.Call)]
     return all(ast.unparse(call.func)[:1].isupper() for call in calls)
 
 
@@ -258,7 +259,7 @@ def _piece(source: str) -> _CodePiece:
     """Return what a piece binds; nothing, if it is not valid Python by itself."""
     try:
         facts = inspect(source)
-        statements = tuple(ast.parse(source).body)
+        statements = tuple(syntax_tree(source).body)
     except (CodeError, SyntaxError, ValueError):
         return _CodePiece(source, (), {}, blocks=True)
     if facts.fragment:
@@ -274,7 +275,7 @@ def _piece(source: str) -> _CodePiece:
 def _spins(statement: ast.stmt) -> bool:
     if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
         return False
-    calls = [item for item in ast.walk(statement) if isinstance(item, ast.Call)]
+    calls = [item for item in descendants(statement) if isinstance(item, ast.Call)]
     return any(isinstance(call.func, ast.Attribute) and call.func.attr == "spin" for call in calls)
 
 
@@ -286,7 +287,7 @@ def _bound_by(statement: ast.stmt) -> Iterable[str]:
     if isinstance(statement, ast.Import | ast.ImportFrom):
         return tuple(alias.asname or alias.name.partition(".")[0] for alias in statement.names)
     return tuple(
-        item.id for item in ast.walk(statement) if isinstance(item, ast.Name) and isinstance(item.ctx, ast.Store)
+        item.id for item in descendants(statement) if isinstance(item, ast.Name) and isinstance(item.ctx, ast.Store)
     )
 
 

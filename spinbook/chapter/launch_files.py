@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from ros_in_python.launch.api import NAMES
-from spinbook.chapter.node_classes import last_name
+from spinbook.chapter.syntax import descendants, last_name, syntax_tree
 from spinbook.chapter.terminal import Command, CommandKind
 
 
@@ -48,12 +48,12 @@ def launched_nodes(code: str, arguments: Mapping[str, str] | None = None) -> lis
     Raises NotSupportedError if the file does anything but start nodes whose arguments are texts and numbers.
     """
     try:
-        tree = ast.parse(code)
+        tree = syntax_tree(code)
     except SyntaxError as error:
         raise NotSupportedError(f"line {error.lineno} is not valid Python") from None
-    calls = sorted((item for item in ast.walk(tree) if isinstance(item, ast.Call)), key=lambda call: call.lineno)
+    calls = sorted((item for item in descendants(tree) if isinstance(item, ast.Call)), key=lambda call: call.lineno)
     reader = _LaunchReader(_assigned(tree), {**_declared(calls), **(arguments or {})})
-    for item in ast.walk(tree):
+    for item in descendants(tree):
         if isinstance(item, ast.For | ast.While | ast.If | ast.Try | ast.ListComp):
             raise NotSupportedError(f"it has a loop or a condition (line {item.lineno})")
     for call in calls:
@@ -69,7 +69,7 @@ def launched_nodes(code: str, arguments: Mapping[str, str] | None = None) -> lis
 def _assigned(tree: ast.Module) -> dict[str, ast.expr]:
     """Return the variables that are set exactly once, with their values."""
     values: dict[str, list[ast.expr]] = {}
-    for item in ast.walk(tree):
+    for item in descendants(tree):
         if isinstance(item, ast.Assign):
             for target in item.targets:
                 if isinstance(target, ast.Name):
@@ -189,7 +189,7 @@ def unsupported_in_launch_file(code: str) -> str:
 
     Raises SyntaxError.
     """
-    for item in ast.walk(ast.parse(code)):
+    for item in descendants(syntax_tree(code)):
         if isinstance(item, ast.ImportFrom) and item.module and item.module.split(".")[0] in {"launch", "launch_ros"}:
             there = NAMES.get(item.module, ())
             missing = [name.name for name in item.names if name.name not in there]

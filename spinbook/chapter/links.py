@@ -128,12 +128,37 @@ def _watched_html(rule: Any) -> Any:
     return watch
 
 
+@functools.lru_cache(maxsize=8)
+def _parsed(text: str) -> tuple[list[Token], dict[str, Any]]:
+    """Return the blocks of a chapter's text, and its definitions."""
+    env: dict[str, Any] = {}
+    return _parser().parse(text, env), env.get("references", {})
+
+
 def references_in(text: str) -> dict[str, Any]:
     """Return the definitions `[label]: target "title"` in a text, as markdown-it keeps them."""
-    env: dict[str, Any] = {}
-    if "]:" in text:
-        _parser().parse(text, env)
-    return dict(env.get("references", {}))
+    return dict(_parsed(text)[1]) if "]:" in text else {}
+
+
+@functools.lru_cache(maxsize=8)
+def links_in(text: str) -> tuple[tuple[str, int], ...]:
+    """Return the targets of the links and images in a text, each with its line, counted from 1."""
+    if "](" not in text and "]:" not in text:
+        return ()
+    tokens, references = _parsed(text)
+    inline = (token for token in tokens if token.type == "inline" and "[" in token.content)
+    return tuple(found for token in inline for found in _links_of(token, references))
+
+
+def _links_of(token: Token, references: Mapping[str, Any]) -> Iterator[tuple[str, int]]:
+    line = (token.map or (0, 0))[0] + 1
+    children: list[Token] = []
+    _parser().inline.parse(token.content, _parser(), {"references": dict(references)}, children)
+    for child in children:
+        if child.type in {"softbreak", "hardbreak"}:
+            line += 1
+        if target := str(child.attrs.get("href") or child.attrs.get("src") or ""):
+            yield target, line
 
 
 def linked(text: str, target: Target, references: Mapping[str, Any] = MappingProxyType({})) -> str:

@@ -10,15 +10,10 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+from spinbook.chapter.syntax import descendants, dotted_name, last_name, syntax_tree
+
 #: rclpy's classes of nodes.
 NODE_CLASSES = frozenset({"Node", "LifecycleNode"})
-
-
-def last_name(expression: ast.expr) -> str:
-    """Return the last part of a dotted name: `Node` of `rclpy.node.Node`."""
-    if isinstance(expression, ast.Attribute):
-        return expression.attr
-    return expression.id if isinstance(expression, ast.Name) else ""
 
 
 def ros_name(everything: Sequence[ast.AST], classes: Mapping[str, ast.ClassDef]) -> str | None:
@@ -58,7 +53,7 @@ def _name_passed_on(calls: Sequence[ast.Call], classes: Mapping[str, ast.ClassDe
     """Return the name that is an argument, or its default, of a constructor that passes it to Node's."""
     for name, own in classes.items():
         init = next((i for i in own.body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
-        given = [_name_given(call) for call in ast.walk(init) if isinstance(call, ast.Call)] if init else []
+        given = [_name_given(call) for call in descendants(init) if isinstance(call, ast.Call)] if init else []
         passed = next((value.id for value in given if isinstance(value, ast.Name)), "")
         if init is None or not passed:
             continue
@@ -88,7 +83,7 @@ def snake_case(name: str) -> str:
 def can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], everything: Sequence[ast.AST]) -> bool:
     """Return whether a Node class can be created without a main: nothing else creates it, and it needs no arguments."""
     own = classes[name]
-    inside = set(ast.walk(own))
+    inside = set(descendants(own))
     used = any(isinstance(i, ast.Name) and i.id == name and i not in inside for i in everything)
     return not used and not needs_arguments(own)
 
@@ -132,7 +127,7 @@ def attributes_lacking(
 def _bound(own: ast.ClassDef) -> set[str]:
     """Return the names of a class's methods and inner classes, and of all variables in it."""
     bound = {item.name for item in own.body if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)}
-    for item in ast.walk(own):
+    for item in descendants(own):
         if isinstance(item, ast.Assign | ast.AnnAssign):
             targets = item.targets if isinstance(item, ast.Assign) else [item.target]
             bound |= {target.id for target in targets if isinstance(target, ast.Name)}
@@ -140,7 +135,7 @@ def _bound(own: ast.ClassDef) -> set[str]:
 
 
 def _read_of_self(own: ast.ClassDef) -> Iterator[tuple[str, int]]:
-    for item in ast.walk(own):
+    for item in descendants(own):
         if isinstance(item, ast.Attribute) and isinstance(item.value, ast.Name) and item.value.id == "self":
             yield item.attr, item.lineno
 
@@ -151,7 +146,7 @@ def used_by_init(lacking: Mapping[str, int], names: list[str], classes: Mapping[
         methods = {item.name: item for item in classes[name].body if isinstance(item, ast.FunctionDef)}
         used: set[str] = set()
         for method in _called_from("__init__", methods):
-            used |= {i.attr for i in ast.walk(methods[method]) if isinstance(i, ast.Attribute)}
+            used |= {i.attr for i in descendants(methods[method]) if isinstance(i, ast.Attribute)}
         if first := next((attribute for attribute in lacking if attribute in used), ""):
             return first
     return ""
@@ -163,7 +158,7 @@ def _called_from(start: str, methods: Mapping[str, ast.FunctionDef]) -> list[str
     for name in called:
         for item in methods[name].body:
             call = getattr(item, "value", None)
-            dotted = ast.unparse(call.func) if isinstance(call, ast.Call) else ""
+            dotted = dotted_name(call.func) if isinstance(call, ast.Call) else ""
             owner, _, method = dotted.rpartition(".")
             if owner == "self" and method in methods and method not in called:
                 called.append(method)
@@ -178,7 +173,7 @@ def never_initialized(names: Sequence[str], classes: Mapping[str, ast.ClassDef])
         init = next((i for i in classes[name].body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
         if init is None or bases not in (["Node"], ["LifecycleNode"]):
             continue
-        if not any(isinstance(i, ast.Attribute) and i.attr == "__init__" for i in ast.walk(init)):
+        if not any(isinstance(i, ast.Attribute) and i.attr == "__init__" for i in descendants(init)):
             lines[name] = init.lineno
     return lines
 
@@ -194,7 +189,7 @@ def node_attributes() -> frozenset[str]:
     for folder in (spec.submodule_search_locations or []) if spec else []:
         for file in ("node.py", "lifecycle/node.py", "lifecycle/managed_entity.py"):
             with contextlib.suppress(OSError, SyntaxError):
-                for item in ast.walk(ast.parse(Path(folder, file).read_text(encoding="utf-8"))):
+                for item in descendants(syntax_tree(Path(folder, file).read_text(encoding="utf-8"))):
                     if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef):
                         names.add(item.name)
                     elif isinstance(item, ast.Attribute) and not isinstance(item.ctx, ast.Load):

@@ -6,8 +6,9 @@ import ast
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from spinbook.chapter.node_classes import last_name, snake_case
+from spinbook.chapter.node_classes import snake_case
 from spinbook.chapter.python_code import PythonCode, inspect
+from spinbook.chapter.syntax import descendants, last_name, syntax_tree
 
 #: Calls that make an end of a topic, service or action -> where they have its name, and what fits the end.
 _ENDS = {
@@ -80,7 +81,7 @@ def _talk(one: str, other: str) -> bool:
 
 def _ends_of(program: str) -> Iterator[tuple[str, str]]:
     """Yield (call, name) for each topic, service and action that a program names literally."""
-    for call in (item for item in ast.walk(ast.parse(program)) if isinstance(item, ast.Call)):
+    for call in (item for item in descendants(syntax_tree(program)) if isinstance(item, ast.Call)):
         place, _ = _ENDS.get(last_name(call.func), (0, ""))
         name = call.args[place] if place and len(call.args) > place else None
         if isinstance(name, ast.Constant) and isinstance(name.value, str):

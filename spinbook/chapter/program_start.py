@@ -6,7 +6,7 @@ import ast
 import re
 from collections.abc import Iterator, Sequence
 
-from spinbook.chapter.node_classes import last_name
+from spinbook.chapter.syntax import descendants, dotted_name, last_name
 
 #: Functions that start a program, under whatever name they are imported.
 _STARTING = frozenset(
@@ -35,7 +35,7 @@ def programs_started(everything: Sequence[ast.AST]) -> dict[str, int]:
     calls = [item for item in everything if isinstance(item, ast.Call)]
     of_subprocess = _names_of("subprocess", everything)
     for call in calls:
-        if ast.unparse(call.func) in {"shutil.rmtree", "rmtree"}:
+        if dotted_name(call.func) in {"shutil.rmtree", "rmtree"}:
             words.setdefault("rm", call.lineno)
         if _starts_a_program(call, of_subprocess):
             for word in _command_words(call, everything):
@@ -60,8 +60,7 @@ def calls_main(statement: ast.stmt) -> bool:
 
 def starts_ros(call: ast.Call) -> bool:
     """Return whether a call is one of `rclpy.init` or `rclpy.create_node`."""
-    dotted = ast.unparse(call.func)
-    return dotted in {"rclpy.init", "rclpy.create_node"}
+    return dotted_name(call.func) in {"rclpy.init", "rclpy.create_node"}
 
 
 def at_top(tree: ast.Module) -> list[ast.stmt]:
@@ -81,7 +80,7 @@ def loops_forever(statement: ast.stmt) -> bool:
     if isinstance(statement, ast.While):
         test = statement.test
         endless = isinstance(test, ast.Constant) and bool(test.value)
-        leaves = any(isinstance(item, ast.Break | ast.Return) for item in ast.walk(statement))
+        leaves = any(isinstance(item, ast.Break | ast.Return) for item in descendants(statement))
         return (endless and not leaves) or ast.unparse(test).endswith("rclpy.ok()")
     value = statement.value if isinstance(statement, ast.Expr) else None
     return isinstance(value, ast.Call) and last_name(value.func) in {"serve_forever", "run_forever", "mainloop"}
@@ -91,7 +90,7 @@ def wants_ros(tree: ast.Module) -> int:
     """Return the first line on which code outside classes makes a node, spins one or shuts ROS down, and so needs
     `rclpy.init` before it; 0 if there is none."""
     outside = (item for item in tree.body if not isinstance(item, ast.ClassDef))
-    calls = (item for statement in outside for item in ast.walk(statement) if isinstance(item, ast.Call))
+    calls = (item for statement in outside for item in descendants(statement) if isinstance(item, ast.Call))
     return min((call.lineno for call in calls if _is_ros(call.func)), default=0)
 
 
@@ -101,14 +100,14 @@ def spins(tree: ast.Module) -> bool:
     if any(map(_calls_spin, outside)):
         return True
     for own in (item for item in tree.body if isinstance(item, ast.ClassDef)):
-        others = (item for statement in tree.body if statement is not own for item in ast.walk(statement))
+        others = (item for statement in tree.body if statement is not own for item in descendants(statement))
         if _calls_spin(own) and any(isinstance(item, ast.Name) and item.id == own.name for item in others):
             return True
     return False
 
 
 def _calls_spin(statement: ast.stmt) -> bool:
-    calls = (item for item in ast.walk(statement) if isinstance(item, ast.Call))
+    calls = (item for item in descendants(statement) if isinstance(item, ast.Call))
     return any(last_name(call.func) in _SPINS for call in calls)
 
 
@@ -117,8 +116,8 @@ def leaves(tree: ast.Module) -> str:
     for statement in tree.body:
         if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.If):
             continue
-        for call in (item for item in ast.walk(statement) if isinstance(item, ast.Call)):
-            if ast.unparse(call.func) in _ENDS:
+        for call in (item for item in descendants(statement) if isinstance(item, ast.Call)):
+            if dotted_name(call.func) in _ENDS:
                 return "it ends its program"
             own_words = [a for a in call.args if "argv" not in ast.unparse(a)]
             if last_name(call.func) in _READS_COMMAND_LINE and not own_words:
@@ -127,19 +126,19 @@ def leaves(tree: ast.Module) -> str:
 
 
 def _is_ros(function: ast.expr) -> bool:
-    return ast.unparse(function) in _NEEDS_INIT
+    return dotted_name(function) in _NEEDS_INIT
 
 
 def _starts_a_program(call: ast.Call, of_subprocess: frozenset[str]) -> bool:
     name = last_name(call.func)
     if name in _STARTING or (name.startswith(_STARTING_FAMILIES) and _is_of_os(call.func)):
         return True
-    dotted = ast.unparse(call.func)
+    dotted = dotted_name(call.func)
     return dotted in of_subprocess or (name in _OF_SUBPROCESS and dotted.rpartition(".")[0] in of_subprocess)
 
 
 def _is_of_os(function: ast.expr) -> bool:
-    return isinstance(function, ast.Attribute) and ast.unparse(function.value) in {"os", "pty"}
+    return isinstance(function, ast.Attribute) and dotted_name(function.value) in {"os", "pty"}
 
 
 def _names_of(module: str, everything: Sequence[ast.AST]) -> frozenset[str]:
@@ -155,13 +154,13 @@ def _names_of(module: str, everything: Sequence[ast.AST]) -> frozenset[str]:
 
 def _command_words(call: ast.Call, everything: Sequence[ast.AST]) -> Iterator[str]:
     """Yield the words in a call's arguments, and in the values of the variables among them."""
-    inside = [item for value in [*call.args, *(k.value for k in call.keywords)] for item in ast.walk(value)]
+    inside = [item for value in [*call.args, *(k.value for k in call.keywords)] for item in descendants(value)]
     names = {item.id for item in inside if isinstance(item, ast.Name)}
     for item in everything:
         if isinstance(item, ast.Assign | ast.AnnAssign | ast.AugAssign) and item.value is not None:
             targets = item.targets if isinstance(item, ast.Assign) else [item.target]
             if any(isinstance(target, ast.Name) and target.id in names for target in targets):
-                inside += ast.walk(item.value)
+                inside += descendants(item.value)
     texts = [item.value for item in inside if isinstance(item, ast.Constant) and isinstance(item.value, str)]
     before = ""
     for word in (part for text in texts for part in re.split(r"[\s;&|`()]+", text)):
@@ -172,7 +171,7 @@ def _command_words(call: ast.Call, everything: Sequence[ast.AST]) -> Iterator[st
 
 
 def _is_argv(value: ast.expr) -> bool:
-    return ast.unparse(value) in {"sys.argv", "argv"}
+    return dotted_name(value) in {"sys.argv", "argv"}
 
 
 def _looks_first(item: ast.AST) -> bool:

@@ -14,6 +14,7 @@ from spinbook.chapter.imports import MissingPackage, missing_imports
 from spinbook.chapter.node_classes import needs_arguments, snake_case
 from spinbook.chapter.node_versions import NodeVersions
 from spinbook.chapter.python_code import PythonCode, inspect
+from spinbook.chapter.syntax import syntax_tree
 from spinbook.chapter.wrong_fields import wrong_fields
 
 
@@ -213,7 +214,7 @@ def _facts(joined: CompleteProgram, code: PythonCode) -> PythonCode:
 
 def _needs_arguments(joined: CompleteProgram) -> bool:
     """Return whether the class that the code extends can't be created without arguments."""
-    above = ast.parse(joined.before).body if joined.amends else []
+    above = syntax_tree(joined.before).body if joined.amends else []
     classes = [item for item in above if isinstance(item, ast.ClassDef) and item.name == joined.amends]
     return bool(classes) and needs_arguments(classes[-1])
 

@@ -17,7 +17,6 @@ from spinbook.chapter.node_classes import (
     attributes_lacking,
     can_stand_alone,
     gives_no_name,
-    last_name,
     never_initialized,
     ros_name,
     used_by_init,
@@ -33,6 +32,7 @@ from spinbook.chapter.program_start import (
     wants_ros,
     words_read,
 )
+from spinbook.chapter.syntax import descendants, last_name, syntax_tree
 
 #: A line of IPython's own syntax: `%plot …`, `!ls`, `%%time`.
 _MAGIC = re.compile(r"^(\s*)([%!].*)$")
@@ -182,7 +182,7 @@ def inspect(code: str) -> PythonCode:
         return PythonCode(fragment="it is a piece of a class", defines=methods)
     if uses_super_outside(tree):
         return PythonCode(fragment="`super()` is used outside a class")
-    outside = _only_inside_function(code)
+    outside = _only_inside_function(tree)
     if outside:
         return PythonCode(fragment=outside)
     return _facts(tree, code)
@@ -190,23 +190,23 @@ def inspect(code: str) -> PythonCode:
 
 def _parse(code: str, shift: int = 0) -> ast.Module:
     try:
-        return ast.parse(code)
+        return syntax_tree(code)
     except SyntaxError as error:
         raise CodeError(error.msg, max(1, (error.lineno or 1) - shift), error.offset or 1) from None
     except (ValueError, RecursionError, MemoryError) as error:
         raise CodeError(str(error) or type(error).__name__, 1, 1) from None
 
 
-def _only_inside_function(code: str) -> str | None:
+def _only_inside_function(tree: ast.Module) -> str | None:
     try:
-        compile(code, "<chapter>", "exec", flags=ast.PyCF_ALLOW_TOP_LEVEL_AWAIT, dont_inherit=True)
+        compile(tree, "<chapter>", "exec", flags=ast.PyCF_ALLOW_TOP_LEVEL_AWAIT, dont_inherit=True)
     except SyntaxError as error:
         return f"{error.msg} (line {error.lineno} of it)"
     return None
 
 
 def _facts(tree: ast.Module, code: str) -> PythonCode:
-    everything = list(ast.walk(tree))
+    everything = descendants(tree)
     calls = [item for item in everything if isinstance(item, ast.Call)]
     called = {last_name(call.func) for call in calls}
     defines, needs = _names(everything, code)

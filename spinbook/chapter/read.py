@@ -7,9 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from markdown_it import MarkdownIt
-from markdown_it.token import Token
-
 from groundwork.problem import Problem, Severity
 from spinbook.chapter.block import Block, BlockKind, SourceLine
 from spinbook.chapter.blocks import read_blocks
@@ -20,7 +17,7 @@ from spinbook.chapter.fence import Fence, interface_of, interface_package
 from spinbook.chapter.files import is_elsewhere, locate, read_included
 from spinbook.chapter.labels import Heading, Label, References, headings, labels, words_of
 from spinbook.chapter.layout import ChapterLayout, Piece
-from spinbook.chapter.links import references_in
+from spinbook.chapter.links import links_in, references_in
 from spinbook.chapter.own_packages import OwnPackages, named_files, own_packages
 from spinbook.chapter.programs import Programs
 from spinbook.chapter.shells import Shells
@@ -60,7 +57,7 @@ class ReadResult:
     problems: tuple[Problem, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _ParsedChapter:
     source: Source | None
     blocks: tuple[Block, ...]
@@ -121,11 +118,15 @@ def definitions_of(root: Path, file: Path, own: str) -> Iterator[tuple[Fence, st
 
 def _fences(parsed: _ParsedChapter, own: str) -> Iterator[tuple[Block, Fence]]:
     """Yield each block that is a fence, and the fence, with the interface that it defines."""
-    text = parsed.source.text if parsed.source else ""
-    titles = shown_interfaces(parsed.blocks, text, own)
+    titles = _interfaces(parsed, own)
     for block in parsed.fences:
         if block.fence is not None:
             yield block, replace(block.fence, interface=titles.get(block.fence.line, ""))
+
+
+@functools.lru_cache(maxsize=512)
+def _interfaces(parsed: _ParsedChapter, own: str) -> dict[int, str]:
+    return shown_interfaces(parsed.blocks, parsed.source.text if parsed.source else "", own)
 
 
 def modules_of(root: Path, file: Path) -> frozenset[str]:
@@ -289,7 +290,7 @@ def _references(
     assert parsed.source is not None
     folder = file.parent.as_posix()
     yield from references.problems(parsed.blocks)
-    for target, line in _links(parsed.source.text):
+    for target, line in links_in(parsed.source.text):
         if is_elsewhere(target) or "{" in target or references.is_label(target):
             continue
         if locate(root, folder, target) is None:
@@ -302,28 +303,9 @@ def _uses(parsed: _ParsedChapter, root: Path, file: Path) -> tuple[Path, ...]:
     """Return the files of the course that the chapter includes, or links to."""
     assert parsed.source is not None
     folder = file.parent.as_posix()
-    targets = (target for target, _ in _links(parsed.source.text) if not is_elsewhere(target))
+    targets = (target for target, _ in links_in(parsed.source.text) if not is_elsewhere(target))
     places = {place for target in targets if (place := locate(root, folder, target))}
     return tuple(sorted(places | set(parsed.included)))
-
-
-@functools.lru_cache(maxsize=512)
-def _links(text: str) -> tuple[tuple[str, int], ...]:
-    """Return the targets of links and images, each with its line, counted from 1."""
-    if "](" not in text and "]:" not in text:
-        return ()
-    tokens = MarkdownIt("commonmark").enable("table").parse(text)
-    return tuple(found for token in tokens if token.type == "inline" for found in _links_in(token))
-
-
-def _links_in(token: Token) -> Iterator[tuple[str, int]]:
-    line = (token.map or (0, 0))[0] + 1
-    for child in token.children or []:
-        if child.type in {"softbreak", "hardbreak"}:
-            line += 1
-        target = str(child.attrs.get("href") or child.attrs.get("src") or "")
-        if target:
-            yield target, line
 
 
 def _heading(parsed: _ParsedChapter, title: str) -> list[Piece]:

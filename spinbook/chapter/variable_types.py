@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from spinbook.chapter.interface_fields import PARTS, InterfaceFields, fields_of
-from spinbook.chapter.node_classes import last_name
+from spinbook.chapter.syntax import descendants, dotted_name, last_name
 
 _MODULE = re.compile(r"(\w+)\.(msg|srv|action)")
 #: A package of interfaces, or one of its modules.
@@ -70,7 +70,7 @@ class ProgramTypes:
     def __init__(self, tree: ast.Module) -> None:
         self.functions: list[Function] = []
         self._busy: set[tuple[int, str]] = set()
-        everything = list(ast.walk(tree))
+        everything = descendants(tree)
         self._called = {last_name(item.func) for item in everything if isinstance(item, ast.Call)}
         self._module = self._add(tree, None)
         self._imported = _imported(everything)
@@ -142,7 +142,7 @@ class ProgramTypes:
         return kinds.pop() if len(kinds) == 1 else None
 
     def _attribute(self, item: ast.Attribute, function: Function) -> TypedValue | None:
-        if self._is_dotted and (known := self._imported.get(ast.unparse(item))) is not None:
+        if self._is_dotted and (known := self._imported.get(dotted_name(item))) is not None:
             return known
         if _is_self(item.value) and function.owner is not None:
             places = self._attributes.get((function.owner.name, item.attr))
@@ -274,7 +274,7 @@ def _imported(everything: Sequence[ast.AST]) -> Mapping[str, TypedValue]:
                 known[alias.asname or alias.name] = TypedValue("class", interface)
     modules = {alias.name for item in everything if isinstance(item, ast.Import) for alias in item.names}
     for item in everything if any(map(_INTERFACES.search, modules)) else ():
-        dotted = ast.unparse(item) if isinstance(item, ast.Attribute) else ""
+        dotted = dotted_name(item) if isinstance(item, ast.Attribute) else ""
         package, _, rest = dotted.partition(".")
         kind, _, name = rest.partition(".")
         if {package, f"{package}.{kind}"} & modules and kind in PARTS and name.isidentifier():
@@ -314,7 +314,7 @@ def _attributes(everything: Sequence[ast.AST]) -> dict[tuple[str, str], list[tup
     plain: set[int] = set()
     for owner in (item for item in everything if isinstance(item, ast.ClassDef)):
         for method in (item for item in owner.body if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef)):
-            for item in ast.walk(method):
+            for item in descendants(method):
                 targets = item.targets if isinstance(item, ast.Assign) else []
                 for target in targets:
                     if isinstance(target, ast.Attribute) and _is_self(target.value):

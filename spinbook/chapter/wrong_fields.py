@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from spinbook.chapter.interface_fields import FieldType, InterfaceFields
+from spinbook.chapter.syntax import descendants, syntax_tree
 from spinbook.chapter.variable_types import Function, ProgramTypes, TypedValue
 
 #: What every message has besides its fields.
@@ -32,12 +33,12 @@ class WrongField:
 def wrong_fields(program: str) -> list[WrongField]:
     """Return what is wrong with the messages that a program makes and reads; none if it is not Python."""
     try:
-        tree = ast.parse(program)
+        tree = syntax_tree(program)
     except (SyntaxError, ValueError, RecursionError):
         return []
     if "_msgs" not in program and "_srvs" not in program and "_interfaces" not in program and ".msg" not in program:
         return []
-    if any(isinstance(i, ast.ExceptHandler) and "AttributeError" in ast.dump(i) for i in ast.walk(tree)):
+    if any(isinstance(i, ast.ExceptHandler) and "AttributeError" in ast.dump(i) for i in descendants(tree)):
         return []
     types = ProgramTypes(tree)
     wrong = {item for function in types.functions for item in _in_function(function, types)}
