@@ -148,7 +148,7 @@ def _run(cell: ChapterCell) -> dict[str, Any]:
     names = [f"{package}/{executable}" for package, executable in cell.executables]
     before = cell.before if cell.kind is CellKind.NODE else ""
     about: dict[str, Any] = {"before": before, "start": how, "executables": names}
-    about |= {"seconds": cell.seconds, "until": cell.until, "raises": cell.raises}
+    about |= {"seconds": cell.seconds, "until": cell.until, "raises": cell.raises, "replaces": cell.replaces}
     return {key: value for key, value in about.items() if value}
 
 

@@ -49,6 +49,12 @@ function ending(name, status, process) {
 
 // Run a node's cell. Resolves when it has started, or has ended at once.
 export async function runNode(cell, into = cell, args = []) {
+  const earlier = started.get(cell.about.replaces);
+  if (earlier) {
+    into.print(`(replaces ${earlier.name}, the earlier version of this node)`);
+    await earlier.stop();
+    started.delete(earlier.name);
+  }
   await start(cell.name, into, cell.program, cell.file, args);
   await Promise.race([into.ended, new Promise((resolve) => setTimeout(resolve, 500))]);
 }

@@ -77,6 +77,8 @@ ros2 launch robot talkers.launch.py
 ```bash
 ros2 launch robot talkers.launch.py rate:=sideways
 ```
+
+{_TALKER.format(version="three").replace("talker.py", "better_talker.py")}
 """
 
 
@@ -112,6 +114,14 @@ def test_ros2_run_starts_the_newest_version_above(shown: Opened) -> None:
     expect(cell(shown, 3).get_by_role("status")).to_have_text("talker runs.")
     expect(cell(shown, 3).get_by_role("button", name="Ctrl-C")).to_be_visible()
     expect(run(shown, 1)).to_contain_text("[talker]: version one", timeout=DEADLINE_MS)
+
+
+def test_a_newer_version_in_another_file_replaces_the_running_one(shown: Opened) -> None:
+    newer = run(shown, 9)
+
+    expect(newer).to_contain_text("(replaces talker, the earlier version of this node)", timeout=DEADLINE_MS)
+    expect(newer).to_contain_text("[talker]: version three", timeout=DEADLINE_MS)
+    expect(cell(shown, 1).get_by_role("status")).to_have_text("talker ended with 0.")
     stop_all(shown)
 
 
