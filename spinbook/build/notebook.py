@@ -78,13 +78,19 @@ class Location:
         return name
 
 
+#: Without one of these, prose is plain Markdown: fences, alerts, containers.
+_OF_BOOK_TOOLS = ("```", "~~~", "[!", ":::")
+
+
 def portable(prose: str, location: Location) -> str:
     """Return the prose with alerts and admonitions as quotations, plain fences, and links that lead somewhere.
 
     Links to files of the course point into its repository, those to other chapters to their notebooks; pictures are
     collected in `location`.
     """
-    return linked("\n".join(_plain(prose.split("\n"))), location.target, location.references)
+    if any(mark in prose for mark in _OF_BOOK_TOOLS):
+        prose = "\n".join(_plain(prose.split("\n")))
+    return linked(prose, location.target, location.references)
 
 
 def _joined(folder: str, path: str) -> str:

@@ -13,8 +13,9 @@ from groundwork.files import write_if_changed
 from groundwork.problem import Problem, Severity
 from spinbook.build.digest import code_digest, digest, files_digest
 from spinbook.build.notebook import notebook_json
+from spinbook.chapter.files import locate
 from spinbook.chapter.labels import may_refer
-from spinbook.chapter.read import Surroundings, forget_chapters, read_chapter
+from spinbook.chapter.read import Surroundings, read_chapter
 from spinbook.chapters import surroundings
 from spinbook.course.course import Course
 from spinbook.course.obstacles import strict
@@ -55,7 +56,7 @@ def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[Buil
     folder = course.build_folder / "notebooks"
     record = course.build_folder / ".cache" / "notebooks.json"
     before = _read_record(record)
-    forget_chapters()
+    locate.cache_clear()
     known = surroundings(course)
     code = code_digest("chapter", "chapters.py", "build", "course", "interfaces")
     common = digest(code, repr(course), repr(_sorted(known)), str(is_strict))

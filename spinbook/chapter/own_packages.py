@@ -21,6 +21,7 @@ _ENTRY = re.compile(r"""["']\s*([\w.-]+)\s*=\s*([\w.]+):(\w+)\s*["']""")
 _PLAIN_ENTRY = re.compile(r"""^\s*([\w.-]+)\s*=\s*["']?([\w.]+):(\w+)["']?,?\s*$""", re.MULTILINE)
 _HAS_ENTRIES = re.compile(r"console_scripts|entry_points|\[project\.scripts\]")
 _PACKAGE_NAME = re.compile(r"""\b(?:package_name|name)\s*=\s*["']([a-z][a-z0-9_]*)["']""")
+_MARKDOWN = MarkdownIt("commonmark")
 _FILE_COMMENT = re.compile(r"""^\s*(?:#+|\"\"\"|''')\s*(?:[Ff]ile(?:name)?\s*:?\s*)?`?([\w./~-]+\.py)\b""")
 _PY_FILE = re.compile(r"[\w./~-]*\w\.py\b", re.ASCII)
 _EDITORS = frozenset({"touch", "nano", "vim", "vi", "gedit", "code", "cat"})
@@ -161,7 +162,7 @@ def _in_comment(code: str) -> str:
 def _files_in(text: str) -> list[str]:
     if ".py" not in text:
         return []
-    tokens = MarkdownIt("commonmark").parse(text)
+    tokens = _MARKDOWN.parse(text)
     contents = [child.content for token in tokens for child in token.children or []]
     return [match for content in contents for match in _PY_FILE.findall(content)]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -62,12 +62,18 @@ class _ParsedChapter:
     source: Source | None
     blocks: tuple[Block, ...]
     problems: tuple[Problem, ...]
+    changed: tuple[int, ...]
+    """When its file and the included ones were last changed (ns)."""
     included: tuple[Path, ...] = ()
 
     @property
     def fences(self) -> Iterator[Block]:
         """The fences, in order."""
         return (block for top in self.blocks for block in top.walk() if block.fence is not None)
+
+
+#: What has been read in this process, by root and file.
+_read: dict[tuple[Path, Path], _ParsedChapter] = {}
 
 
 def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResult:
@@ -153,28 +159,26 @@ def title_of(root: Path, file: Path) -> str:
 
 
 def _parse(root: Path, file: Path) -> _ParsedChapter:
-    try:
-        changed = (root / file).stat().st_mtime_ns
-    except OSError:
-        changed = 0
-    return _parsed(root, file, changed)
+    known = _read.get((root, file))
+    if known is None or known.changed != _changed(root, [file, *known.included]):
+        known = _read[root, file] = _parsed(root, file)
+    return known
 
 
-def forget_chapters() -> None:
-    """Forget what has been read, because files that chapters include may have changed."""
-    _parsed.cache_clear()
-    locate.cache_clear()
+def _changed(root: Path, files: Iterable[Path]) -> tuple[int, ...]:
+    """Return when files were last changed (ns)."""
+    return tuple(path.stat().st_mtime_ns if (path := root / file).exists() else 0 for file in files)
 
 
-@functools.lru_cache(maxsize=512)
-def _parsed(root: Path, file: Path, changed: int) -> _ParsedChapter:
+def _parsed(root: Path, file: Path) -> _ParsedChapter:
     source, problems = read_source(root / file, file)
     if source is None:
-        return _ParsedChapter(None, (), tuple(problems))
+        return _ParsedChapter(None, (), tuple(problems), _changed(root, [file]))
     folder = file.parent.as_posix()
     included: list[Path] = []
     blocks = read_blocks(source.text, lambda name: read_included(root, folder, name, included))
-    return _ParsedChapter(source, one_each(blocks), tuple(problems), tuple(included))
+    changed = _changed(root, [file, *included])
+    return _ParsedChapter(source, one_each(blocks), tuple(problems), changed, tuple(included))
 
 
 def _classify(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import functools
 
+_CONTEXTS = frozenset({ast.Load, ast.Store, ast.Del})
 #: Enough for one chapter. A tree of 100 lines takes 0.3 MB.
 _TREES = 64
 
@@ -20,10 +21,12 @@ def descendants(node: ast.AST) -> tuple[ast.AST, ...]:
     """Return a node and all those below it in the order of `ast.walk`, without `ctx`, which is no code of its own."""
     nodes = [node]
     for item in nodes:
-        for name, value in item.__dict__.items():
-            if isinstance(value, list):
-                nodes.extend(part for part in value if isinstance(part, ast.AST))
-            elif isinstance(value, ast.AST) and name != "ctx":
+        for value in item.__dict__.values():
+            kind = type(value)
+            if kind is list:
+                nodes += [part for part in value if isinstance(part, ast.AST)]
+            # Most values are places and names: comparing types is faster than isinstance.
+            elif kind is not int and kind is not str and isinstance(value, ast.AST) and kind not in _CONTEXTS:
                 nodes.append(value)
     return tuple(nodes)
 
