@@ -16,7 +16,7 @@ def surroundings(course: Course) -> Surroundings:
     for file in course.chapters:
         modules |= modules_of(course.root, file)
     collected = collect(course)
-    interfaces = frozenset(item.full_name for item in collected.definitions)
+    interfaces = {item.full_name: item.text for item in collected.definitions}
     labels: dict[str, Label] = {}
     for file in course.chapters:
         labels = labels_of(course.root, file) | labels

@@ -118,7 +118,14 @@ def _key(own: str, chapter: Path, uses: Sequence[str], course: Course, known: Su
 def _sorted(known: Surroundings) -> tuple[Any, ...]:
     names = sorted(known.names.items())
     not_compiled = sorted((str(file), line, str(fault)) for (file, line), fault in known.not_compiled.items())
-    return known.package, sorted(known.modules), sorted(known.exercises), names, sorted(known.interfaces), not_compiled
+    return (
+        known.package,
+        sorted(known.modules),
+        sorted(known.exercises),
+        names,
+        sorted(known.interfaces.items()),
+        not_compiled,
+    )
 
 
 def _named(known: Surroundings) -> tuple[Any, ...]:

@@ -119,6 +119,8 @@ class ClassifiedFence:
     """Whether the author named its file."""
     replaces: str = ""
     """The node of which this is a newer version, if that has another file."""
+    waits: bool = False
+    """Whether it counts its command-line arguments, and a command below gives it some."""
     has_main_above: bool = False
     """Whether `before` has the `main` of an earlier version."""
 
@@ -130,7 +132,7 @@ class ClassifiedFence:
     @property
     def keeps(self) -> bool:
         """Whether the code is only saved, for a command to start: it reads command-line arguments."""
-        return self.kind is CellKind.NODE and self.code is not None and self.code.words_read > 0
+        return self.kind is CellKind.NODE and self.code is not None and (self.waits or self.code.words_read > 0)
 
     @property
     def spin_classes(self) -> tuple[str, ...]:

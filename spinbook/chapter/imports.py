@@ -14,6 +14,7 @@ from pathlib import Path
 from interface_compiler import prefixes, shipped
 from ros_in_python.ros2 import interfaces as interface_files
 from spinbook.chapter.python_code import PythonCode
+from spinbook.chapter.terminal import is_placeholder
 
 #: Module -> its package on PyPI, if the two names differ.
 _DISTRIBUTIONS = {
@@ -117,6 +118,9 @@ def _not_installed(top: str, line: int) -> MissingPackage:
         fix = f"Install it: pip install {_DISTRIBUTIONS[top]}"
     elif close := _similar(top):
         fix = f"Did you mean `{close}`?"
+    elif is_placeholder(top):
+        problem = f"imports `{top}`, which stands for a name that a reader fills in."
+        return MissingPackage(top, problem, "Write `static` after the language to say that this is meant.", line)
     elif top.endswith(("_msgs", "_srvs", "_interfaces", "_actions")):
         fix = remedy(top)
     elif top in _ONLY_IN_ROS:

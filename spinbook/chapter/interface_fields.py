@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from interface_compiler import prefixes
 
@@ -41,13 +44,29 @@ class InterfaceFields:
     constants: frozenset[str]
 
 
-@functools.cache
+_OWN: ContextVar[Mapping[str, str]] = ContextVar("own definitions", default=MappingProxyType({}))
+
+
+@contextmanager
+def own_definitions(texts: Mapping[str, str]) -> Iterator[None]:
+    """Let `fields_of` also know these definitions, which need not be compiled: `my_interfaces/msg/Pose` -> text."""
+    token = _OWN.set(texts)
+    try:
+        yield
+    finally:
+        _OWN.reset(token)
+
+
 def fields_of(interface: str, part: str = "") -> InterfaceFields | None:
-    """Return the fields of `std_msgs/msg/String`, or of a part such as `Request`; None if it is not installed."""
+    """Return the fields of `std_msgs/msg/String`, or of a part such as `Request`; None if its definition is unknown."""
     package, kind, name = interface.split("/")
-    text = _definitions(package).get(f"{kind}/{name}.{kind}")
-    if text is None or part not in PARTS[kind]:
-        return None
+    text = _OWN.get().get(interface) or _definitions(package).get(f"{kind}/{name}.{kind}")
+    return _fields(interface, part, text) if text is not None and part in PARTS[kind] else None
+
+
+@functools.lru_cache(maxsize=512)
+def _fields(interface: str, part: str, text: str) -> InterfaceFields:
+    package, kind, name = interface.split("/")
     section = re.split(r"^---.*$", text, flags=re.MULTILINE)[PARTS[kind].index(part) :][:1]
     return _read(f"{name}.{part}" if part else name, section[0] if section else "", package)
 

@@ -30,11 +30,12 @@ def ros_name(everything: Sequence[ast.AST], classes: Mapping[str, ast.ClassDef])
         for target in item.targets
         if isinstance(target, ast.Name)
     }
-    names = (_text(texts.get(name.id) if isinstance(name, ast.Name) else name) for name in map(_name_given, calls))
-    return next(filter(None, names), None) or _name_passed_on(calls, classes)
+    names = (_text(name, texts) for name in map(_name_given, calls))
+    return next(filter(None, names), None) or _name_passed_on(calls, classes, texts)
 
 
-def _text(value: ast.expr | None) -> str | None:
+def _text(value: ast.expr | None, texts: Mapping[str, ast.expr]) -> str | None:
+    value = texts.get(value.id) if isinstance(value, ast.Name) else value
     return value.value if isinstance(value, ast.Constant) and isinstance(value.value, str) else None
 
 
@@ -49,7 +50,9 @@ def _name_given(call: ast.Call) -> ast.expr | None:
     return next(iter([*arguments[:1], *(k.value for k in call.keywords if k.arg == "node_name")]), None)
 
 
-def _name_passed_on(calls: Sequence[ast.Call], classes: Mapping[str, ast.ClassDef]) -> str | None:
+def _name_passed_on(
+    calls: Sequence[ast.Call], classes: Mapping[str, ast.ClassDef], texts: Mapping[str, ast.expr]
+) -> str | None:
     """Return the name that is an argument, or its default, of a constructor that passes it to Node's."""
     for name, own in classes.items():
         init = next((i for i in own.body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
@@ -61,7 +64,7 @@ def _name_passed_on(calls: Sequence[ast.Call], classes: Mapping[str, ast.ClassDe
         place = parameters.index(passed) - 1 if passed in parameters else -1
         values = [value for call in calls if last_name(call.func) == name for value in _argument(call, passed, place)]
         defaults = dict(zip(reversed(parameters), reversed(init.args.defaults), strict=False))
-        if text := next(filter(None, map(_text, [*values, defaults.get(passed)])), None):
+        if text := next(filter(None, (_text(value, texts) for value in [*values, defaults.get(passed)])), None):
             return text
     return None
 

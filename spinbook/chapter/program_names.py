@@ -50,7 +50,8 @@ class ProgramNames:
     def close(self, executable: str) -> str:
         """Return the name that may have been meant: one spelled alike, or with half of its words; "" if none."""
         names = {name: item.name or name for item in self.nodes.values() for name in _names(item)}
-        alike = difflib.get_close_matches(executable, names, n=1, cutoff=0.7)
+        known = {name.lower(): name for name in names}
+        alike = [known[name] for name in difflib.get_close_matches(executable.lower(), known, n=1, cutoff=0.7)]
         mine = _words(executable)
         shared = [name for name in names if 2 * len(mine & _words(name)) >= max(len(mine), len(_words(name)))]
         best = (alike or shared or [""])[0]

@@ -43,9 +43,16 @@ def programs_started(everything: Sequence[ast.AST]) -> dict[str, int]:
     return words
 
 
+def counts_words(item: ast.AST) -> bool:
+    """Return whether code counts its command-line arguments, or catches that there are too few."""
+    if isinstance(item, ast.Call):
+        return last_name(item.func) == "len" and bool(item.args) and _is_argv(item.args[0])
+    return isinstance(item, ast.ExceptHandler) and "IndexError" in (ast.unparse(item.type) if item.type else "")
+
+
 def words_read(everything: Sequence[ast.AST]) -> int:
     """Return how many command-line arguments a program reads without checking that they exist."""
-    if any(_looks_first(item) for item in everything):
+    if any(counts_words(item) for item in everything):
         return 0
     indexes = (item.slice for item in everything if isinstance(item, ast.Subscript) and _is_argv(item.value))
     indices = [index.value for index in indexes if isinstance(index, ast.Constant) and isinstance(index.value, int)]
@@ -84,6 +91,14 @@ def loops_forever(statement: ast.stmt) -> bool:
         return (endless and not leaves) or ast.unparse(test).endswith("rclpy.ok()")
     value = statement.value if isinstance(statement, ast.Expr) else None
     return isinstance(value, ast.Call) and last_name(value.func) in {"serve_forever", "run_forever", "mainloop"}
+
+
+def only_defines(statement: ast.stmt) -> bool:
+    """Return whether a statement is an import, a definition, a constant or a text, so that running it shows nothing."""
+    if isinstance(statement, ast.Expr | ast.Assign | ast.AnnAssign):
+        return not any(isinstance(item, ast.Call) for item in descendants(statement))
+    kinds = ast.Import | ast.ImportFrom | ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Pass
+    return isinstance(statement, kinds)
 
 
 def wants_ros(tree: ast.Module) -> int:
@@ -172,10 +187,3 @@ def _command_words(call: ast.Call, everything: Sequence[ast.AST]) -> Iterator[st
 
 def _is_argv(value: ast.expr) -> bool:
     return dotted_name(value) in {"sys.argv", "argv"}
-
-
-def _looks_first(item: ast.AST) -> bool:
-    """Return whether code counts its arguments, or catches that there are too few."""
-    if isinstance(item, ast.Call):
-        return last_name(item.func) == "len" and bool(item.args) and _is_argv(item.args[0])
-    return isinstance(item, ast.ExceptHandler) and "IndexError" in (ast.unparse(item.type) if item.type else "")

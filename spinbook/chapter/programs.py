@@ -35,20 +35,28 @@ class Programs:
     _defined: set[str] = field(default_factory=set)
     _versions: NodeVersions = field(default_factory=NodeVersions)
     _used: dict[int, tuple[int, ...]] = field(default_factory=dict)
+    _has_ros: bool = False
+    """Whether snippets above have started ROS in the notebook's kernel."""
 
     def decide(self, items: Sequence[ClassifiedFence]) -> list[ClassifiedFence]:
         """Decide what each fence becomes; fences without Python stay as they are."""
         out = list(items)
         for number, item in enumerate(items):
-            if item.kind is CellKind.NODE:
+            if item.kind is CellKind.NODE and not self._goes_on_in_kernel(item):
                 out[number] = self._node(number, item, out)
-            elif item.kind is CellKind.SNIPPET:
+            elif item.kind in {CellKind.NODE, CellKind.SNIPPET}:
                 out[number] = self._snippet(item)
             if item.code and not item.code.is_setup_script and not item.code.is_launch_file:
                 self._pieces.append(number)
         out = _with_parts(out, self._used)
         self.problems += _without_file_name(self.file, out)
         return out
+
+    def _goes_on_in_kernel(self, item: ClassifiedFence) -> bool:
+        """Return whether code spins for a while what snippets above have made, as in a notebook."""
+        code = item.code
+        is_piece = code is not None and set(code.needs) <= self._defined and not (code.initializes or code.node_classes)
+        return self._has_ros and is_piece and "rclpy.spin(" not in item.fence.code and not _is_file(item)
 
     def _node(self, number: int, item: ClassifiedFence, out: Sequence[ClassifiedFence]) -> ClassifiedFence:
         code = item.code
@@ -92,6 +100,7 @@ class Programs:
     def _snippet(self, item: ClassifiedFence) -> ClassifiedFence:
         code = item.code
         assert code is not None
+        item = replace(item, kind=CellKind.SNIPPET)
         missing = [name for name in code.needs if name not in self._defined]
         if item.fence.has("raises"):
             return item
@@ -105,11 +114,15 @@ class Programs:
                 f"it uses {names}, which no earlier snippet of the chapter defines",
                 f"it uses {names}, which nothing above defines.",
             )
-        if code.leaves or (code.wants_ros and not code.initializes):
+        starts_ros = code.initializes and code.starts_ros
+        if code.leaves or (code.wants_ros and not code.initializes and not self._has_ros):
             return _static(item, code.leaves or "nothing calls `rclpy.init` before it")
+        if starts_ros and (self._has_ros or "rclpy" not in code.imports or item.before):
+            return _static(item, "it is a piece of a program")
         if absent := missing_imports(code, self.own, self.interfaces):
             return self._missing(item, absent, CompleteProgram(item.fence.code, item.before))
         self._defined |= code.defines
+        self._has_ros = (starts_ros or self._has_ros) and "rclpy.shutdown()" not in item.fence.code
         self._check_fields(item, item.before)
         return item
 
@@ -194,6 +207,8 @@ class Programs:
 
 def _why_fragment(item: ClassifiedFence, code: PythonCode, joined: CompleteProgram) -> str:
     """Return what keeps a class without a main from being a program; empty if nothing does."""
+    if code.does_nothing and not _is_file(item):
+        return "nothing calls what it defines"
     if code.is_complete or not code.node_classes or code.calls_main or joined.has_main_above:
         return ""
     if code.initializes and set(code.node_classes) - set(code.alone):

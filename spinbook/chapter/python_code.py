@@ -24,8 +24,10 @@ from spinbook.chapter.node_classes import (
 from spinbook.chapter.program_start import (
     at_top,
     calls_main,
+    counts_words,
     leaves,
     loops_forever,
+    only_defines,
     programs_started,
     spins,
     starts_ros,
@@ -112,14 +114,24 @@ class PythonCode:
     """Whether it calls `rclpy.init`, however it is imported."""
     leaves: str = ""
     """How it would end a notebook's kernel, or read the kernel's command line."""
+    only_defines: bool = False
+    """Whether its top level only imports and defines."""
+    counts_words: bool = False
+    """Whether it counts its command-line arguments, or catches that there are too few."""
     words_read: int = 0
     """How many command-line arguments it reads without checking that they exist."""
 
     @property
     def is_node(self) -> bool:
         """Whether it is a complete program: it calls `rclpy.spin`, or defines a Node that can be run."""
-        is_program = self.spins or self.starts_ros or self.loops or bool(self.node_classes)
+        starts = self.starts_ros and self.wants_ros > 0
+        is_program = self.spins or starts or self.loops or bool(self.node_classes)
         return is_program and not (self.is_setup_script or self.is_launch_file)
+
+    @property
+    def does_nothing(self) -> bool:
+        """Whether running it only defines functions and classes, none of which ROS or Spinbook would run."""
+        return self.only_defines and not (self.has_main or self.node_classes)
 
     @property
     def own_classes(self) -> list[str]:
@@ -229,6 +241,8 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         starts_ros=any(map(starts_ros, calls)),
         loops=any(map(loops_forever, at_top(tree))),
         programs=programs_started(everything),
+        only_defines=all(map(only_defines, tree.body)),
+        counts_words=any(map(counts_words, everything)),
         words_read=words_read(everything),
         wants_ros=wants_ros(tree),
         initializes="init" in called,

@@ -15,6 +15,7 @@ from spinbook.chapter.classify import CellKind, ClassifiedFence, first_look, nod
 from spinbook.chapter.excerpts import excerpts, is_excerpt
 from spinbook.chapter.fence import Fence, interface_of, interface_package
 from spinbook.chapter.files import is_elsewhere, locate, read_included
+from spinbook.chapter.interface_fields import own_definitions
 from spinbook.chapter.labels import Heading, Label, References, headings, labels, words_of
 from spinbook.chapter.layout import ChapterLayout, Piece
 from spinbook.chapter.links import links_in, references_in
@@ -34,16 +35,16 @@ class Surroundings:
 
     `package` is the course's ROS package, `modules` the node modules of the course's other chapters, `exercises` the
     exercises that exist, `names` the chapters' names, by their file, `interfaces` the messages, services and actions
-    that the course defines, such as `my_robot_interfaces/msg/JointLimits`, `labels` what MyST's labels name, `titles`
-    the chapters' titles, by their file, `not_compiled` why definitions in chapters are only shown, by the file and line
-    on which each begins.
+    that the course defines, such as `my_robot_interfaces/msg/JointLimits`, with their definitions, `labels` what MyST's
+    labels name, `titles` the chapters' titles, by their file, `not_compiled` why definitions in chapters are only
+    shown, by the file and line on which each begins.
     """
 
     package: str
     modules: frozenset[str] = frozenset()
     exercises: frozenset[str] = frozenset()
     names: Mapping[Path, str] = field(default_factory=dict)
-    interfaces: frozenset[str] = frozenset()
+    interfaces: Mapping[str, str] = field(default_factory=dict)
     labels: Mapping[str, Label] = field(default_factory=dict)
     titles: Mapping[Path, str] = field(default_factory=dict)
     not_compiled: Mapping[tuple[Path, int], Problem] = field(default_factory=dict)
@@ -82,7 +83,8 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResu
     problems = list(parsed.problems)
     if parsed.source is None:
         return ReadResult(None, tuple(problems))
-    classified, fence_problems = _classify(parsed, file, surroundings)
+    with own_definitions(surroundings.interfaces):
+        classified, fence_problems = _classify(parsed, file, surroundings)
     title, title_problems = _title(parsed, file)
     own = labels(parsed.blocks, file)
     sections = {heading.slug: heading for heading in headings(parsed.blocks)}
@@ -206,7 +208,7 @@ def _classify(
         problems += [*fence_problems, *bad]
     packages = own_packages(with_language(item.fence) for item in items)
     own_modules = _own(packages, surroundings, items)
-    programs = Programs(file, own_modules, named_files(parsed.blocks), surroundings.interfaces)
+    programs = Programs(file, own_modules, named_files(parsed.blocks), frozenset(surroundings.interfaces))
     items = programs.decide(items)
     modules = surroundings.modules | {item.name for item in items if item.kind is CellKind.NODE and item.name}
     exercise = any(block.kind is BlockKind.EXERCISE for top in parsed.blocks for block in top.walk())
@@ -217,7 +219,7 @@ def _classify(
         packages,
         programs.named_files,
         exercise,
-        interfaces=surroundings.interfaces,
+        interfaces=frozenset(surroundings.interfaces),
     )
     items = shells.decide(items)
     for number, item in not_executed.items():

@@ -28,6 +28,7 @@ _ASKING = {
     "service": {"call", "type", "info"},
     "node": {"info"},
     "action": {"info", "send_goal"},
+    "lifecycle": {"get", "set", "list"},
     "param": {"list", "get", "set", "describe", "dump", "load", "delete"},
 }
 #: Programs that need a keyboard.
@@ -158,7 +159,7 @@ class Shells:
             fix = "Give the parameters with -p NAME:=VALUE."
             return _Reason("it reads a parameter file, which is missing", fix, "files of parameters")
         if command.runs is not None:
-            return self._run(*command.runs, out, line) or self._lacks_words(command, out)
+            return self._run(command, out, line) or self._lacks_words(command, out)
         if command.words[1:2] == ("launch",):
             return self._launch(command)
         if command.words[1:3] == ("pkg", "create"):
@@ -166,7 +167,8 @@ class Shells:
         self._check_values(command, line)
         return self._types(command) or self._named(command)
 
-    def _run(self, package: str, executable: str, out: list[ClassifiedFence], line: int) -> _Reason | None:
+    def _run(self, command: Command, out: list[ClassifiedFence], line: int) -> _Reason | None:
+        package, executable = command.runs or ("", "")
         if package == self.package and executable in self.modules:
             return None
         if not self._is_elsewhere(package):
@@ -175,8 +177,7 @@ class Shells:
             if number is None and (number := names.similar(package, executable)) is not None:
                 self._say_which(package, executable, out[number].name or "", line)
             if number is not None:
-                known = dict.fromkeys([*out[number].executables, (package, executable)])
-                out[number] = replace(out[number], executables=tuple(known))
+                self._start(number, command, out)
                 return None
             if (package, executable) in self._hello:
                 return None
@@ -190,6 +191,13 @@ class Shells:
             return _Reason(problem, fix, "")
         return self._foreign(package, executable)
 
+    def _start(self, number: int, command: Command, out: list[ClassifiedFence]) -> None:
+        """Give a node the name by which a command starts it. One that counts its arguments waits for a command's."""
+        item = out[number]
+        known = dict.fromkeys([*item.executables, command.runs or ("", "")])
+        waits = item.waits or bool(item.code and item.code.counts_words and _arguments(command))
+        out[number] = replace(item, executables=tuple(known), waits=waits)
+
     def _say_which(self, package: str, executable: str, node: str, line: int) -> None:
         problem = f"no fence above says which program `{executable}` of `{package}` is: `{node}` is started."
         fix = f"Did you mean `{node}`? Otherwise show the program, or the line of setup.py that names it."
@@ -198,11 +206,12 @@ class Shells:
     def _is_elsewhere(self, package: str) -> bool:
         """Return whether a package is part of ROS or Spinbook, so that it is not a program of the chapter."""
         comes_with_us = package in executables.BUILT_IN and package not in self.own.names
-        return comes_with_us or package in ros_packages()
+        defined_here = any(name.startswith(f"{package}/") for name in self.interfaces)
+        return comes_with_us or (package in ros_packages() and not defined_here)
 
     def _lacks_words(self, command: Command, out: Sequence[ClassifiedFence]) -> _Reason | None:
         """Return a reason if a program of the chapter reads more arguments than the command gives it."""
-        arguments = list(itertools.takewhile(lambda word: not word.startswith("-"), command.words[4:]))
+        arguments = _arguments(command)
         for number in self._nodes.values():
             code = out[number].code
             if command.runs in out[number].executables and code and code.words_read > len(arguments):
@@ -331,7 +340,14 @@ class Shells:
 
 
 def _lacking(package: str) -> _Reason:
+    if is_placeholder(package):
+        return _TO_FILL_IN
     return _Reason(f"it needs `{package}`, not installed here", remedy(package), package)
+
+
+def _arguments(command: Command) -> list[str]:
+    """Return the words that `ros2 run` hands on to a program, without those for ROS."""
+    return list(itertools.takewhile(lambda word: not word.startswith("-"), command.words[4:]))
 
 
 def _last_name(path: str) -> str:

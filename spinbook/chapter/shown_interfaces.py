@@ -179,9 +179,20 @@ def _names_in(text: str) -> list[_Name]:
 def _split(path: str) -> _Name:
     *folders, file = path.split("/")
     name, _, kind = file.rpartition(".")
+    folders = _in_repository(folders)
     folders = folders[:-1] if folders and folders[-1] == kind else folders
     package = folders[-1] if folders else ""
     return _Name("" if package in _NOT_PACKAGES or not _PACKAGE.fullmatch(package) else package, kind, name)
+
+
+def _in_repository(folders: list[str]) -> list[str]:
+    """Return the folders of a file from its repository on, if they are those of its address on GitHub or GitLab."""
+    for mark in ("blob", "tree", "raw"):
+        if mark in folders[1:]:
+            at = folders.index(mark, 1)
+            return [part for part in (folders[at - 1], *folders[at + 2 :]) if part != "-"]
+    is_raw = folders[:1] == ["raw.githubusercontent.com"]
+    return [*folders[2:3], *folders[4:]] if is_raw else folders
 
 
 def _is_listing(fence: Fence) -> bool:

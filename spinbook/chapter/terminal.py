@@ -22,10 +22,12 @@ ROS2 = {
     "action": {"list", "info", "send_goal", "type"},
     "param": {"list", "get", "set", "describe", "dump", "load", "delete"},
     "pkg": {"list", "executables", "prefix", "create"},
+    "lifecycle": {"nodes", "get", "set", "list"},
     "daemon": {"status", "start", "stop"},
     "run": set(),
     "launch": set(),
 }
+_IN_A_TERMINAL = frozenset({"bag", "multicast", "doctor", "wtf"})
 MOVING_ABOUT = frozenset({"cd", "source", ".", "export", "unset", "clear"})
 #: Commands that show or make files: a notebook can skip them if the fence has a command that runs.
 _BESIDE = frozenset(
@@ -263,6 +265,8 @@ def _meant(word: str, known: Iterable[str]) -> str:
 
 def _ros2(text: str, words: tuple[str, ...], line: int) -> Command | UnsupportedCommand:
     noun = words[1] if len(words) > 1 else ""
+    if noun in _IN_A_TERMINAL:
+        return UnsupportedCommand(text, line, f"`ros2 {noun}` runs in a terminal, not in a notebook")
     if noun not in ROS2:
         return UnsupportedCommand(text, line, f"there is no `ros2 {noun}` here; {_meant(noun, ROS2)}")
     if noun == "run" and words[2:3] == words[3:4] and words[2:3] and words[2] in _WINDOWS:
