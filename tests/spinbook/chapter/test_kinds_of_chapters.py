@@ -92,7 +92,7 @@ PROBLEMS = {
 
 #: Chapter -> what its prose in the notebook has.
 PROSE = {
-    "boxes": ["> **Caution**\n>\n> Short one.", "> **In braces**\n>\n> Body", '<img src="attachment:pictures-elbow.svg"'],
+    "boxes": ["> **Caution**\n>\n> Short one.", "> **In braces**\n>\n> Body", 'src="attachment:pictures-elbow.svg"'],
     "flavours_in_lists": ["> Mind the step.", "> **Hot *motor***", "**Python**"],
     "pictures_by_reference": ["![The elbow](attachment:pictures-elbow.svg", "![](attachment:pictures-elbow.svg"],
     "transcripts": ["In the author's terminal:\n\n````text\n/talker", "string data"],
