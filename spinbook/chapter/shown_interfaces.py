@@ -258,7 +258,7 @@ def _types_in(text: str) -> Iterator[tuple[tuple[str, str], str]]:
 
 def _twin(name: _Name, code: str) -> str:
     """Return the package that has exactly this definition already; "" if there is none."""
-    for package in (*shipped.standard(), *shipped.optional()):
+    for package in shipped.standard():
         for item in shipped.definitions(package):
             if (item.kind, item.name) == (name.kind, name.name) and _fields(item.text) == _fields(code):
                 return package

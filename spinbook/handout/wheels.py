@@ -149,7 +149,7 @@ def _packages(course: Course, text: bytes, environment: Path) -> Iterator[tuple[
     collected = collect(course)
     compiled = compile_course(course, collected)
     needed = {name for names in dependencies(collected.definitions).values() for name in names}
-    for package in (*shipped.standard(), *shipped.optional()):
+    for package in shipped.known():
         wanted = package in shipped.standard() or package in needed or package.encode() in text
         if wanted and prefixes.key_of(package, environment):
             yield package, environment

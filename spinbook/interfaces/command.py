@@ -49,7 +49,7 @@ def _state() -> dict[str, str]:
     installed = prefixes.packages(prefixes.installed())
     return {
         package: "installed" if package in installed else f"spinbook interfaces add {package}"
-        for package in (*shipped.standard(), *shipped.optional())
+        for package in shipped.known()
     }
 
 
@@ -68,7 +68,7 @@ def build(start: Path) -> None:
 @click.argument("packages", nargs=-1, required=True)
 def add(packages: tuple[str, ...]) -> None:
     """Compile packages that come with Spinbook as definitions, and install them into this environment."""
-    known = (*shipped.standard(), *shipped.optional())
+    known = shipped.known()
     for package in packages:
         if package not in known:
             click.echo(f"There is no package {package!r} to add. There are: {', '.join(known)}.", err=True)

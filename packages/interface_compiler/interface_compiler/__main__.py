@@ -37,7 +37,7 @@ def main() -> int:
 
 def _add(package: str) -> None:
     """Install a package that comes with this one, after those that it needs."""
-    known = (*shipped.standard(), *shipped.optional())
+    known = shipped.known()
     if package not in known:
         raise CompileError(f"There is no package {package!r} to add. There are: {', '.join(known)}.")
     for each in (*needed(package), package):

@@ -28,16 +28,27 @@ def optional() -> tuple[str, ...]:
     return _packages("optional")
 
 
+@functools.cache
+def taught() -> tuple[str, ...]:
+    """Return the packages of ROS 2's tutorials: compiled on request, and defined by the courses that teach how."""
+    return _packages("taught")
+
+
+def known() -> tuple[str, ...]:
+    """Return all packages."""
+    return (*standard(), *optional(), *taught())
+
+
 def how_to_add(package: str) -> str | None:
     """Return how to get one of these packages where it is not installed; None for any other package."""
-    if package in (*standard(), *optional()):
+    if package in known():
         return f"Compile it, once: python -m interface_compiler add {package}"
     return None
 
 
 def definitions(package: str) -> list[Definition]:
     """Return the definitions of one of these packages. Raises KeyError for any other."""
-    for group in ("standard", "optional"):
+    for group in ("standard", "optional", "taught"):
         if package in _packages(group):
             return _read(_FOLDER / group / f"{package}.txt")
     raise KeyError(package)

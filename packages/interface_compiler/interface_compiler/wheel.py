@@ -51,7 +51,7 @@ def needed(package: str) -> list[str]:
     """Return the packages that a shipped package needs, each after those that it needs itself."""
     found: list[str] = []
     for name in sorted(dependencies(shipped.definitions(package))[package]):
-        if name in (*shipped.standard(), *shipped.optional()):
+        if name in shipped.known():
             found += [each for each in (*needed(name), name) if each not in found]
     return found
 
