@@ -42,13 +42,12 @@ _REAL = frozenset(
         "actionlib_msgs",
         "geographic_msgs",
         "audio_common_msgs",
-        "cv_bridge",
     ]
 )
 #: Python modules of ROS 2 that PyPI does not have.
 _ONLY_IN_ROS = frozenset(
     [
-        *("cv_bridge", "image_geometry", "image_transport_py", "laser_geometry", "tf_transformations", "rosbag2_py"),
+        *("image_geometry", "image_transport_py", "laser_geometry"),
         *("rqt_gui", "rqt_gui_py", "nav2_simple_commander", "moveit_py", "robot_localization", "diagnostic_updater"),
         *("ros2cli", "ros2run", "ros2launch", "launch_testing", "launch_testing_ros", "ros_gz_bridge", "gazebo_ros"),
     ]

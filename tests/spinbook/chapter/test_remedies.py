@@ -12,10 +12,10 @@ from fences import IMPORTS, MAIN, TALKER, reading
     ("line", "fix"),
     [
         (
-            "from cv_bridge import CvBridge",
+            "from image_geometry import PinholeCameraModel",
             "PyPI does not have ROS 2's: run the course where a ROS installation has it, or",
         ),
-        ("from vision_msgs.msg import Detection2D", "PyPI does not have it: show its .msg, .srv and .action files"),
+        ("from moveit_msgs.msg import RobotState", "PyPI does not have it: show its .msg, .srv and .action files"),
         ("import omni", "It comes only with Isaac Sim: write `static` after the fence's language."),
         ("import whisper", "If PyPI has it, add it to the course's dependencies; otherwise write `static`"),
         ("from geometry_msgs_py import poses", "If PyPI has it, add it"),

@@ -29,6 +29,10 @@ class Brevity:
 WHOLE = Brevity()
 
 
+class UnknownFieldError(CommandError):
+    """A message does not have this field."""
+
+
 class _Dumper(yaml.Dumper):
     """Mappings in the order of the fields, in block style as far as they can be, as the real command has them."""
 
@@ -47,7 +51,7 @@ _Dumper.add_representer(dict, _mapping)
 def to_yaml(message: Any, brevity: Brevity = WHOLE, *, flow_style: bool = False) -> str:
     """Return a message as YAML, with a line end. `flow_style` puts arrays on one line."""
     text: str = yaml.dump(
-        _fields(message, brevity), Dumper=_Dumper, allow_unicode=True, width=sys.maxsize, default_flow_style=flow_style
+        to_dict(message, brevity), Dumper=_Dumper, allow_unicode=True, width=sys.maxsize, default_flow_style=flow_style
     )
     return text
 
@@ -73,7 +77,8 @@ def is_message(value: Any) -> bool:
     return hasattr(value, "get_fields_and_field_types")
 
 
-def _fields(message: Any, brevity: Brevity) -> dict[str, Any]:
+def to_dict(message: Any, brevity: Brevity = WHOLE) -> dict[str, Any]:
+    """Return a message's fields as plain data: numbers, texts, lists and dictionaries."""
     names = message.get_fields_and_field_types()
     return {
         name: _plain(getattr(message, name), slot, brevity)
@@ -94,7 +99,7 @@ def _plain(value: Any, slot: Any, brevity: Brevity) -> Any:
         return [_plain(item, None, brevity) for item in shown] + (["..."] if len(shown) < len(value) else [])
     if isinstance(value, np.generic):
         return value.item()
-    return _fields(value, brevity) if is_message(value) else value
+    return to_dict(value, brevity) if is_message(value) else value
 
 
 def _csv(value: Any, slot: Any, brevity: Brevity) -> str:
@@ -307,7 +312,7 @@ def _wrong(path: str, value: Any, expected: str) -> CommandError:
     )
 
 
-def _unknown(message: Any, name: Any, path: str) -> CommandError:
+def _unknown(message: Any, name: Any, path: str) -> UnknownFieldError:
     where = f" in '{path}'" if path else ""
     lines = [
         f"Failed to populate field: '{type(message).__name__}' object has no attribute '{name}'{where}",
@@ -315,7 +320,7 @@ def _unknown(message: Any, name: Any, path: str) -> CommandError:
     ]
     if not isinstance(name, str):
         lines.append(f"YAML reads this field's name as {name!r}, not as text: quote it.")
-    return CommandError(*lines)
+    return UnknownFieldError(*lines)
 
 
 def type_name(message: Any) -> str:
