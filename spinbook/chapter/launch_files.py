@@ -12,7 +12,7 @@ import shlex
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from ros_in_python.launch.api import NAMES
+from ros_in_python.launch.api import ALL_NAMES
 from spinbook.chapter.syntax import descendants, last_name, syntax_tree
 from spinbook.chapter.terminal import Command, CommandKind
 
@@ -191,12 +191,12 @@ def unsupported_in_launch_file(code: str) -> str:
     """
     for item in descendants(syntax_tree(code)):
         if isinstance(item, ast.ImportFrom) and item.module and item.module.split(".")[0] in {"launch", "launch_ros"}:
-            there = NAMES.get(item.module, ())
+            there = ALL_NAMES.get(item.module, ())
             missing = [name.name for name in item.names if name.name not in there]
-            if missing and not all(f"{item.module}.{name}" in NAMES for name in missing):
+            if missing and not all(f"{item.module}.{name}" in ALL_NAMES for name in missing):
                 return f"{item.module}.{missing[0]}"
         elif isinstance(item, ast.Import):
             for name in item.names:
-                if name.name.split(".")[0] in {"launch", "launch_ros"} and name.name not in NAMES:
+                if name.name.split(".")[0] in {"launch", "launch_ros"} and name.name not in ALL_NAMES:
                     return name.name
     return ""

@@ -16,16 +16,17 @@ class Launch {
     this.hears = cell.hears(name);
     this.parts = [];
     this.died = false;
+    this.timers = new Set();
     this.over = new Promise((resolve) => (this.finish = resolve));
   }
 
   // As in a terminal: processes that died don't count once the launch was interrupted.
   get status() {
-    return this.died && !this.interrupted ? 1 : 0;
+    return this.died && !this.stopped ? 1 : 0;
   }
 
   get running() {
-    return this.parts.some((part) => part.running);
+    return this.timers.size > 0 || this.parts.some((part) => part.running);
   }
 
   print(text) {
@@ -35,12 +36,23 @@ class Launch {
   begin(steps) {
     for (const step of steps) {
       if ("say" in step) this.print(`[INFO] [launch.user]: ${step.say}`);
-      else this.#start(step);
+      else if ("after" in step) this.#later(step);
+      else if ("shutdown" in step) this.#interrupt();
+      else if (!this.interrupted) this.#start(step);
     }
-    if (this.parts.length === 0) this.finish();
+    if (!this.running) this.finish();
   }
 
-  #start({ package: pack, executable, args, files: more }) {
+  #later({ after, steps }) {
+    if (this.interrupted) return;
+    const timer = setTimeout(() => {
+      this.timers.delete(timer);
+      this.begin(steps);
+    }, after * 1000);
+    this.timers.add(timer);
+  }
+
+  #start({ package: pack, executable, args, files: more, onStart, onExit }) {
     const number = this.parts.length + 1;
     const name = `${executable}-${number}`;
     const { source, file } = programOf(this.cell, pack, executable);
@@ -49,29 +61,45 @@ class Launch {
     this.parts.push(part);
     this.print(`[INFO] [${name}]: process started with pid [${number}]`);
     part.program(source, file, args, files(more)).then(
-      (status) => this.#ended(name, number, status),
-      (error) => this.#ended(name, number, error.message),
+      (status) => this.#ended(name, number, status, onExit),
+      (error) => this.#ended(name, number, error.message, onExit),
     );
+    this.begin(onStart);
   }
 
-  #ended(name, number, status) {
+  #ended(name, number, status, onExit) {
     if (status === 0) this.print(`[INFO] [${name}]: process has finished cleanly [pid ${number}]`);
     else {
       this.print(`[ERROR] [${name}]: process has died [pid ${number}, exit code ${status ?? -9}]`);
-      this.died = true;
+      this.died ||= !this.interrupted;
     }
-    if (!this.running) this.finish();
+    this.begin(onExit);
+  }
+
+  #interrupt() {
+    this.interrupted = true;
+    this.timers.forEach(clearTimeout);
+    this.timers.clear();
+    return Promise.all(this.parts.map((part) => part.running && part.stop()));
   }
 
   // Interrupt all of them, as Ctrl-C does.
   async stop() {
     if (!this.running) return;
-    this.interrupted = true;
+    this.stopped = true;
     this.print("[WARNING] [launch]: user interrupted with ctrl-c (SIGINT)");
-    await Promise.all(this.parts.map((part) => part.running && part.stop()));
+    await this.#interrupt();
+    if (!this.running) this.finish();
     await this.over;
   }
 }
+
+// The programs of steps, and of those that come later.
+const programs = (steps) =>
+  steps.flatMap((step) => [
+    ...(step.executable ? [step] : []),
+    ...programs([...(step.steps ?? []), ...(step.onStart ?? []), ...(step.onExit ?? [])]),
+  ]);
 
 const FILE = /([^/\s]+?)[._]launch\.(py|ya?ml|xml)\b/;
 
@@ -81,7 +109,7 @@ export async function launch(cell, process, line) {
   const name = FILE.exec(line)?.[1].split(".")[0] ?? "launch";
   const { status, steps } = (await process.call("launch", { source: line, files: files() })) ?? { status: 1 };
   if (status) return void cell.fail();
-  const unknown = steps.find((step) => step.executable && !programOf(cell, step.package, step.executable));
+  const unknown = programs(steps).find((step) => !programOf(cell, step.package, step.executable));
   if (unknown) return cell.fail(`There is no node ${unknown.executable} on this page.`);
   await started.get(name)?.stop();
   logs.delete(name);

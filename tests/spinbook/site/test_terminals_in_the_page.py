@@ -58,15 +58,18 @@ ros2 topic echo /count
 
 ```python title="launch/talkers.launch.py"
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
+from launch.actions import DeclareLaunchArgument, LogInfo, RegisterEventHandler, TimerAction
+from launch.event_handlers import OnProcessStart
 from launch_ros.actions import Node
 
 
 def generate_launch_description():
+    a = Node(package='robot', executable='talker', name='a')
     return LaunchDescription([
         DeclareLaunchArgument('rate', choices=['slow', 'fast'], default_value='slow'),
-        Node(package='robot', executable='talker', name='a'),
-        Node(package='robot', executable='talker', name='b'),
+        a,
+        RegisterEventHandler(OnProcessStart(target_action=a, on_start=[LogInfo(msg='a has started')])),
+        TimerAction(period=0.2, actions=[Node(package='robot', executable='talker', name='b')]),
     ])
 ```
 
@@ -148,6 +151,7 @@ def test_a_launch_is_one_entry_and_bad_words_leave_it_alone(shown: Opened) -> No
     launched = run(shown, 7)
     for name in ("[a]", "[b]"):
         expect(launched).to_contain_text(f"{name}: version two", timeout=DEADLINE_MS)
+    assert "a has started" in launched.inner_text()
     expect(bar).to_have_text(["talkersStop"])
 
     expect(run(shown, 8)).to_contain_text("sideways", timeout=DEADLINE_MS)

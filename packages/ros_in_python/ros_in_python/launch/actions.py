@@ -1,14 +1,16 @@
-"""What a launch file describes: nodes, other programs, groups, and changes for those that follow."""
+"""What a launch file describes: nodes, other programs, groups, other files, and what comes later."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from ros_in_python.launch.conditions import IfCondition
-from ros_in_python.launch.substitutions import Text
+from ros_in_python.launch.substitutions import Context, Text
+from ros_in_python.ros2.cli import CommandError
 
 
 class LaunchDescription:
@@ -38,15 +40,6 @@ class DeclareLaunchArgument:
 
 
 @dataclass
-class SetLaunchConfiguration:
-    """Gives an argument a value from here on."""
-
-    name: Text
-    value: Text
-    condition: IfCondition | None = None
-
-
-@dataclass
 class LogInfo:
     """A line in the log of the launch."""
 
@@ -55,84 +48,39 @@ class LogInfo:
 
 
 @dataclass
-class PushRosNamespace:
-    """Puts the nodes after it, in its group, into a namespace."""
-
-    namespace: Text
-    condition: IfCondition | None = None
-
-
-@dataclass
-class ParameterForAll:
-    """Gives every node after it, in its group, a parameter."""
-
-    name: Text
-    value: Any
-    condition: IfCondition | None = None
-
-
-@dataclass
-class SetParametersFromFile:
-    """Gives every node after it, in its group, the parameters of a file."""
-
-    filename: Text
-    condition: IfCondition | None = None
-
-
-@dataclass
-class SetUseSimTime:
-    """Lets every node after it, in its group, use simulated time."""
-
-    value: Any = True
-    condition: IfCondition | None = None
-
-
-@dataclass
-class SetRemap:
-    """Remaps a name for every node after it, in its group."""
-
-    src: Text
-    dst: Text
-    condition: IfCondition | None = None
-
-
-@dataclass
-class SetEnvironmentVariable:
-    """Gives every program after it, in its group, an environment variable."""
-
-    name: Text
-    value: Text
-    condition: IfCondition | None = None
-
-
-@dataclass
-class AppendEnvironmentVariable:
-    """Appends to an environment variable of every program after it, in its group."""
-
-    name: Text
-    value: Text
-    prepend: Any = False
-    separator: Text = ":"
-    condition: IfCondition | None = None
-
-
-@dataclass
-class UnsetEnvironmentVariable:
-    """Removes an environment variable of every program after it, in its group."""
-
-    name: Text
-    condition: IfCondition | None = None
-
-
-@dataclass
 class GroupAction:
-    """Actions together, under one condition or in one namespace; what they change ends with the group if `scoped`."""
+    """Actions together, under one condition or in one namespace; what they change ends with the group if `scoped`.
+
+    A scoped group that is not `forwarding` knows nothing of what holds outside but its `launch_configurations`.
+    """
 
     actions: Sequence[Any]
     condition: IfCondition | None = None
     scoped: bool = True
     forwarding: bool = True
     launch_configurations: Mapping[Text, Text] = field(default_factory=dict)
+
+
+class Action:
+    """The base of a launch file's own actions: `execute` returns more actions or None."""
+
+    def __init__(self, *, condition: IfCondition | None = None) -> None:
+        self.condition = condition
+
+    def execute(self, context: Context) -> Any:
+        """Return what is to be done."""
+        raise NotImplementedError
+
+
+class LaunchService:
+    """Not for a launch file that `ros2 launch` reads: one that is run as a script needs ROS 2's own launch."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        raise CommandError(f"{type(self).__name__} needs ROS 2's own launch: start this file with `ros2 launch`")
+
+
+class LaunchIntrospector(LaunchService):
+    """As `LaunchService`."""
 
 
 class LaunchDescriptionSource:
@@ -151,7 +99,7 @@ class IncludeLaunchDescription:
     condition: IfCondition | None = None
 
 
-class OpaqueFunction:
+class OpaqueFunction(Action):
     """A function of the launch file: gets the context, and returns more actions or None."""
 
     def __init__(
@@ -162,17 +110,27 @@ class OpaqueFunction:
         kwargs: Mapping[str, Any] | None = None,
         condition: IfCondition | None = None,
     ) -> None:
-        self.function, self.args, self.kwargs, self.condition = function, tuple(args), dict(kwargs or {}), condition
+        super().__init__(condition=condition)
+        self.function, self.args, self.kwargs = function, tuple(args), dict(kwargs or {})
+
+    def execute(self, context: Context) -> Any:
+        """Return what the function returns."""
+        return self.function(context, *self.args, **self.kwargs)
 
 
 @dataclass
 class TimerAction:
-    """Actions that come `period` seconds later."""
+    """Actions that come `period` seconds later, if `cancel_on_shutdown` is false also when the launch is ending."""
 
     period: Any
     actions: Sequence[Any]
     cancel_on_shutdown: Any = True
     condition: IfCondition | None = None
+
+
+@dataclass
+class RosTimer(TimerAction):
+    """As `TimerAction`, in ROS's time, which here can't be a simulated one."""
 
 
 @dataclass
@@ -187,8 +145,9 @@ class Shutdown:
 class LaunchedProgram:
     """What each program of a launch may have besides its command.
 
-    `on_exit` are actions for when it has ended; `respawn` starts it again. `output` is taken and changes nothing: all
-    that a program prints is shown.
+    `on_exit` are actions for when it has ended; `respawn` starts it again. `process_details` has `name`, `pid` and
+    `cmd` once it has started. All that a program prints is shown at once, whatever `output`, `emulate_tty` and
+    `cached_output` are.
     """
 
     name: Text | None = None
@@ -197,14 +156,18 @@ class LaunchedProgram:
     additional_env: Mapping[Text, Text] = field(default_factory=dict)
     prefix: Text | None = None
     output: Text = "log"
-    output_format: str = ""
+    output_format: str = "[{this.process_description.final_name}] {line}"
     emulate_tty: bool = False
+    cached_output: bool = False
+    log_cmd: bool = False
     on_exit: Any = ()
     respawn: Any = False
     respawn_delay: float | None = None
+    respawn_max_retries: int = -1
     sigterm_timeout: Text = "5"
     sigkill_timeout: Text = "5"
     condition: IfCondition | None = None
+    process_details: Mapping[str, Any] | None = field(default=None, init=False)
 
 
 @dataclass(eq=False, kw_only=True)
@@ -230,11 +193,29 @@ class Node(LaunchedProgram):
     remappings: Sequence[tuple[Text, Text]] = ()
     arguments: Sequence[Text] = ()
     ros_arguments: Sequence[Text] = ()
+    node_name: str = field(default="", init=False)
 
 
 @dataclass(eq=False, kw_only=True)
 class LifecycleNode(Node):
-    """A node with a life cycle. It starts unconfigured, as in ROS 2; `ros2 lifecycle set` changes that."""
+    """A node with a life cycle. It starts unconfigured; events, `ros2 lifecycle set` or `autostart` change that."""
+
+    autostart: bool = False
+
+
+@dataclass
+class LifecycleTransition:
+    """Makes nodes with a life cycle do transitions, each after the one before has succeeded."""
+
+    lifecycle_node_names: Sequence[Text]
+    transition_ids: Sequence[Any]
+    condition: IfCondition | None = None
+
+
+def line_of(program: LaunchedProgram, name: str, line: str) -> str:
+    """Return a line that a program has printed as the launch shows it. Raises what `str.format` does."""
+    this = SimpleNamespace(process_description=SimpleNamespace(final_name=name, name=name), name=name)
+    return program.output_format.format(line=line, this=this)
 
 
 def as_actions(value: Any) -> list[Any]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 _SOURCES = (
     "AnyLaunchDescriptionSource",
     "FrontendLaunchDescriptionSource",
@@ -11,7 +13,19 @@ _SOURCES = (
 )
 #: Module -> its names.
 NAMES: dict[str, tuple[str, ...]] = {
-    "launch": ("LaunchDescription", "LaunchDescriptionSource", "Substitution", "LaunchContext"),
+    "launch": (
+        "Action",
+        "Event",
+        "EventHandler",
+        "LaunchContext",
+        "LaunchDescription",
+        "LaunchDescriptionEntity",
+        "LaunchDescriptionSource",
+        "LaunchIntrospector",
+        "LaunchService",
+        "SomeSubstitutionsType",
+        "Substitution",
+    ),
     "launch.actions": (
         "AppendEnvironmentVariable",
         "DeclareLaunchArgument",
@@ -28,6 +42,14 @@ NAMES: dict[str, tuple[str, ...]] = {
         "EmitEvent",
         "RegisterEventHandler",
         "ExecuteLocal",
+        "PopEnvironment",
+        "PopLaunchConfigurations",
+        "PushEnvironment",
+        "PushLaunchConfigurations",
+        "ResetEnvironment",
+        "ResetLaunchConfigurations",
+        "UnregisterEventHandler",
+        "UnsetLaunchConfiguration",
     ),
     "launch.conditions": (
         "IfCondition",
@@ -35,15 +57,20 @@ NAMES: dict[str, tuple[str, ...]] = {
         "LaunchConfigurationEquals",
         "LaunchConfigurationNotEquals",
     ),
-    "launch.event_handlers": ("OnProcessExit", "OnProcessIO", "OnProcessStart", "OnShutdown"),
-    "launch.events": ("Shutdown",),
-    "launch.events.process": ("ProcessExited", "ProcessIO", "ProcessStarted"),
-    "launch.launch_context": ("LaunchContext",),
-    "launch.launch_description": ("LaunchDescription",),
-    "launch.launch_description_source": ("LaunchDescriptionSource",),
+    "launch.event_handlers": ("OnExecutionComplete", "OnProcessExit", "OnProcessIO", "OnProcessStart", "OnShutdown"),
+    "launch.events": ("ExecutionComplete", "Shutdown", "matches_action"),
+    "launch.events.process": (
+        "ProcessExited",
+        "ProcessIO",
+        "ProcessStarted",
+        "ShutdownProcess",
+        "SignalProcess",
+        "matches_executable",
+        "matches_name",
+        "matches_pid",
+    ),
     "launch.launch_description_sources": _SOURCES,
-    "launch.some_substitutions_type": ("SomeSubstitutionsType",),
-    "launch.substitution": ("Substitution",),
+    "launch.logging": ("get_logger",),
     "launch.substitutions": (
         "EnvironmentVariable",
         "FindExecutable",
@@ -63,7 +90,12 @@ NAMES: dict[str, tuple[str, ...]] = {
         "OrSubstitution",
         "Command",
         "PathSubstitution",
+        "AnonName",
+        "FileContent",
+        "LocalSubstitution",
+        "SubstitutionFailure",
     ),
+    "launch.utilities": ("perform_substitutions",),
     "launch_ros": (),
     "launch_ros.actions": (
         "LifecycleNode",
@@ -75,11 +107,42 @@ NAMES: dict[str, tuple[str, ...]] = {
         "PushROSNamespace",
         "SetParameter",
         "RosTimer",
+        "ROSTimer",
+        "LifecycleTransition",
+        "SetROSLogDir",
     ),
+    "launch_ros.descriptions": ("Parameter", "ParameterFile", "ParameterValue"),
+    "launch_ros.event_handlers": ("OnStateTransition",),
+    "launch_ros.events": ("matches_node_name",),
+    "launch_ros.events.lifecycle": ("ChangeState", "StateTransition", "matches_node_name"),
     "launch_ros.parameter_descriptions": ("ParameterFile", "ParameterValue", "Parameter"),
-    "launch_ros.substitutions": ("ExecutableInPackage", "FindPackagePrefix", "FindPackageShare", "FindPackage"),
+    "launch_ros.substitutions": (
+        "ExecutableInPackage",
+        "FindPackage",
+        "FindPackagePrefix",
+        "FindPackageShare",
+        "Parameter",
+    ),
     "launch_xml": (),
     "launch_xml.launch_description_sources": _SOURCES,
     "launch_yaml": (),
     "launch_yaml.launch_description_sources": _SOURCES,
 }
+_COMPOSABLE = "composable nodes are C++ libraries, which need a ROS installation: start each program as a Node instead"
+#: Why some names are not here.
+REASONS = dict.fromkeys(
+    ("ComposableNode", "ComposableNodeContainer", "LoadComposableNodes", "node_container", "load_composable_node"),
+    _COMPOSABLE,
+)
+_INNER_CAPITAL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+
+
+def _file_of(name: str) -> str:
+    return _INNER_CAPITAL.sub("_", name).lower()
+
+
+#: The same with ROS 2's modules of one name each, as in `from launch.actions.timer_action import TimerAction`.
+ALL_NAMES: dict[str, tuple[str, ...]] = {
+    f"{module}.{_file_of(name)}": (name,) for module, names in NAMES.items() for name in names if name[0].isupper()
+}
+ALL_NAMES |= NAMES

@@ -51,7 +51,7 @@ def launch(show_args: bool, package_or_file: str, words: tuple[str, ...]) -> Non
     with tempfile.TemporaryDirectory(prefix="launch_params_") as folder:
         plan = LaunchPlan.into(Path(folder), cwd, read)
         steps = list(plan.steps(description.entities, Context(given, file=file.absolute())))
-        raise click.exceptions.Exit(ProcessGroup(plan.reaction).run(steps))
+        raise click.exceptions.Exit(ProcessGroup(plan).run(steps))
 
 
 def read(file: Path) -> LaunchDescription:

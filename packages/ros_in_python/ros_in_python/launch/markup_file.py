@@ -12,41 +12,71 @@ from xml.etree import ElementTree
 import yaml
 
 from ros_in_python.launch import actions as known
+from ros_in_python.launch import changes
 from ros_in_python.launch.actions import LaunchDescription
+from ros_in_python.launch.api import REASONS
 from ros_in_python.launch.conditions import IfCondition, UnlessCondition
 from ros_in_python.launch.markup_text import parse
-from ros_in_python.launch.parameters import ParameterFile
+from ros_in_python.launch.parameters import ParameterFile, ParameterValue
 from ros_in_python.launch.substitutions import TextSubstitution
 from ros_in_python.ros2.cli import CommandError
 
 _IF = {"if", "unless"}
-_PROGRAM = {"name", "cwd", "output", "respawn", "respawn_delay", "launch-prefix", "launch_prefix", *_IF}
+_PROGRAM = {
+    *("name", "cwd", "output", "emulate_tty", "launch-prefix", "launch_prefix", "on_exit"),
+    *("respawn", "respawn_delay", "respawn_max_retries", "sigterm_timeout", "sigkill_timeout"),
+    *_IF,
+}
 #: Attributes that each element may have.
 _ATTRIBUTES = {
     "append_env": {"name", "value", "prepend", "separator", *_IF},
     "arg": {"name", "default", "description", *_IF},
     "env": {"name", "value"},
-    "executable": {"cmd", "shell", "emulate_tty", *_PROGRAM},
-    "group": {"scoped", *_IF},
+    "choice": {"value"},
+    "executable": {"cmd", "shell", *_PROGRAM},
+    "group": {"scoped", "forwarding", *_IF},
     "include": {"file", *_IF},
+    "keep": {"name", "value"},
     "let": {"name", "value", *_IF},
-    "log": {"message", "level", *_IF},
-    "node": {"pkg", "exec", "exec_name", "namespace", "ns", "args", "ros_args", "emulate_tty", *_PROGRAM},
-    "param": {"name", "value", "from", "type", "sep", "allow_substs"},
+    "log": {"message", *_IF},
+    "node": {"pkg", "exec", "exec_name", "namespace", "ns", "args", "ros_args", *_PROGRAM},
+    "param": {"name", "value", "value-sep", "from", "type", "allow_substs"},
     "push_ros_namespace": {"namespace", *_IF},
     "remap": {"from", "to"},
+    "reset": set(_IF),
+    "reset_env": set(_IF),
+    "ros_timer": {"period", *_IF},
     "set_env": {"name", "value", *_IF},
     "set_parameter": {"name", "value", *_IF},
+    "set_parameters_from_file": {"filename", *_IF},
     "set_remap": {"from", "to", *_IF},
+    "set_ros_log_dir": {"new_log_dir", *_IF},
+    "set_use_sim_time": {"value", *_IF},
     "shutdown": {"reason", *_IF},
-    "timer": {"period", *_IF},
+    "timer": {"period", "cancel_on_shutdown", *_IF},
     "unset_env": {"name", *_IF},
 }
 _ATTRIBUTES["lifecycle_node"] = _ATTRIBUTES["node"]
 #: Other spellings of elements.
 _SPELLINGS = {"push-ros-namespace": "push_ros_namespace", "set-parameter": "set_parameter"}
 #: Elements that stand within others alone.
-_INNER = {"env", "param", "remap"}
+_INNER = {"choice", "env", "keep", "param", "remap"}
+#: The types of a parameter.
+_TYPES: dict[str, Any] = {"yaml": None, "bool": bool, "float": float, "int": int, "str": str}
+_TYPES |= {"list_of_bool": list[bool], "list_of_float": list[float], "list_of_int": list[int], "list_of_str": list[str]}
+_IN_NODE = {"env", "param", "remap"}
+#: What stands in an element; in those of `_ANY`, all but the inner ones.
+_CHILDREN = {
+    "arg": {"choice"},
+    "executable": {"env"},
+    "group": {"keep"},
+    "include": {"arg", "let"},
+    "lifecycle_node": _IN_NODE,
+    "node": _IN_NODE,
+    "param": {"param"},
+    "reset": {"keep"},
+}
+_ANY = {"group", "timer", "ros_timer"}
 
 
 @dataclass
@@ -99,7 +129,7 @@ def _yaml_elements(item: Any) -> Iterator[Element]:
 def _yaml_element(kind: str, inside: Any) -> Element:
     if isinstance(inside, list):  # a group's or a timer's elements
         return Element(kind, children=[child for item in inside for child in _yaml_elements(item)])
-    if inside is None and kind == "shutdown":
+    if inside is None and kind in ("shutdown", "reset", "reset_env"):
         return Element(kind)
     if not isinstance(inside, dict):
         raise CommandError(f"`{kind}` needs its attributes below it, such as `pkg: humanoid_control`.")
@@ -107,7 +137,7 @@ def _yaml_element(kind: str, inside: Any) -> Element:
     for name, value in inside.items():
         if isinstance(value, list) and name == "children":
             element.children += [child for item in value for child in _yaml_elements(item)]
-        elif isinstance(value, list) and name in {"param", "remap", "env", "arg", "let"}:
+        elif isinstance(value, list) and name in {*_INNER, "arg", "let"}:
             element.children += [_yaml_element(name, part) for part in value]
         else:
             element.attributes[str(name)] = value
@@ -125,6 +155,8 @@ def _entity(element: Element) -> Any:
 
 
 def _check(element: Element, kind: str) -> None:
+    if kind in REASONS:
+        raise CommandError(f"the element `{element.kind}`: {REASONS[kind]}.")
     if kind not in _ATTRIBUTES:
         there = ", ".join(known for known in _ATTRIBUTES if known not in _INNER)
         raise CommandError(f"the element `{element.kind}` is not supported here. There is: {there}.")
@@ -132,6 +164,12 @@ def _check(element: Element, kind: str) -> None:
     if unknown:
         there = ", ".join(sorted(_ATTRIBUTES[kind]))
         raise CommandError(f"`{unknown[0]}` of `{element.kind}` is not supported here. There is: {there}.")
+    for child in element.children:
+        inner = _CHILDREN.get(kind, set())
+        if child.kind not in inner and (kind not in _ANY or child.kind in _INNER):
+            raise CommandError(
+                f"`{kind}` can't hold `{child.kind}`. It holds: {', '.join(sorted(inner)) or 'nothing'}."
+            )
 
 
 def _needed(element: Element, name: str) -> Any:
@@ -150,32 +188,45 @@ def _optional(element: Element, *names: str) -> Any:
 
 def _arg(element: Element) -> known.DeclareLaunchArgument:
     description = element.attributes.get("description")
-    return known.DeclareLaunchArgument(str(_needed(element, "name")), _optional(element, "default"), description)
+    choices = [str(_needed(child, "value")) for child in element.children] or None
+    return known.DeclareLaunchArgument(
+        str(_needed(element, "name")), _optional(element, "default"), description, choices
+    )
 
 
 def _group(element: Element) -> known.GroupAction:
-    scoped = str(element.attributes.get("scoped", "true")).lower() in ("true", "1")
-    return known.GroupAction([_entity(child) for child in element.children], scoped=scoped)
+    return known.GroupAction(
+        [_entity(child) for child in element.children if child.kind != "keep"],
+        scoped=_yes(element, "scoped", "true"),
+        forwarding=_yes(element, "forwarding", "true"),
+        launch_configurations=_kept(element),
+    )
+
+
+def _kept(element: Element) -> dict[str, Any]:
+    kept = [child for child in element.children if child.kind == "keep"]
+    return {str(_needed(child, "name")): _needed_text(child, "value") for child in kept}
+
+
+def _yes(element: Element, name: str, default: str = "false") -> bool:
+    return str(element.attributes.get(name, default)).lower() in ("true", "1")
 
 
 def _include(element: Element) -> known.IncludeLaunchDescription:
-    pairs = [(_needed_text(child, "name"), _value_of(child)) for child in element.children]
+    pairs = [(_needed_text(child, "name"), _needed_text(child, "value")) for child in element.children]
     return known.IncludeLaunchDescription(_needed_text(element, "file"), pairs)
 
 
-def _value_of(argument: Element) -> Any:
-    if argument.kind not in ("arg", "let"):
-        raise CommandError(f"`include` holds `let` and `arg`, not `{argument.kind}`.")
-    return _needed_text(argument, "value")
-
-
 def _timer(element: Element) -> known.TimerAction:
-    return known.TimerAction(_needed_text(element, "period"), [_entity(child) for child in element.children])
+    kind = known.RosTimer if element.kind == "ros_timer" else known.TimerAction
+    is_cancelled = _optional(element, "cancel_on_shutdown")
+    actions = [_entity(child) for child in element.children]
+    return kind(_needed_text(element, "period"), actions, True if is_cancelled is None else is_cancelled)
 
 
 def _executable(element: Element) -> known.ExecuteProcess:
     line = str(_needed(element, "cmd"))
-    shell = str(element.attributes.get("shell", "false")).lower() in ("true", "1")
+    shell = _yes(element, "shell")
     words = [line] if shell else _split(line)
     return known.ExecuteProcess(cmd=[_text(word) for word in words], shell=shell, **_program(element))
 
@@ -188,12 +239,18 @@ def _split(line: str) -> list[str]:
 def _program(element: Element) -> dict[str, Any]:
     """Return what each program may have, under the names of Python."""
     delay = element.attributes.get("respawn_delay")
+    if element.attributes.get("on_exit", "shutdown") != "shutdown":
+        raise CommandError(f"`on_exit` of `{element.kind}` is `shutdown` or not there.")
     return {
         "name": _optional(element, "name"),
         "cwd": _optional(element, "cwd"),
         "prefix": _optional(element, "launch-prefix", "launch_prefix"),
         "respawn": _optional(element, "respawn") or False,
         "respawn_delay": None if delay is None else float(delay),
+        "respawn_max_retries": int(element.attributes.get("respawn_max_retries", -1)),
+        "sigterm_timeout": _optional(element, "sigterm_timeout") or "5",
+        "sigkill_timeout": _optional(element, "sigkill_timeout") or "5",
+        "on_exit": known.Shutdown() if "on_exit" in element.attributes else (),
         "additional_env": {
             str(_needed(child, "name")): _needed_text(child, "value")
             for child in element.children
@@ -225,17 +282,28 @@ def _node(element: Element) -> known.Node:
 
 def _parameter(element: Element) -> Any:
     if "from" in element.attributes:
-        substitutes = str(element.attributes.get("allow_substs", "false")).lower() in ("true", "1")
-        return ParameterFile(_text(element.attributes["from"]), allow_substs=substitutes)
+        return ParameterFile(_text(element.attributes["from"]), allow_substs=_yes(element, "allow_substs"))
     if element.children:
         nested: dict[str, Any] = {}
         for child in element.children:
             nested |= _parameter(child)
         return {str(_needed(element, "name")): nested}
     value = _needed(element, "value")
+    if "value-sep" in element.attributes:
+        value = yaml.safe_load(f"[{', '.join(value.split(element.attributes['value-sep']))}]")
+    if "type" in element.attributes:
+        plain = value if isinstance(value, list) else _text(value)
+        return {str(_needed(element, "name")): ParameterValue(plain, value_type=_type_of(element))}
     # A text is read as YAML, as in ROS 2: XML knows nothing else.
     of_text = TextSubstitution(text=value) if isinstance(value, str) and "$(" not in value else _text(value)
     return {str(_needed(element, "name")): of_text if isinstance(value, str) else value}
+
+
+def _type_of(element: Element) -> Any:
+    name = str(element.attributes["type"])
+    if name not in _TYPES:
+        raise CommandError(f"the type of a `param` is one of {', '.join(_TYPES)}, and not `{name}`.")
+    return _TYPES[name]
 
 
 def _condition(attributes: Mapping[str, Any]) -> IfCondition | None:
@@ -254,7 +322,7 @@ def _text(value: Any) -> Any:
 #: How each element becomes an action.
 _MADE: dict[str, Callable[[Element], Any]] = {
     "arg": _arg,
-    "append_env": lambda of: known.AppendEnvironmentVariable(
+    "append_env": lambda of: changes.AppendEnvironmentVariable(
         _needed_text(of, "name"),
         _needed_text(of, "value"),
         _optional(of, "prepend") or False,
@@ -263,15 +331,21 @@ _MADE: dict[str, Callable[[Element], Any]] = {
     "executable": _executable,
     "group": _group,
     "include": _include,
-    "let": lambda of: known.SetLaunchConfiguration(_needed_text(of, "name"), _needed_text(of, "value")),
+    "let": lambda of: changes.SetLaunchConfiguration(_needed_text(of, "name"), _needed_text(of, "value")),
     "lifecycle_node": _node,
     "log": lambda of: known.LogInfo(_needed_text(of, "message")),
     "node": _node,
-    "push_ros_namespace": lambda of: known.PushRosNamespace(_needed_text(of, "namespace")),
-    "set_env": lambda of: known.SetEnvironmentVariable(_needed_text(of, "name"), _needed_text(of, "value")),
-    "set_parameter": lambda of: known.ParameterForAll(_needed_text(of, "name"), [_needed_text(of, "value")]),
-    "set_remap": lambda of: known.SetRemap(_needed_text(of, "from"), _needed_text(of, "to")),
+    "push_ros_namespace": lambda of: changes.PushRosNamespace(_needed_text(of, "namespace")),
+    "reset": lambda of: changes.ResetLaunchConfigurations(_kept(of) or None),
+    "reset_env": lambda of: changes.ResetEnvironment(),
+    "ros_timer": _timer,
+    "set_env": lambda of: changes.SetEnvironmentVariable(_needed_text(of, "name"), _needed_text(of, "value")),
+    "set_parameter": lambda of: changes.ParameterForAll(_needed_text(of, "name"), [_needed_text(of, "value")]),
+    "set_parameters_from_file": lambda of: changes.SetParametersFromFile(_needed_text(of, "filename")),
+    "set_ros_log_dir": lambda of: changes.SetROSLogDir(_needed_text(of, "new_log_dir")),
+    "set_use_sim_time": lambda of: changes.SetUseSimTime([_needed_text(of, "value")]),
+    "set_remap": lambda of: changes.SetRemap(_needed_text(of, "from"), _needed_text(of, "to")),
     "shutdown": lambda of: known.Shutdown(_optional(of, "reason") or "reason not given"),
     "timer": _timer,
-    "unset_env": lambda of: known.UnsetEnvironmentVariable(_needed_text(of, "name")),
+    "unset_env": lambda of: changes.UnsetEnvironmentVariable(_needed_text(of, "name")),
 }

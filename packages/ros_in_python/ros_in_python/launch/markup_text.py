@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ros_in_python.launch import conditions, substitutions
+from ros_in_python.launch import conditions, places, substitutions
 from ros_in_python.launch.substitutions import Text, TextSubstitution
 from ros_in_python.ros2.cli import CommandError
 
@@ -71,12 +71,15 @@ _KNOWN: dict[str, tuple[int, int, Callable[..., Any]]] = {
     "var": (1, 2, lambda name, default=None: substitutions.LaunchConfiguration(name, default=default)),
     "env": (1, 2, lambda name, default=None: substitutions.EnvironmentVariable(name, default_value=default)),
     "optenv": (1, 2, lambda name, default="": substitutions.EnvironmentVariable(name, default_value=default)),
-    "find-pkg-share": (1, 1, substitutions.FindPackageShare),
-    "find-pkg-prefix": (1, 1, substitutions.FindPackagePrefix),
-    "exec-in-pkg": (2, 2, substitutions.ExecutableInPackage),
-    "find-exec": (1, 1, lambda name: substitutions.FindExecutable(name=name)),
-    "dirname": (0, 0, substitutions.ThisLaunchFileDir),
-    "filename": (0, 0, substitutions.ThisLaunchFile),
+    "find-pkg-share": (1, 1, places.FindPackageShare),
+    "find-pkg-prefix": (1, 1, places.FindPackagePrefix),
+    "exec-in-pkg": (2, 2, places.ExecutableInPackage),
+    "find-exec": (1, 1, lambda name: places.FindExecutable(name=name)),
+    "dirname": (0, 0, places.ThisLaunchFileDir),
+    "filename": (0, 0, places.ThisLaunchFile),
+    "anon": (1, 1, substitutions.AnonName),
+    "file-content": (1, 1, places.FileContent),
+    "param": (1, 2, lambda name, default=None: substitutions.GlobalParameter(name, default=default)),
     "command": (1, 2, lambda line, on_stderr="fail": substitutions.CommandOutput(line, on_stderr=on_stderr)),
     "equals": (2, 2, conditions.EqualsSubstitution),
     "not-equals": (2, 2, conditions.NotEqualsSubstitution),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, get_args, get_origin
 
 import yaml
 
@@ -20,18 +20,26 @@ class ParameterValue:
         """Return the value, converted to its type if one is given. Raises `CommandError` if it can't be."""
         if self.value_type is None:
             return parameter_of(self.value, context)
+        if get_origin(self.value_type) is list:
+            items = parameter_of(self.value, context)
+            if not isinstance(items, list):
+                raise _misfit(items, "list")
+            return [_converted(item, get_args(self.value_type)[0]) for item in items]
         text = text_of(self.value, context)
-        if self.value_type is str:
-            return text
-        read = yaml.safe_load(text)
-        if self.value_type in (bool, int, float) and isinstance(read, bool) is (self.value_type is bool):
-            try:
-                return self.value_type(read)
-            except (TypeError, ValueError):
-                pass
-        raise CommandError(
-            f"'{text}' can't be a parameter of type {getattr(self.value_type, '__name__', self.value_type)}"
-        )
+        return text if self.value_type is str else _converted(yaml.safe_load(text), self.value_type)
+
+
+def _converted(value: Any, kind: Any) -> Any:
+    if kind is str or (kind in (bool, int, float) and isinstance(value, bool) is (kind is bool)):
+        try:
+            return kind(value)
+        except (TypeError, ValueError):
+            pass
+    raise _misfit(value, getattr(kind, "__name__", kind))
+
+
+def _misfit(value: Any, kind: str) -> CommandError:
+    return CommandError(f"'{value}' can't be a parameter of type {kind}")
 
 
 class ParameterFile:

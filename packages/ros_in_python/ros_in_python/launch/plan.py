@@ -1,69 +1,31 @@
-"""What a description comes to, in order: programs to start, lines to log, and what waits for a time or an event."""
+"""Works out what a description comes to, step by step."""
 
 from __future__ import annotations
 
 import itertools
+import math
 import os
 import shlex
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias
+from types import SimpleNamespace
+from typing import Any
 
 import yaml
 
 from ros_in_python.launch import actions as known
-from ros_in_python.launch import events, markup_text
+from ros_in_python.launch import events, lifecycle, markup_text
+from ros_in_python.launch.changes import ContextChange, below
 from ros_in_python.launch.conditions import truth_of
 from ros_in_python.launch.parameters import NodeParameter, ParameterFile, parameter_of
-from ros_in_python.launch.substitutions import Context, text_of
+from ros_in_python.launch.steps import Deferred, Emission, EventStep, HandlerRemoval, Later, ProcessToStart, Step
+from ros_in_python.launch.substitutions import Context, NotYetKnownError, text_of, texts_of
 from ros_in_python.ros2.cli import CommandError
 from ros_in_python.ros2.executables import find
 
 #: A file that includes itself is not followed any deeper than this.
 _DEEPEST = 30
-
-
-@dataclass(frozen=True)
-class ProcessToStart:
-    """One program's process; `name` stands before each line that it prints: `joint_publisher-1`.
-
-    `respawn_s` is how long after its end it starts again (s); None if it does not.
-    """
-
-    name: str
-    argv: tuple[str, ...]
-    env: Mapping[str, str]
-    cwd: str | None = None
-    action: known.LaunchedProgram | None = None
-    respawn_s: float | None = None
-
-
-@dataclass(frozen=True)
-class Later:
-    """Steps that come after some seconds."""
-
-    seconds: float
-    steps: tuple[Step, ...]
-
-
-@dataclass(frozen=True)
-class EventStep:
-    """A handler that holds from here on. `steps` are those of its actions; None if a function gives them."""
-
-    handler: events.Handler
-    steps: tuple[Step, ...] | None
-    context: Context
-
-
-@dataclass(frozen=True)
-class EndOfLaunch:
-    """Every program is asked to end."""
-
-    reason: str
-
-
-Step: TypeAlias = ProcessToStart | str | Later | EventStep | EndOfLaunch
 
 
 @dataclass
@@ -84,8 +46,11 @@ class LaunchPlan:
         """Yield what is to be done, in order. Raises `CommandError`."""
         for entity in entities:
             condition = getattr(entity, "condition", None)
-            if condition is None or condition.holds(context):
-                yield from self._steps_of(entity, context)
+            try:
+                if condition is None or condition.holds(context):
+                    yield from self._steps_of(entity, context)
+            except NotYetKnownError:
+                yield Deferred(entity, context.copy())
 
     def _steps_of(self, entity: Any, context: Context) -> Iterator[Step]:
         for kind in type(entity).__mro__:
@@ -109,9 +74,18 @@ class LaunchPlan:
         name = text_of(node.exec_name, context) if node.exec_name is not None else Path(executable).name
         yield from self._program(node, name, argv, env, context)
 
+    def _lifecycle_node(self, node: known.LifecycleNode, context: Context) -> Iterator[Step]:
+        if node.name is None:
+            raise CommandError("a LifecycleNode needs a name: by it, the launch changes its state")
+        yield from self._node(node, context)
+        if node.autostart:
+            in_a_row = (lifecycle.CONFIGURE, lifecycle.ACTIVATE)
+            yield from self.steps(list(lifecycle.transitions([node.node_name], in_a_row)), context)
+
     def _ros_words(self, node: known.Node, context: Context) -> list[str]:
         name = text_of(node.name, context) if node.name is not None else ""
-        namespace = _below(context.namespace, text_of(node.namespace, context) if node.namespace is not None else "")
+        namespace = below(context.namespace, text_of(node.namespace, context) if node.namespace is not None else "")
+        node.node_name = below(namespace, name) if namespace.startswith("/") else f"/{below(namespace, name)}"
         words = [text_of(word, context) for word in node.ros_arguments]
         words += ["-r", f"__node:={name}"] if name else []
         words += ["-r", f"__ns:={namespace}"] if namespace else []
@@ -152,50 +126,85 @@ class LaunchPlan:
     ) -> Iterator[Step]:
         if program.on_exit:
             yield from self._handler(events.OnProcessExit(target_action=program, on_exit=program.on_exit), context)
+        try:
+            known.line_of(program, name, "")
+        except (LookupError, AttributeError, ValueError) as error:
+            raise CommandError(f"output_format '{program.output_format}' can't be filled in: {_fault(error)}") from None
         if program.prefix is not None:
             argv = (*shlex.split(text_of(program.prefix, context)), *argv)
         if program.env is not None:
-            env = _texts(program.env, context)
-        env = {**context.environment(env), **_texts(program.additional_env, context), "PYTHONUNBUFFERED": "1"}
+            env = texts_of(program.env, context)
+        env = {**context.changed(env), **texts_of(program.additional_env, context), "PYTHONUNBUFFERED": "1"}
         cwd = text_of(program.cwd, context) if program.cwd is not None else None
-        respawns = truth_of(str(program.respawn) if isinstance(program.respawn, bool) else program.respawn, context)
-        delay = (program.respawn_delay or 0.0) if respawns else None
-        yield ProcessToStart(name, argv, env, cwd, program, delay)
+        delay = (program.respawn_delay or 0.0) if _truth(program.respawn, context) else None
+        most = program.respawn_max_retries if program.respawn_max_retries >= 0 else math.inf
+        grace = (
+            _seconds(program.sigterm_timeout, "sigterm_timeout", context),
+            _seconds(program.sigkill_timeout, "sigkill_timeout", context),
+        )
+        yield ProcessToStart(name, argv, env, program, cwd, delay, most, grace)
 
     # --- what comes later
 
     def _timer(self, timer: known.TimerAction, context: Context) -> Iterator[Step]:
-        text = text_of(timer.period, context)
-        try:
-            seconds = float(text)
-        except ValueError:
-            raise CommandError(f"the period of a TimerAction is a number of seconds, and not '{text}'") from None
-        yield Later(seconds, tuple(self.steps(timer.actions, context.copy())))
+        seconds = _seconds(timer.period, "the period of a TimerAction", context)
+        steps = tuple(self.steps(timer.actions, context.copy(is_later=True)))
+        yield Later(seconds, steps, _truth(timer.cancel_on_shutdown, context))
+
+    def _ros_timer(self, timer: known.RosTimer, context: Context) -> Iterator[Step]:
+        if any(isinstance(table, Mapping) and table.get("use_sim_time") for table in context.parameters):
+            raise CommandError("a RosTimer in simulated time is not supported here", "TimerAction counts real seconds.")
+        yield from self._timer(timer, context)
+
+    def _transitions(self, action: known.LifecycleTransition, context: Context) -> Iterator[Step]:
+        names = [text_of(name, context) for name in action.lifecycle_node_names]
+        numbers = [int(_seconds(number, "a transition_id", context)) for number in action.transition_ids]
+        yield from self.steps(list(lifecycle.transitions(names, numbers)), context)
 
     def _register(self, action: events.RegisterEventHandler, context: Context) -> Iterator[Step]:
         yield from self._handler(action.event_handler, context)
 
-    def _handler(self, handler: events.Handler, context: Context) -> Iterator[Step]:
-        reaction, later = handler.reaction, context.copy()
+    def _handler(self, handler: events.EventHandler, context: Context) -> Iterator[Step]:
+        reaction, later = handler.reaction, context.copy(is_later=True)
         known_now = None if callable(reaction) else tuple(self.steps(known.as_actions(reaction), later))
         yield EventStep(handler, known_now, later)
 
-    def reaction(self, step: EventStep, event: Any) -> tuple[Step, ...]:
-        """Return what a handler does about an event. Raises `CommandError`."""
-        if step.steps is not None:
-            return step.steps
+    def reaction(self, step: EventStep, event: Any) -> tuple[Step, ...] | None:
+        """Return what a handler does about an event; None if it is not for it. Raises `CommandError`."""
         try:
+            if not step.handler.matcher(event):
+                return None
+            if step.steps is not None:
+                return self.due(step.steps, event)
             react: Any = step.handler.reaction
             answer = react(event, step.context)
+        except CommandError:
+            raise
         except Exception as error:
-            raise CommandError(f"the handler of {type(event).__name__} fails: {_described(error)}") from None
-        return tuple(self.steps(known.as_actions(answer), step.context))
+            raise CommandError(f"the handler of {type(event).__name__} fails: {_fault(error)}") from None
+        return tuple(self.steps(known.as_actions(answer), self._now(step.context, event)))
+
+    def due(self, steps: Sequence[Step], event: Any = None) -> tuple[Step, ...]:
+        """Return steps whose time has come: what had to wait for it is worked out now. Raises `CommandError`."""
+        found: list[Step] = []
+        for step in steps:
+            if isinstance(step, Deferred):
+                found += self.steps([step.entity], self._now(step.context, event))
+            else:
+                found.append(step)
+        return tuple(found)
+
+    def _now(self, context: Context, event: Any) -> Context:
+        return context.copy(is_later=False, locals=SimpleNamespace(event=event))
 
     # --- groups, files and functions
 
     def _group(self, group: known.GroupAction, context: Context) -> Iterator[Step]:
-        inner = context.copy() if group.scoped else context
-        inner.values.update(_texts(group.launch_configurations, context))
+        inner, values = context.copy() if group.scoped else context, texts_of(group.launch_configurations, context)
+        if group.scoped and not group.forwarding:
+            inner.variables.clear()
+            inner.reset_configurations(values)
+        inner.values.update(values)
         yield from self.steps(group.actions, inner)
 
     def _include(self, action: known.IncludeLaunchDescription, context: Context) -> Iterator[Step]:
@@ -204,7 +213,7 @@ class LaunchPlan:
             context.values[text_of(name, context)] = text_of(value, context)
         source = action.launch_description_source
         if isinstance(source, known.LaunchDescription):
-            yield from self.steps(source.entities, context)
+            yield from self._described(source, context)
             return
         file = Path(text_of(known.path_of_source(source), context))
         if not file.is_file():
@@ -219,22 +228,37 @@ class LaunchPlan:
         yield from self.steps(self.read(file).entities, context)
         context.file, context.depth = outer, outer_depth
 
-    def _opaque(self, action: known.OpaqueFunction, context: Context) -> Iterator[Step]:
+    def _described(self, description: known.LaunchDescription, context: Context) -> Iterator[Step]:
+        yield from self.steps(description.entities, context)
+
+    def _opaque(self, action: known.Action, context: Context) -> Iterator[Step]:
+        if context.is_later:
+            yield Deferred(action, context.copy())
+            return
         try:
-            found = action.function(context, *action.args, **action.kwargs)
+            found = action.execute(context)
         except CommandError:
             raise
         except Exception as error:
-            raise CommandError(f"the function of an OpaqueFunction fails: {_described(error)}") from None
+            what = type(action).__name__
+            raise CommandError(f"the function of an {what} fails: {_fault(error)}") from None
         yield from self.steps(known.as_actions(found), context)
 
 
-def _described(error: Exception) -> str:
+def _fault(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"
 
 
-def _texts(table: Mapping[Any, Any], context: Context) -> dict[str, str]:
-    return {text_of(name, context): text_of(value, context) for name, value in table.items()}
+def _truth(value: Any, context: Context) -> bool:
+    return value if isinstance(value, bool) else truth_of(value, context)
+
+
+def _seconds(value: Any, what: str, context: Context) -> float:
+    text = text_of(value, context)
+    try:
+        return float(text)
+    except ValueError:
+        raise CommandError(f"{what} is a number of seconds, and not '{text}'") from None
 
 
 def _nested(table: Mapping[str, Any], context: Context) -> dict[str, Any]:
@@ -245,13 +269,7 @@ def _nested(table: Mapping[str, Any], context: Context) -> dict[str, Any]:
     }
 
 
-def _below(above: str, name: str) -> str:
-    if not name:
-        return above
-    return name if name.startswith("/") else f"{above}/{name}"
-
-
-# --- what starts nothing, and changes the context
+# --- what starts nothing
 
 
 def _declare(plan: LaunchPlan, argument: known.DeclareLaunchArgument, context: Context) -> Iterator[Step]:
@@ -271,84 +289,42 @@ def _log(plan: LaunchPlan, action: known.LogInfo, context: Context) -> Iterator[
 
 
 def _end(plan: LaunchPlan, action: known.Shutdown, context: Context) -> Iterator[Step]:
-    yield EndOfLaunch(text_of(action.reason, context))
+    yield Emission(events.ShutdownRequested(text_of(action.reason, context)))
 
 
 def _emit(plan: LaunchPlan, action: events.EmitEvent, context: Context) -> Iterator[Step]:
-    if not isinstance(action.event, events.ShutdownRequested):
-        raise CommandError(f"EmitEvent is supported with the event Shutdown alone, not with {action.event!r}")
-    yield EndOfLaunch(action.event.reason)
+    yield Emission(action.event)
 
 
-def _changes(change: Callable[[Any, Context], None]) -> Callable[[LaunchPlan, Any, Context], Iterator[Step]]:
-    def carry_out(plan: LaunchPlan, action: Any, context: Context) -> Iterator[Step]:
-        change(action, context)
-        yield from ()
-
-    return carry_out
+def _unregister(plan: LaunchPlan, action: events.UnregisterEventHandler, context: Context) -> Iterator[Step]:
+    yield HandlerRemoval(action.event_handler)
 
 
-def _push(action: known.PushRosNamespace, context: Context) -> None:
-    context.namespace = _below(context.namespace, text_of(action.namespace, context))
-
-
-def _configure(action: known.SetLaunchConfiguration, context: Context) -> None:
-    context.values[text_of(action.name, context)] = text_of(action.value, context)
-
-
-def _parameter(action: known.ParameterForAll, context: Context) -> None:
-    context.parameters.append({text_of(action.name, context): parameter_of(action.value, context)})
-
-
-def _parameters(action: known.SetParametersFromFile, context: Context) -> None:
-    context.parameters.append(text_of(action.filename, context))
-
-
-def _sim_time(action: known.SetUseSimTime, context: Context) -> None:
-    context.parameters.append({"use_sim_time": parameter_of(action.value, context)})
-
-
-def _remap(action: known.SetRemap, context: Context) -> None:
-    context.remappings.append((text_of(action.src, context), text_of(action.dst, context)))
-
-
-def _variable(action: known.SetEnvironmentVariable, context: Context) -> None:
-    context.variables[text_of(action.name, context)] = text_of(action.value, context)
-
-
-def _append(action: known.AppendEnvironmentVariable, context: Context) -> None:
-    name, value = text_of(action.name, context), text_of(action.value, context)
-    present = context.environment(dict(os.environ)).get(name)
-    first = [value, present] if truth_of(str(action.prepend), context) else [present, value]
-    context.variables[name] = text_of(action.separator, context).join(part for part in first if part)
-
-
-def _unset(action: known.UnsetEnvironmentVariable, context: Context) -> None:
-    context.variables[text_of(action.name, context)] = None
+def _change(plan: LaunchPlan, action: ContextChange, context: Context) -> Iterator[Step]:
+    action.change(context)
+    yield from ()
 
 
 #: How each kind of action is carried out.
 _HOW: dict[type, Callable[[LaunchPlan, Any, Context], Iterator[Step]]] = {
     known.Node: LaunchPlan._node,
+    known.LifecycleNode: LaunchPlan._lifecycle_node,
+    known.LifecycleTransition: LaunchPlan._transitions,
     known.ExecuteProcess: LaunchPlan._execute,
     known.TimerAction: LaunchPlan._timer,
-    events.RegisterEventHandler: LaunchPlan._register,
+    known.RosTimer: LaunchPlan._ros_timer,
     known.GroupAction: LaunchPlan._group,
     known.IncludeLaunchDescription: LaunchPlan._include,
+    known.LaunchDescription: LaunchPlan._described,
     known.OpaqueFunction: LaunchPlan._opaque,
+    known.Action: LaunchPlan._opaque,
+    events.RegisterEventHandler: LaunchPlan._register,
+    events.UnregisterEventHandler: _unregister,
+    events.EmitEvent: _emit,
     known.DeclareLaunchArgument: _declare,
     known.LogInfo: _log,
     known.Shutdown: _end,
-    events.EmitEvent: _emit,
-    known.PushRosNamespace: _changes(_push),
-    known.SetLaunchConfiguration: _changes(_configure),
-    known.ParameterForAll: _changes(_parameter),
-    known.SetParametersFromFile: _changes(_parameters),
-    known.SetUseSimTime: _changes(_sim_time),
-    known.SetRemap: _changes(_remap),
-    known.SetEnvironmentVariable: _changes(_variable),
-    known.AppendEnvironmentVariable: _changes(_append),
-    known.UnsetEnvironmentVariable: _changes(_unset),
+    ContextChange: _change,
 }
 
 

@@ -11,25 +11,29 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from ros_in_python.launch import actions, conditions, events, parameters, substitutions
+from ros_in_python.launch import actions, changes, conditions, events, logger, parameters, places, substitutions
 from ros_in_python.launch.actions import LaunchDescription
-from ros_in_python.launch.api import NAMES
+from ros_in_python.launch.api import ALL_NAMES, NAMES, REASONS
 from ros_in_python.ros2.cli import CommandError
 
 #: Names that mean something with another name here, for any module or for one.
 _RENAMED: dict[str, Any] = {
+    "Event": events.LaunchEvent,
     "LaunchContext": substitutions.Context,
+    "LaunchDescriptionEntity": actions.Action,
     "SomeSubstitutionsType": Any,
+    "SubstitutionFailure": CommandError,
     "launch.events.Shutdown": events.ShutdownRequested,
     "ExecuteLocal": actions.ExecuteProcess,
-    "RosTimer": actions.TimerAction,
-    "SetParameter": actions.ParameterForAll,
+    "ROSTimer": actions.RosTimer,
+    "SetParameter": changes.ParameterForAll,
     "Parameter": parameters.NodeParameter,
-    "PushROSNamespace": actions.PushRosNamespace,
+    "launch_ros.substitutions.Parameter": substitutions.GlobalParameter,
+    "PushROSNamespace": changes.PushRosNamespace,
     "Command": substitutions.CommandOutput,
-    "PathSubstitution": substitutions.PathJoinSubstitution,
-    "FindPackage": substitutions.FindPackagePrefix,
+    "FindPackage": places.FindPackagePrefix,
 }
+_PLACES = (actions, changes, events, conditions, logger, parameters, places, substitutions)
 
 
 def _meaning(module: str, name: str) -> Any:
@@ -37,12 +41,16 @@ def _meaning(module: str, name: str) -> Any:
         return renamed
     if module.endswith("launch_description_sources"):
         return actions.LaunchDescriptionSource
-    places = (actions, events, conditions, parameters, substitutions)
-    return next(getattr(place, name) for place in places if hasattr(place, name))
+    return next(getattr(place, name) for place in _PLACES if hasattr(place, name))
 
 
 #: The modules of ROS 2's launch API and what of each there is here.
 MODULES = {module: {name: _meaning(module, name) for name in names} for module, names in NAMES.items()}
+MODULES |= {
+    module: {name: MODULES[module.rpartition(".")[0]][name] for name in names}
+    for module, names in ALL_NAMES.items()
+    if module not in MODULES
+}
 _ELSEWHERE = "ROS 2's own launch, which `ros2 launch` uses where ROS 2 is installed, knows more."
 _NOT_FOUND = re.compile(r"cannot import name '(\w+)'")
 
@@ -61,6 +69,8 @@ class _Module(ModuleType):
 
 
 def _refusal(module: str, name: str) -> str:
+    if name in REASONS:
+        return f"`{name}` of {module}: {REASONS[name]}."
     there = ", ".join(sorted(MODULES[module])) or "nothing"
     return f"`{name}` of {module} is not supported here. It has: {there}.\n{_ELSEWHERE}"
 
@@ -122,7 +132,7 @@ def _describe(error: BaseException) -> str:
         return str(error)
     module = getattr(error, "name", None) or ""
     if isinstance(error, ModuleNotFoundError) and module.partition(".")[0] in MODULES:
-        there = ", ".join(MODULES)
+        there = ", ".join(NAMES)
         return f"the module {module} is not supported here. There is: {there}.\n{_ELSEWHERE}"
     if isinstance(error, ImportError) and module in MODULES and (name := _NOT_FOUND.search(str(error))):
         return _refusal(module, name[1])

@@ -12,48 +12,65 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from types import FrameType
-from typing import Any
+from typing import IO, Any
 
 from ros_in_python.launch import events
-from ros_in_python.launch.plan import EndOfLaunch, EventStep, Later, ProcessToStart, Step
+from ros_in_python.launch.actions import LaunchedProgram, LifecycleNode, line_of
+from ros_in_python.launch.lifecycle import LifecycleClient
+from ros_in_python.launch.plan import LaunchPlan
+from ros_in_python.launch.steps import Deferred, Emission, EventStep, HandlerRemoval, Later, ProcessToStart, Step
 from ros_in_python.ros2.cli import CommandError
 
-#: How long programs may take to end after SIGINT, and then after SIGTERM, before they are killed (s): as in ROS 2.
-GRACE = (5.0, 5.0)
 #: How often to check whether a process has ended without closing its output (s).
 _POLL_S = 0.1
 
 
 @dataclass
 class _Running:
+    """`due` are the signals that it gets if it has not ended by then; `is_told` says that it was asked to end."""
+
     name: str
     step: ProcessToStart
     process: subprocess.Popen[bytes]
-    reader: threading.Thread
+    readers: list[threading.Thread] = field(default_factory=list)
+    due: list[tuple[float, signal.Signals]] = field(default_factory=list)
+    is_told: bool = False
 
     @property
-    def what(self) -> tuple[Any, str, int]:
+    def what(self) -> tuple[LaunchedProgram, str, int]:
         """What an event tells of it: its action, its name and its process's number."""
         return (self.step.action, self.name, self.process.pid)
 
+    def send(self, number: int) -> None:
+        """Send a signal to it and to all that it has started."""
+        self.is_told = True
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(self.process.pid, number)
+
+    def end(self, number: signal.Signals) -> None:
+        """Ask it to end, the first time with stronger signals to follow."""
+        to_term, to_kill = self.step.grace_s
+        now = time.monotonic()
+        self.due = self.due or [(now + to_term, signal.SIGTERM), (now + to_term + to_kill, signal.SIGKILL)]
+        self.send(number)
+
 
 class ProcessGroup:
-    """The running processes of one launch. `reaction` gives the steps that a handler takes about an event."""
+    """The running processes of one launch. Its plan gives the steps that a handler takes about an event."""
 
-    def __init__(self, reaction: Callable[[EventStep, Any], Sequence[Step]]) -> None:
-        self._reaction = reaction
-        self._queue: queue.Queue[_Running | int | events.ProcessIO] = queue.Queue()
+    def __init__(self, plan: LaunchPlan) -> None:
+        self._plan = plan
+        self._queue: queue.Queue[Any] = queue.Queue()
         self._running: list[_Running] = []
         self._handlers: list[EventStep] = []
-        self._later: list[tuple[float, int, tuple[Step, ...]]] = []
+        self._later: list[tuple[float, int, Later]] = []
         self._numbers, self._order = itertools.count(1), itertools.count()
-        self._deadline: float | None = None
-        self._next_signal = signal.SIGTERM
-        self._died = self._was_interrupted = False
+        self._is_ending = self._died = self._was_interrupted = False
         self._print_lock = threading.Lock()
+        self._lifecycle: LifecycleClient | None = None
 
     def run(self, steps: Sequence[Step]) -> int:
         """Do all steps and wait until all has ended. Return 1 if a program died by itself, 0 if not and after Ctrl-C.
@@ -63,15 +80,13 @@ class ProcessGroup:
         with self._listening():
             try:
                 self._do(steps)
-                while self._running or (self._later and not self._is_ending):
+                while self._running or self._later:
                     self._wait()
             finally:
                 self._kill()
+                if self._lifecycle:
+                    self._lifecycle.close()
         return int(self._died and not self._was_interrupted)
-
-    @property
-    def _is_ending(self) -> bool:
-        return self._deadline is not None
 
     # --- steps
 
@@ -81,17 +96,50 @@ class ProcessGroup:
         for step in steps:
             if isinstance(step, str):
                 self._say("INFO", "launch.user", step)
-            elif isinstance(step, EndOfLaunch):
-                self._end(signal.SIGINT, events.ShutdownRequested(step.reason))
             elif isinstance(step, Later):
-                self._schedule(step.seconds, step.steps)
+                self._schedule(step)
+            elif isinstance(step, Deferred):
+                self._do(self._plan.due([step]))
+            elif isinstance(step, HandlerRemoval):
+                self._handlers = [other for other in self._handlers if other.handler is not step.handler]
+            elif isinstance(step, Emission):
+                self._emit(step.event)
             elif isinstance(step, ProcessToStart) and not self._is_ending:
                 self._start(step)
 
-    def _schedule(self, seconds: float, steps: tuple[Step, ...]) -> None:
-        heapq.heappush(self._later, (time.monotonic() + seconds, next(self._order), steps))
+    def _schedule(self, later: Later) -> None:
+        if not (self._is_ending and later.is_cancelled_at_end):
+            heapq.heappush(self._later, (time.monotonic() + later.seconds, next(self._order), later))
+
+    def _emit(self, event: Any) -> None:
+        if isinstance(event, events.ShutdownRequested):
+            self._end(signal.SIGINT, event)
+            return
+        for running in list(self._running):
+            action = running.step.action
+            if isinstance(event, events.ShutdownProcess) and event.process_matcher(action):
+                running.end(signal.SIGINT)
+            elif isinstance(event, events.SignalProcess) and event.process_matcher(action):
+                running.send(event.signal_number)
+            elif (
+                isinstance(event, events.ChangeState)
+                and isinstance(action, LifecycleNode)
+                and event.lifecycle_node_matcher(action)
+            ):
+                self._life().change(action, event.transition_id)
+        self._happened(event)
+
+    def _life(self) -> LifecycleClient:
+        self._lifecycle = self._lifecycle or LifecycleClient(self._queue.put)
+        return self._lifecycle
 
     def _start(self, step: ProcessToStart) -> None:
+        hears_lines = any(isinstance(other.handler, events.OnProcessIO) for other in self._handlers)
+        name = f"{step.name}-{next(self._numbers)}"
+        if isinstance(step.action, LifecycleNode):
+            self._life().watch(step.action)
+        if step.action.log_cmd:
+            self._say("INFO", name, f"process details: cmd='{' '.join(step.argv)}', cwd='{step.cwd}'")
         try:
             process = subprocess.Popen(
                 step.argv,
@@ -99,56 +147,69 @@ class ProcessGroup:
                 cwd=step.cwd,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
+                # One pipe keeps the lines in order; only handlers need to know which output a line came from.
+                stderr=subprocess.PIPE if hears_lines else subprocess.STDOUT,
                 # A terminal's Ctrl-C is handed on by this process, once.
                 start_new_session=True,
             )
         except OSError as error:
             raise CommandError(f"{step.argv[0]} could not be started: {error.strerror}") from None
-        name = f"{step.name}-{next(self._numbers)}"
-        running = _Running(name, step, process, threading.Thread(target=lambda: self._read(running), daemon=True))
+        step.action.process_details = {"name": name, "pid": process.pid, "cmd": step.argv}
+        running = _Running(name, step, process)
         self._running.append(running)
         self._say("INFO", name, f"process started with pid [{process.pid}]")
-        running.reader.start()
+        for output in (process.stdout, process.stderr):
+            if output is not None:
+                running.readers.append(threading.Thread(target=self._read, args=(running, output), daemon=True))
+                running.readers[-1].start()
         self._happened(events.ProcessStarted(*running.what))
 
     def _happened(self, event: Any) -> None:
-        for handler in [step for step in self._handlers if events.concerns(step.handler, event)]:
-            self._do(self._reaction(handler, event))
+        for step in list(self._handlers):
+            steps = self._plan.reaction(step, event)
+            if steps is None:
+                continue
+            if step.handler.handle_once:
+                self._handlers.remove(step)
+            self._do(steps)
 
     # --- what the processes do
 
-    def _read(self, running: _Running) -> None:
-        assert running.process.stdout is not None
-        for line in running.process.stdout:
-            self._print(f"[{running.name}] {line.decode(errors='replace').rstrip()}")
+    def _read(self, running: _Running, output: IO[bytes]) -> None:
+        is_stdout = output is running.process.stdout
+        for line in output:
+            self._print(line_of(running.step.action, running.name, line.decode(errors="replace").rstrip()))
             if any(isinstance(step.handler, events.OnProcessIO) for step in self._handlers):
-                self._queue.put(events.ProcessIO(*running.what, line))
-        self._queue.put(running)
+                self._queue.put(events.ProcessIO(*running.what, line, is_stdout))
+        if is_stdout:
+            self._queue.put(running)
 
     def _wait(self) -> None:
         with contextlib.suppress(queue.Empty):
             self._take(self._queue.get(timeout=self._until_next()))
         for running in [item for item in self._running if item.process.poll() is not None]:
-            running.reader.join(timeout=1.0)
+            for reader in running.readers:
+                reader.join(timeout=1.0)
             while not self._queue.empty():  # its last lines come before its end
                 self._take(self._queue.get_nowait())
             self._running.remove(running)
             self._ended(running)
-        while self._later and self._later[0][0] <= time.monotonic() and not self._is_ending:
-            self._do(heapq.heappop(self._later)[2])
-        if self._deadline is not None and time.monotonic() >= self._deadline:
-            self._signal(self._next_signal)
-            self._deadline = time.monotonic() + GRACE[1]
-            self._next_signal = signal.SIGKILL
+        now = time.monotonic()
+        while self._later and self._later[0][0] <= now:
+            self._do(heapq.heappop(self._later)[2].steps)
+        for running in self._running:
+            while running.due and running.due[0][0] <= now:
+                running.send(running.due.pop(0)[1])
 
-    def _take(self, event: _Running | int | events.ProcessIO) -> None:
+    def _take(self, event: Any) -> None:
         if isinstance(event, int):
             self._interrupted(event)
-        elif isinstance(event, events.ProcessIO):
-            self._happened(event)
-        else:
+        elif isinstance(event, str):
+            self._say("ERROR", "launch_ros", event)
+        elif isinstance(event, _Running):
             event.process.wait()
+        else:
+            self._happened(event)
 
     def _until_next(self) -> float:
         due = self._later[0][0] - time.monotonic() if self._later else _POLL_S
@@ -162,31 +223,31 @@ class ProcessGroup:
 
     def _end(self, number: signal.Signals, event: events.ShutdownRequested) -> None:
         """Send all programs a signal; the first time, tell the handlers."""
-        first = not self._is_ending
-        self._deadline = time.monotonic() + GRACE[0] if self._deadline is None else self._deadline
-        self._signal(number)
+        first, self._is_ending = not self._is_ending, True
+        self._later = [entry for entry in self._later if not entry[2].is_cancelled_at_end]
+        heapq.heapify(self._later)
+        for running in self._running:
+            running.end(number)
         if first:
             self._happened(event)
 
     def _ended(self, running: _Running) -> None:
-        code, pid = running.process.returncode, running.process.pid
+        code, pid, step = running.process.returncode, running.process.pid, running.step
         if code == 0:
             self._say("INFO", running.name, f"process has finished cleanly [pid {pid}]")
         else:
-            self._died = self._died or not self._is_ending
+            self._died = self._died or not running.is_told
             self._say("ERROR", running.name, f"process has died [pid {pid}, exit code {code}]")
         self._happened(events.ProcessExited(*running.what, code))
-        if running.step.respawn_s is not None and not self._is_ending:
-            self._schedule(running.step.respawn_s, (running.step,))
-
-    def _signal(self, number: signal.Signals) -> None:
-        for running in self._running:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.killpg(running.process.pid, number)
+        if step.respawn_s is not None and step.respawns > 0 and not self._is_ending:
+            again = replace(step, respawns=step.respawns - 1)
+            self._schedule(Later(step.respawn_s, (again,)))
+        else:
+            self._happened(events.ExecutionComplete(step.action))
 
     def _kill(self) -> None:
-        self._signal(signal.SIGKILL)
         for running in self._running:
+            running.send(signal.SIGKILL)
             running.process.wait()
 
     # --- what is printed, and signals

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
-from collections.abc import Iterable, Sequence
+import uuid
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from pathlib import Path
+from types import MappingProxyType, SimpleNamespace
 from typing import Any
 
-from interface_compiler import prefixes
 from ros_in_python.ros2.cli import CommandError
 
 
@@ -22,6 +22,7 @@ class Context:
 
     `values` are those of the arguments, `parameters` and `remappings` hold for every node that follows, `variables` are
     the changes of its environment (None: removed), `file` is the launch file at hand, and `depth` how many include it.
+    `locals` has the event of a handler. `is_later` says that what is planned now waits for a time or an event.
     """
 
     values: dict[str, str] = field(default_factory=dict)
@@ -31,26 +32,60 @@ class Context:
     variables: dict[str, str | None] = field(default_factory=dict)
     file: Path = Path()
     depth: int = 0
+    locals: SimpleNamespace = field(default_factory=SimpleNamespace)
+    is_later: bool = False
+    _kept: list[tuple[str, Context]] = field(default_factory=list)
 
     @property
     def launch_configurations(self) -> dict[str, str]:
         """The values of the arguments, by the name that functions in launch files use."""
         return self.values
 
-    def copy(self) -> Context:
-        """Return a context of the same state, which a group may change for itself."""
+    @property
+    def environment(self) -> Mapping[str, str]:
+        """The environment of programs that follow. To change it, a launch file has actions."""
+        return MappingProxyType(self.changed(dict(os.environ)))
+
+    def perform_substitution(self, substitution: Text) -> str:
+        """Return the text that a substitution stands for, as functions in launch files ask for it."""
+        return text_of(substitution, self)
+
+    def copy(self, **changes: Any) -> Context:
+        """Return a context of the same state, but for these changes, which a group may change for itself."""
         return replace(
             self,
             values=dict(self.values),
             parameters=list(self.parameters),
             remappings=list(self.remappings),
             variables=dict(self.variables),
+            _kept=list(self._kept),
+            **changes,
         )
 
-    def environment(self, base: dict[str, str]) -> dict[str, str]:
+    def changed(self, base: dict[str, str]) -> dict[str, str]:
         """Return an environment with the changes made."""
-        changed = {**base, **{name: value for name, value in self.variables.items() if value is not None}}
-        return {name: value for name, value in changed.items() if self.variables.get(name, "") is not None}
+        all_set = {**base, **{name: value for name, value in self.variables.items() if value is not None}}
+        return {name: value for name, value in all_set.items() if self.variables.get(name, "") is not None}
+
+    def reset_configurations(self, values: dict[str, str]) -> None:
+        """Forget all arguments but these, and what holds for every node."""
+        self.values, self.namespace, self.parameters, self.remappings = values, "", [], []
+
+    def push(self, kind: str) -> None:
+        """Keep the `configurations` or the `environment`."""
+        self._kept.append((kind, self.copy()))
+
+    def pop(self, kind: str) -> None:
+        """Bring back what was kept last of this kind. Raises `CommandError` if there is nothing."""
+        places = [place for place, (kept, _) in enumerate(self._kept) if kept == kind]
+        if not places:
+            raise CommandError(f"there are no {kind} to bring back: Push stands before Pop")
+        _, state = self._kept.pop(places[-1])
+        if kind == "environment":
+            self.variables = state.variables
+            return
+        self.values, self.namespace = state.values, state.namespace
+        self.parameters, self.remappings = state.parameters, state.remappings
 
 
 class Substitution:
@@ -72,6 +107,11 @@ def text_of(value: Text, context: Context) -> str:
     if isinstance(value, list | tuple):
         return "".join(text_of(part, context) for part in value)
     return os.fspath(value) if isinstance(value, Path) else str(value)
+
+
+def texts_of(table: Mapping[Any, Any], context: Context) -> dict[str, str]:
+    """Return a table of texts, in which names and values were perhaps substitutions."""
+    return {text_of(name, context): text_of(value, context) for name, value in table.items()}
 
 
 class TextSubstitution(Substitution):
@@ -114,97 +154,12 @@ class EnvironmentVariable(Substitution):
     def perform(self, context: Context) -> str:
         """Return the variable's value, or the default. Raises `CommandError` if there is neither."""
         name = text_of(self.name, context)
-        environment = context.environment(dict(os.environ))
+        environment = context.environment
         if name in environment:
             return environment[name]
         if self.default is None:
             raise CommandError(f"environment variable '{name}' does not exist")
         return text_of(self.default, context)
-
-
-class PathJoinSubstitution(Substitution):
-    """Parts of a path, joined with slashes."""
-
-    def __init__(self, substitutions: Iterable[Text]) -> None:
-        self.parts = list(substitutions)
-
-    def perform(self, context: Context) -> str:
-        """Return the path."""
-        return os.fspath(Path(*(text_of(part, context) for part in self.parts)))
-
-
-class FindPackageShare(Substitution):
-    """The folder `share/PACKAGE` of an installed package."""
-
-    def __init__(self, package: Text) -> None:
-        self.package = package
-
-    def perform(self, context: Context) -> str:
-        """Return the folder's path. Raises `CommandError` if the package is not installed."""
-        package = text_of(self.package, context)
-        return os.fspath(prefix_of(package) / "share" / package)
-
-
-class FindPackagePrefix(FindPackageShare):
-    """The folder in which a package is installed."""
-
-    def perform(self, context: Context) -> str:
-        """Return the folder's path. Raises `CommandError` if the package is not installed."""
-        return os.fspath(prefix_of(text_of(self.package, context)))
-
-
-class ExecutableInPackage(Substitution):
-    """The path of a package's executable."""
-
-    def __init__(self, executable: Text, package: Text) -> None:
-        self.executable, self.package = executable, package
-
-    def perform(self, context: Context) -> str:
-        """Return the path. Raises `CommandError` if there is none."""
-        package, name = text_of(self.package, context), text_of(self.executable, context)
-        file = prefix_of(package) / "lib" / package / name
-        if not file.is_file():
-            raise CommandError(f"the package '{package}' has no executable '{name}'")
-        return os.fspath(file)
-
-
-def prefix_of(package: str) -> Path:
-    """Return the folder in which a package is installed in this environment. Raises `CommandError`."""
-    prefix = prefixes.prefix_of(package, prefixes.installed())
-    if prefix is None:
-        raise CommandError(f"package '{package}' not found", "Build its workspace, and launch from there.")
-    return prefix
-
-
-class FindExecutable(Substitution):
-    """The path of a program on PATH."""
-
-    def __init__(self, *, name: Text) -> None:
-        self.name = name
-
-    def perform(self, context: Context) -> str:
-        """Return the path. Raises `CommandError` if there is no such program."""
-        name = text_of(self.name, context)
-        path = shutil.which(name)
-        if path is None:
-            raise CommandError(f"executable '{name}' not found on the PATH")
-        return path
-
-
-class ThisLaunchFile(Substitution):
-    """The path of the launch file that is read."""
-
-    def perform(self, context: Context) -> str:
-        """Return the path."""
-        return os.fspath(context.file)
-
-
-class ThisLaunchFileDir(Substitution):
-    """The folder of the launch file that is read."""
-
-    def perform(self, context: Context) -> str:
-        """Return the folder's path."""
-        return os.fspath(context.file.parent)
 
 
 class PythonExpression(Substitution):
@@ -235,11 +190,63 @@ class CommandOutput(Substitution):
     def perform(self, context: Context) -> str:
         """Return the command's output. Raises `CommandError` if it fails, or says something on stderr."""
         line, on_stderr = text_of(self.command, context), text_of(self.on_stderr, context)
-        environment = context.environment(dict(os.environ))
-        done = subprocess.run(line, shell=True, env=environment, capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            line, shell=True, env=dict(context.environment), capture_output=True, text=True, check=False
+        )
         if done.returncode or (done.stderr and on_stderr == "fail"):
             reason = f"exit code {done.returncode}" if done.returncode else "it wrote to stderr"
             raise CommandError(f"the command `{line}` failed ({reason}): {done.stderr.strip() or 'it said nothing'}")
         if done.stderr and on_stderr == "warn":
             print(done.stderr, end="", file=sys.stderr)
         return done.stdout + (done.stderr if on_stderr == "capture" else "")
+
+
+class AnonName(Substitution):
+    """A name with a number, the same for the same name in one launch, and another one in each launch."""
+
+    def __init__(self, name: Text) -> None:
+        self.name = name
+
+    def perform(self, context: Context) -> str:
+        """Return the name with its number."""
+        name = text_of(self.name, context)
+        return context.values.setdefault(f"anon{name}", f"{name}_{os.getpid()}_{uuid.uuid4().hex[:8]}")
+
+
+class NotYetKnownError(CommandError):
+    """A text is known only when the event has happened."""
+
+
+class LocalSubstitution(Substitution):
+    """What a handler knows of its event: `LocalSubstitution('event.reason')`."""
+
+    def __init__(self, expression: str, description: str | None = None) -> None:
+        self.expression = expression
+
+    def perform(self, context: Context) -> str:
+        """Return it. Raises `CommandError` outside a handler, and for what the event does not have."""
+        if context.is_later:
+            raise NotYetKnownError(f"LocalSubstitution('{self.expression}') is known when the event has happened")
+        value: Any = context.locals
+        for name in self.expression.split("."):
+            if not hasattr(value, name):
+                raise CommandError(f"LocalSubstitution('{self.expression}'): there is no '{name}' here")
+            value = getattr(value, name)
+        return str(value)
+
+
+class GlobalParameter(Substitution):
+    """The value of a parameter that `SetParameter` gave all nodes: `launch_ros.substitutions.Parameter('gain')`."""
+
+    def __init__(self, name: Text, *, default: Any = None) -> None:
+        self.name, self.default = name, default
+
+    def perform(self, context: Context) -> str:
+        """Return its value as a text, or the default. Raises `CommandError` if there is neither."""
+        name = text_of(self.name, context)
+        tables = [table for table in context.parameters if isinstance(table, dict) and name in table]
+        if tables:
+            return str(tables[-1][name])
+        if self.default is None:
+            raise CommandError(f"the parameter '{name}' was not set for all nodes: SetParameter does that")
+        return text_of(self.default, context)

@@ -90,7 +90,7 @@ def list_(
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
         name = _found(graph, node_name, include_hidden_nodes)
         service = "get_transition_graph" if all_transitions else "get_available_transitions"
-        found = _call(graph, name, "GetAvailableTransitions", service).available_transitions
+        found = call(graph, name, "GetAvailableTransitions", service).available_transitions
     for one in found:
         click.echo(f"- {_named(one.transition)}\n\tStart: {one.start_state.label}\n\tGoal: {one.goal_state.label}")
 
@@ -110,7 +110,7 @@ def set_(
     """
     with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
         name = _found(graph, node_name, include_hidden_nodes)
-        possible = _call(graph, name, "GetAvailableTransitions", "get_available_transitions").available_transitions
+        possible = call(graph, name, "GetAvailableTransitions", "get_available_transitions").available_transitions
         chosen = [one.transition for one in possible if transition in (one.transition.label, str(one.transition.id))]
         if not chosen:
             raise CommandError(
@@ -118,7 +118,7 @@ def set_(
                 *(f"- {_named(one.transition)}" for one in possible),
                 f"The node is {_state(graph, name)}.",
             )
-        result = _call(graph, name, "ChangeState", "change_state", transition=chosen[0])
+        result = call(graph, name, "ChangeState", "change_state", transition=chosen[0])
     if not result.success:
         raise CommandError("Transitioning failed", "The node's callback returned a failure or an error: see its log.")
     click.echo("Transitioning successful")
@@ -142,7 +142,7 @@ def _found(graph: GraphView, node_name: str, include_hidden: bool) -> str:
     return full
 
 
-def _call(graph: GraphView, node: str, kind: str, service: str, **fields: Any) -> Any:
+def call(graph: GraphView, node: str, kind: str, service: str, **fields: Any) -> Any:
     """Return a node's answer to a service of its life cycle. Raises `CommandError` if there is none."""
     from lifecycle_msgs import srv
 
@@ -156,7 +156,7 @@ def _call(graph: GraphView, node: str, kind: str, service: str, **fields: Any) -
 
 
 def _state(graph: GraphView, node: str) -> str:
-    return _named(_call(graph, node, "GetState", "get_state").current_state)
+    return _named(call(graph, node, "GetState", "get_state").current_state)
 
 
 def _named(thing: Any) -> str:

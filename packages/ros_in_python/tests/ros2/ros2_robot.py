@@ -23,6 +23,7 @@ from rclpy.qos import (
     qos_profile_system_default,
 )
 from rclpy.service_introspection import ServiceIntrospectionState
+from rclpy.utilities import remove_ros_args
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Int32, String
 from std_srvs.srv import SetBool
@@ -171,7 +172,7 @@ def hasty_action() -> Node:
 def main() -> None:
     rclpy.init()
     executor = MultiThreadedExecutor(2)
-    nodes = [globals()[part]() for part in sys.argv[1:]]
+    nodes = [globals()[part]() for part in remove_ros_args(sys.argv)[1:]]
     for node in nodes:
         executor.add_node(node)
     print("ready", flush=True)

@@ -127,7 +127,7 @@ return LaunchDescription([
     RegisterEventHandler(OnProcessExit(target_action=second, on_exit=lambda event, context: LogInfo(
         msg=f"{event.process_name} ended with {event.returncode}"))),
     RegisterEventHandler(OnProcessStart(target_action=first, on_start=[LogInfo(msg="started")])),
-    RegisterEventHandler(OnProcessIO(target_action=first, on_stdout=lambda event: LogInfo(msg="never"))),
+    RegisterEventHandler(OnProcessIO(target_action=first, on_stdout=lambda event, context: LogInfo(msg="never"))),
     TimerAction(period=0.3, actions=[first]),
 ])""")  # fmt: skip
     assert answer.code == 1
@@ -142,7 +142,7 @@ return LaunchDescription([
     RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[second])),
     RegisterEventHandler(OnProcessExit(target_action=second, on_exit=lambda event, context: LogInfo(
         msg=f"{event.process_name} ended with {event.returncode}"))),
-    RegisterEventHandler(OnProcessIO(target_action=first, on_stdout=lambda event, context: LogInfo(
+    RegisterEventHandler(OnProcessIO(target_action=first, on_stdout=lambda event: LogInfo(
         msg="heard " + event.text.decode().strip()))),
     TimerAction(period=0.1, actions=[first]),
 ])""")  # fmt: skip
@@ -156,7 +156,7 @@ first = ExecuteProcess(cmd=["printf", "1\\n2\\n3\\n"])
 return LaunchDescription([
     first,
     RegisterEventHandler(OnProcessStart(target_action=first, on_start=[LogInfo(msg="started")])),
-    RegisterEventHandler(OnProcessIO(target_action=first, on_stdout=lambda event, context: LogInfo(
+    RegisterEventHandler(OnProcessIO(target_action=first, on_stdout=lambda event: LogInfo(
         msg="heard " + event.text.decode().strip()))),
     RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[LogInfo(msg="ended")])),
 ])""")  # fmt: skip
@@ -188,6 +188,53 @@ return LaunchDescription([
 ])""")  # fmt: skip
     assert (tmp_path / "count").read_text() == "again\n" * 3
     assert answer.out.count("process started") == 3
+
+
+def test_a_group_can_forget_what_holds_outside(terminal: Terminal, tmp_path: Path) -> None:
+    answer = launched(terminal, tmp_path, """
+show = LogInfo(msg=[LaunchConfiguration("a", default="-"), LaunchConfiguration("b", default="-"),
+    EnvironmentVariable("GREETING", default_value="-")])
+return LaunchDescription([
+    SetEnvironmentVariable("GREETING", "hello"), SetLaunchConfiguration("a", "1"), SetLaunchConfiguration("b", "2"),
+    GroupAction([show], forwarding=False, launch_configurations={"b": [LaunchConfiguration("b"), "3"]}),
+    PushLaunchConfigurations(), PushEnvironment(), ResetLaunchConfigurations(), ResetEnvironment(), show,
+    PopEnvironment(), PopLaunchConfigurations(), UnsetLaunchConfiguration("a"), show,
+])""")  # fmt: skip
+    assert said(answer) == ["-23-", "---", "-2hello"]
+
+
+def test_what_waits_is_worked_out_when_its_time_has_come(terminal: Terminal, tmp_path: Path) -> None:
+    answer = launched(terminal, tmp_path, """
+def now(context):
+    return [LogInfo(msg="second")]
+first = say("x")
+return LaunchDescription([
+    TimerAction(period=0.1, actions=[OpaqueFunction(function=now), first]), LogInfo(msg="first"),
+    RegisterEventHandler(OnProcessExit(on_exit=[Shutdown(reason="enough")], target_action=first, handle_once=True)),
+    RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg=LocalSubstitution("event.reason"))])),
+    TimerAction(period=0.3, actions=[LogInfo(msg="after all")], cancel_on_shutdown=False),
+    TimerAction(period=0.3, actions=[LogInfo(msg="never")]),
+])""")  # fmt: skip
+    assert said(answer) == ["first", "second", "[echo-1] x", "enough", "after all"]
+
+
+def test_a_program_gets_its_signals_and_its_own_line_format(terminal: Terminal, tmp_path: Path) -> None:
+    answer = launched(terminal, tmp_path, """
+from launch.events import matches_action as only
+from launch.events.process import ShutdownProcess, SignalProcess
+stubborn = ExecuteProcess(cmd=["trap 'echo heard' INT; echo up; echo err >&2; while :; do sleep 0.05; done"],
+    shell=True, name="stubborn", output_format="{this.process_description.final_name}> {line}", sigterm_timeout="0.2")
+return LaunchDescription([
+    stubborn,
+    RegisterEventHandler(OnProcessIO(
+        on_stdout=lambda event: EmitEvent(event=SignalProcess(signal_number=2, process_matcher=only(stubborn)))
+        if b"up" in event.text else EmitEvent(event=ShutdownProcess(process_matcher=only(stubborn))),
+        on_stderr=lambda event: LogInfo(msg=f"other: {event.text.decode().strip()}"))),
+])""")  # fmt: skip
+    assert answer.code == 0
+    assert "stubborn-1> up" in said(answer)
+    assert "other: err" in said(answer)
+    assert "exit code -15" in answer.out
 
 
 def test_parameters_names_and_remappings_for_all_that_follow(terminal: Terminal, tmp_path: Path) -> None:

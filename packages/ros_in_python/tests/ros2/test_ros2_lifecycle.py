@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from ros2_terminal import Robot, Terminal
 
@@ -29,3 +31,34 @@ def test_a_node_is_found_configured_and_says_what_it_can_do(robot: Robot, termin
     other = terminal.ros2("lifecycle", "get", "/stander")
     assert (other.code, other.err.splitlines()[0]) == (1, "Node not found")
     assert "/camera" in other.err
+
+
+LAUNCH = """
+import sys
+from launch import LaunchDescription
+from launch.actions import EmitEvent, LogInfo, RegisterEventHandler, Shutdown
+from launch.events import matches_action
+from launch_ros.actions import LifecycleNode, LifecycleTransition
+from launch_ros.event_handlers import OnStateTransition
+from launch_ros.events.lifecycle import ChangeState
+
+def generate_launch_description():
+    camera = LifecycleNode(
+        executable=sys.executable, arguments=[ROBOT, "lifecycle"], name="camera", namespace="left")
+    return LaunchDescription([
+        camera,
+        RegisterEventHandler(OnStateTransition(
+            target_lifecycle_node=camera, start_state="configuring", goal_state="inactive",
+            entities=[LogInfo(msg="inactive"), EmitEvent(event=ChangeState(
+                lifecycle_node_matcher=matches_action(camera), transition_id=2))])),
+        RegisterEventHandler(OnStateTransition(goal_state="unconfigured", entities=[Shutdown()])),
+        LifecycleTransition(lifecycle_node_names=["left/camera"], transition_ids=[1]),
+    ])
+"""
+
+
+def test_a_launch_file_changes_states_one_after_another(terminal: Terminal, tmp_path: Path) -> None:
+    (tmp_path / "a.launch.py").write_text(LAUNCH.replace("ROBOT", repr(str(Path(__file__).with_name("ros2_robot.py")))))
+    answer = terminal.ros2("launch", "a.launch.py", cwd=tmp_path)
+    assert answer.code == 0
+    assert "[INFO] [launch.user]: inactive" in answer.out
