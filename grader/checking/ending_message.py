@@ -10,7 +10,7 @@ from grader.recording.recording import Ending
 from grader.submission.python_version import newer_name
 
 #: What the sandbox has besides Python itself, as a student would import it.
-AVAILABLE = "rclpy, tf2, the standard ROS 2 messages (std_msgs, geometry_msgs, sensor_msgs and so on) and numpy"
+AVAILABLE = "rclpy, tf2, the standard ROS 2 messages (std_msgs, geometry_msgs, sensor_msgs and so on), numpy"
 
 MISSING = re.compile(r"ModuleNotFoundError: No module named '([^']+)'")
 NO_NAME = re.compile(r"ImportError: cannot import name '([^']+)' from '([^']+)'")
@@ -48,8 +48,9 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
     if newer := newer_name(message):
         return f"{message} {newer}"
     if (missing := MISSING.search(message)) and missing[1].partition(".")[0] not in sys.stdlib_module_names:
+        available = ", ".join([AVAILABLE, *exercise.packages])
         return (
-            f"{message} The module {missing[1]} is not available here. Available are Python's own modules, {AVAILABLE}."
+            f"{message} The module {missing[1]} is not available here. Available are Python's own modules, {available}."
         )
     if no_name := NO_NAME.search(message):
         return f"{message} The module {no_name[2]} has no {no_name[1]}. Is the name spelled right?"

@@ -9,6 +9,9 @@ from grader.exercise.exercise import Exercise, ExerciseError
 #: The folder, in an exercise's folder, and next to the program in its sandbox.
 DATA = "data"
 
+#: The file, in a web page's copy of an exercise, that says what a page lacks to check it.
+LACKS = "lacks.txt"
+
 #: Each run gets them anew, in memory (bytes).
 MOST_DATA_BYTES = 64_000_000
 

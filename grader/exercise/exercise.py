@@ -104,8 +104,9 @@ class Exercise:
     `task` is the text for the student, in Markdown. `points` is the sum of all checks' points. `solution_folder` holds
     the author's solution, and is None in a student's copy of the course. With `public_only` the hidden checks are left
     out, as in a student's copy. `programs` are the programs of a submission with several; `class_name` and `node_name`
-    are then those of the first. `advice` maps the name of an exception, such as "KeyError", to a sentence for students
-    whose program ended with it. With `count_hints`, the upload says how many further hints a student took.
+    are then those of the first. `packages` are packages from PyPI that programs may use, such as "scipy==1.16.3".
+    `advice` maps the name of an exception, such as "KeyError", to a sentence for students whose program ended with it.
+    With `count_hints`, the upload says how many further hints a student took.
     """
 
     name: str
@@ -125,6 +126,7 @@ class Exercise:
     reference_node: str = REFERENCE_NODE
     advice: dict[str, str] = field(default_factory=dict)
     count_hints: bool = False
+    packages: tuple[str, ...] = ()
 
     @property
     def scenarios_file(self) -> Path:

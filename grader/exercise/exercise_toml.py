@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from importlib import metadata
 from pathlib import Path
 from typing import Any, NoReturn, get_args
+
+from packaging.requirements import InvalidRequirement, Requirement
 
 from grader.exercise.exercise import (
     PUBLIC_FILE,
@@ -35,7 +38,9 @@ DEADLINE = "deadline"
 
 #: The keys of exercise.toml, of its tables, and whether a table's key is required.
 KEYS: dict[str, dict[str, bool]] = {
-    "": dict.fromkeys(("title", "points", "file", "class", "node", "reference_node", "advice", "count_hints"), False),
+    "": dict.fromkeys(
+        ("title", "points", "file", "class", "node", "reference_node", "advice", "count_hints", "packages"), False
+    ),
     **{
         direction: {
             "topic": True,
@@ -52,6 +57,11 @@ KEYS: dict[str, dict[str, bool]] = {
     "parameter": {"name": True, "type": True, "default": False, "unit": False, "range": False},
     "program": {"file": True, "node": True, "class": False},
 }
+
+_FROM_HANDOUT = (
+    "It comes with the handout. In the handout's folder: .venv/bin/pip install -r requirements.txt. "
+    "If it is still missing then, send this message to your instructor."
+)
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*")
 _PYTHON_FILE = re.compile(r"[a-z_][a-z0-9_]*\.py")
@@ -130,10 +140,7 @@ class TomlTable:
 
     def _install(self, package: str) -> str:
         if (self.file.parent / PUBLIC_FILE).exists():
-            return (
-                "It comes with the handout. In the handout's folder: .venv/bin/pip install -r requirements.txt. "
-                "If it is still missing then, send this message to your instructor."
-            )
+            return _FROM_HANDOUT
         if remedy := shipped.how_to_add(package):
             return remedy
         return "If the course defines it, compile it: spinbook build. If not, install it, or check its name."
@@ -237,6 +244,32 @@ def programs(entries: dict[str, Any], file: Path) -> tuple[ProgramFile, ...]:
             table.fault("file", f"file = {name!r}", "Give a Python file name, such as 'leader.py'.")
         declared.append(ProgramFile(name, table.text("node"), table.text("class")))
     return tuple(declared)
+
+
+def packages(top: TomlTable) -> tuple[str, ...]:
+    """Return the packages that programs may use, each with the version that is installed here."""
+    names = top.entries.get("packages", [])
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        top.fault("packages", f"packages = {names!r}", 'Give a list of texts, such as packages = ["scipy"].')
+    return tuple(_pinned(top, name) for name in names)
+
+
+def _pinned(top: TomlTable, text: str) -> str:
+    try:
+        wanted = Requirement(text)
+    except InvalidRequirement:
+        wanted = Requirement("none>0")
+    if wanted.url or wanted.marker or [one.operator for one in wanted.specifier] not in ([], ["=="]):
+        fix = 'Write a name on PyPI, such as "scipy" or "scipy==1.16.3".'
+        top.fault("packages", f"packages has {text!r}", fix)
+    remedy = _FROM_HANDOUT if (top.file.parent / PUBLIC_FILE).exists() else f"Install it: pip install {text}"
+    try:
+        version = metadata.version(wanted.name)
+    except metadata.PackageNotFoundError:
+        top.fault("packages", f"the package {wanted.name}, which programs may use, is not installed here", remedy)
+    if version not in wanted.specifier:
+        top.fault("packages", f"{wanted.name} is installed in version {version}, not as {text}", remedy)
+    return f"{wanted.name}=={version}"
 
 
 def line_of(file: Path, kind: str, number: int, key: str) -> int | None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.exercise.exercise import REFERENCE_NODE, Exercise, ExerciseError, ProgramFile
-from grader.exercise.exercise_toml import TomlTable, endpoints, parameters, programs, topics
+from grader.exercise.exercise_toml import TomlTable, endpoints, packages, parameters, programs, topics
 from interface_compiler.near import use_near
 
 if sys.version_info >= (3, 11):
@@ -56,6 +56,7 @@ def load(folder: Path | str) -> Exercise:
         reference_node=top.text("reference_node", REFERENCE_NODE),
         advice=top.texts("advice", '{ KeyError = "What if a key is missing?" }'),
         count_hints=top.flag("count_hints"),
+        packages=packages(top),
     )
     if not exercise.topics and not exercise.endpoints and not exercise.parameters:
         fix = "Declare each topic under [[subscribe]] or [[publish]], and services, actions and parameters likewise."

@@ -63,7 +63,8 @@ def autograder_files(exercise: Exercise, isolation: Isolation | None = None) -> 
         for name, script in (("setup.sh", "setup.sh"), ("run_autograder", "run_autograder.sh"))
     }
     software = _source() if (SOURCE / "pyproject.toml").exists() else _installed()
-    for name, content in {**software, **_compiled()}.items():
+    packages = "".join(f"{package}\n" for package in exercise.packages).encode()
+    for name, content in {**software, **_compiled(), **({"packages.txt": packages} if packages else {})}.items():
         files[f"course/{name}"] = (content, 0o644)
     for name, file in _files(exercise):
         files[f"course/{name}"] = (file.read_bytes(), 0o644)

@@ -29,6 +29,8 @@ else
     pip install -c "$pins" "$software[ros]"
 fi
 pip install --no-deps "$here"/course/wheels/*.whl
+# What the exercise lets programs use, in the versions with which its solution ran.
+if [ -e "$here/course/packages.txt" ]; then pip install -r "$here/course/packages.txt"; fi
 
 # Test that grading works here, and store what the solution publishes. Problems are in the build's output.
 "$here/venv/bin/python" -I -m grader.gradescope.run prepare "$here/course/exercises/$EXERCISE" $ISOLATION

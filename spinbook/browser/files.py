@@ -7,10 +7,12 @@ import os
 import re
 import sys
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
-from grader.exercise.data_files import DATA
+from grader.exercise.data_files import DATA, LACKS
 from grader.exercise.exercise import Exercise
+from grader.exercise.writing import to_toml
 from grader.submission.code import STARTER
 from grader.workers.pool import WorkerPool
 from spinbook.browser.archives import check_archive, ros_archive, share_archive
@@ -116,11 +118,20 @@ def public_parts(exercises: Iterable[Exercise]) -> dict[str, bytes]:
             copy = exercise_files(exercise, workers)
             needed = [name for name in copy if name in _NEEDED or _is_code(name, exercise)]
             files |= {f"exercises/{exercise.name}/{name}": copy[name] for name in needed}
-            if any(name.startswith(f"{DATA}/") for name in copy):
-                files[f"exercises/{exercise.name}/{DATA}"] = b"Its files stay in the handout."
+            files |= {f"exercises/{exercise.name}/{name}": text for name, text in _limits(exercise, copy).items()}
             # The grader ignores code that equals the starter, so it has to know the starter.
             files[f"exercises/{exercise.name}/{STARTER}"] = copy[exercise.file_name]
     return files
+
+
+def _limits(exercise: Exercise, copy: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Return what differs for a page, which has no packages and no data: why it can't check, and the interface."""
+    lacks = ["files that programs read"] * any(name.startswith(f"{DATA}/") for name in copy)
+    lacks += [", ".join(package.partition("==")[0] for package in exercise.packages)] * bool(exercise.packages)
+    if not lacks:
+        return {}
+    text = f"This exercise uses {' and '.join(lacks)}, which a web page does not have. Check it in the notebook."
+    return {LACKS: text.encode(), "exercise.toml": to_toml(replace(exercise, packages=())).encode()}
 
 
 def _is_code(name: str, exercise: Exercise) -> bool:

@@ -62,8 +62,12 @@ def guide_files(
     notebooks: list[str],
     exercises: list[Listing],
     compiled: list[str],
+    packages: list[str],
 ) -> dict[str, bytes]:
-    """Return README.md and the files that install, by name. `compiled` are names of wheels of compiled code."""
+    """Return README.md and the files that install, by name.
+
+    `compiled` are names of wheels of compiled code, `packages` what exercises let programs use.
+    """
     # Plain text and JSON, not HTML.
     environment = Environment(
         loader=PackageLoader("spinbook.handout", "template"),
@@ -81,6 +85,7 @@ def guide_files(
         "notebooks": notebooks,
         "exercises": exercises,
         "pins": _pins(distro),
+        "packages": packages,
         "compiled": [requirement(file) for file in compiled],
         "interfaces": any(package_of(file) for file in compiled),
         "version": __version__,
@@ -136,7 +141,10 @@ def handout(course: Course) -> Handout:
     files[f"wheels/{name}"] = content
     files |= {f"wheels/{file}": data for file, data in compiled.items()}
     slug = re.sub(r"[^a-z0-9]+", "-", course.title.lower()).strip("-") or "course"
-    files |= guide_files(course.title, slug, course.ros_distro, name, sorted(notebooks), listings, sorted(compiled))
+    packages = sorted({package for exercise in exercises for package in exercise.packages})
+    files |= guide_files(
+        course.title, slug, course.ros_distro, name, sorted(notebooks), listings, sorted(compiled), packages
+    )
     files |= base_files(files)
     _prove(files, known)
     return Handout(slug, files, tuple(listings))

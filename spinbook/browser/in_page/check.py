@@ -15,7 +15,7 @@ from typing import Any
 
 from grader.checking.ending_message import message_of
 from grader.checking.verdict import Verdict
-from grader.exercise.data_files import DATA
+from grader.exercise.data_files import LACKS
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load
 from grader.recording.arrays import read_arrays
@@ -36,7 +36,6 @@ _CANNOT = {
 }
 _SEVERAL_FILES = "A web page can't check a program of several files. Check it with `spinbook check`."
 _SEVERAL = "This exercise has several programs, which a web page can't check together. Check it in the notebook."
-_DATA = "This exercise has files that programs read, which a web page does not have. Check it in the notebook."
 
 
 def check(name: str, source: str) -> str:
@@ -48,8 +47,8 @@ def check(name: str, source: str) -> str:
     scenarios, references, hidden = public_part(exercise)
     if exercise.programs or any(scenario.companions or scenario.programs for scenario in scenarios):
         return json.dumps({"problem": _SEVERAL})
-    if (exercise.folder / DATA).exists():
-        return json.dumps({"problem": _DATA})
+    if (lacks := exercise.folder / LACKS).exists():
+        return json.dumps({"problem": lacks.read_text()})
     recordings = record(exercise, scenarios, ProgramText(exercise.file_name, source))
     judged = CheckedProgram(verdicts(exercise, scenarios, recordings, references), recordings, references)
     return json.dumps(shown(exercise, judged, hidden))

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
+from importlib import metadata
 from pathlib import Path
 
 import pytest
 
+from grader.checking.ending_message import message_of
 from grader.exercise import ExerciseError, load
 from grader.exercise.writing import to_toml
+from grader.recording import Ending
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Scenario
 from grader.scenario.store import NotForStudents, from_plain, plain
@@ -267,6 +270,14 @@ def test_scenarios_differ_if_anything_in_them_does(tmp_path: Path) -> None:
     assert len(digests) == 9
 
 
+def test_packages_are_pinned_to_what_is_installed(tmp_path: Path) -> None:
+    exercise = load(exercise_in(tmp_path, toml=TOML.replace("points = 10", "points = 10\npackages = ['PyYAML']")))
+    assert exercise.packages == (f"PyYAML=={metadata.version('PyYAML')}",)
+    assert f'packages = ["PyYAML=={metadata.version("PyYAML")}"]' in to_toml(exercise)
+    ending = Ending("did-not-start", "ModuleNotFoundError: No module named 'cv2'")
+    assert message_of(ending, exercise).endswith(f", numpy, {exercise.packages[0]}.")
+
+
 def test_an_interface_is_written_as_it_was_read(tmp_path: Path) -> None:
     exercise = load(exercise_in(tmp_path))
     assert to_toml(exercise) == TOML.replace('std_msgs/msg/Float64"\n', 'std_msgs/msg/Float64"\ndepth = 10\n')
@@ -294,6 +305,19 @@ def test_an_interface_is_written_as_it_was_read(tmp_path: Path) -> None:
         ('type = "double"', 'type = "float"', 39, "double"),
         ('name = "/count"\n', "", 29, r"no name in \[\[action\]\]"),
         ("elements = { called", "elements = { calld", 18, "elements ="),
+        (
+            "points = 10",
+            "points = 10\npackages = ['no-such-package']",
+            3,
+            "no-such-package.*is not installed here.*pip install",
+        ),
+        (
+            "points = 10",
+            "points = 10\npackages = ['numpy==0.1']",
+            3,
+            r"numpy is installed in version .* not as numpy==0\.1",
+        ),
+        ("points = 10", "points = 10\npackages = ['numpy>=1']", 3, "'numpy>=1'.*Write a name on PyPI"),
     ],
 )
 def test_what_is_wrong_in_exercise_toml_is_reported_with_its_line(
