@@ -39,6 +39,11 @@ def must_count(run: Run) -> None:
 @check(
     points=8,
     hint="Call call_async() in the callback of /calibrate, with the joint's name in the request.",
+    todo="A client needs three things: self.create_client(CalibrateJoint, '/calibrate_joint') in __init__, a "
+    "Request with the joint's name in its field joint, and call_async(request). The callback of "
+    "/calibrate gets a String: the name is in its field data. Make a new Request for each message, send "
+    "it and return. Log the name just before you send it. If the line never appears, the callback is not "
+    "called, or a condition before the call is false.",
     rule=("input", "service", "offsets", "count_topic"),
 )
 def test_asks(one: Run) -> None:
@@ -50,6 +55,11 @@ def test_asks(one: Run) -> None:
 @check(
     points=10,
     hint="Use future.add_done_callback(…), and publish the offset in that callback.",
+    todo="call_async() returns a future, and the answer is in it later. Give the future a method with "
+    "add_done_callback(): the method is called with the future as soon as the answer is there, and "
+    "future.result() is the response. Check success there, make a JointState with the joint's name and "
+    "the offset, and publish it in this method. Do not wait in the callback of /calibrate: while it "
+    "waits, the answer can't arrive.",
     depends=[test_asks],
     rule=("success", "never_wait"),
 )
@@ -66,6 +76,10 @@ def test_publishes_the_offset(one: Run) -> None:
 @check(
     points=5,
     hint="name and position are lists, with one element each.",
+    todo="A JointState describes joints by two lists that belong together: name[0] is the joint to which "
+    "position[0] belongs. The response does not repeat the name, so your node has to remember for which "
+    "joint it asked. Let the done-callback get the name along with the future, with functools.partial or "
+    "as a default argument of a lambda, and put it into a list: ['left_elbow'], not 'left_elbow'.",
     depends=[test_publishes_the_offset],
     rule="success",
 )
@@ -77,6 +91,10 @@ def test_publishes_the_name(one: Run) -> None:
 @check(
     points=10,
     hint="Use a timer. It works as long as no callback waits.",
+    todo="A timer that is created in __init__ with a period of 0.1 s calls a method ten times per second, by "
+    "the node's clock. Publish in this method and nowhere else, also when nobody waits: then the number "
+    "is 0. If there are gaps, some callback waits. Look for call(), wait_for_service(), "
+    "spin_until_future_complete(), time.sleep() and loops: while one of them runs, the timer can't.",
     depends=[test_asks],
     misconception="waits for the answer",
     rule=("pending", "never_wait", "never_stop"),
@@ -90,6 +108,11 @@ def test_ten_times_a_second(one: Run) -> None:
 @check(
     points=8,
     hint="Count up for each request, and down for each answer.",
+    todo="A joint waits from the moment when its message arrives until its answer has come, whether that says "
+    "success or not, or until 5 s have passed since the request. Do not keep a number that you change in "
+    "several places. Keep the joints themselves: a list of those that you could not ask for yet, and one "
+    "entry per request that is not answered. The number is then the sum of the two lengths, and it can't "
+    "go wrong.",
     depends=[test_asks],
     rule=("pending", "not_waiting", "never_wait"),
 )

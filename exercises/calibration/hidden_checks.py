@@ -23,6 +23,11 @@ def must_ask_in_time(run: Run, within: float, seconds: dict[str, float]) -> None
 @check(
     points=5,
     hint="Never wait in a callback, neither for the service nor for its answer.",
+    todo="Find the line at which your node waits when the service is not there, or when it never answers. "
+    "wait_for_service() and call() both wait, and so does a while loop around service_is_ready(). Ask "
+    "service_is_ready() once and return if the answer is no; the timer asks again. Send requests with "
+    "call_async(), and take the answer in a done-callback. Then every callback ends at once, and the "
+    "timer fires every 0.1 s.",
     depends=ASKS,
     misconception="waits for the service",
     rule=("never_stop", "never_wait"),
@@ -37,6 +42,10 @@ def test_never_silent(absent: Run, never: Run) -> None:
 @check(
     points=5,
     hint="Each call_async() has a future of its own. Do not wait for one before the next.",
+    todo="Send the request in the callback of /calibrate, without looking at whether another one is under way. "
+    "Each call_async() returns a future of its own, and many can be open at once. If you keep one future "
+    "in one attribute, the next request replaces it: use a dictionary, from the future to the joint and "
+    "the time of its request, or a small object for each request.",
     depends=ASKS,
     misconception="one after another",
     rule=("parallel", "ask", "never_wait"),
@@ -76,6 +85,10 @@ def test_offset_of_zero(again: Run) -> None:
 @check(
     points=5,
     hint="The done-callback has to know to which joint its future belongs.",
+    todo="The answers come in any order, so neither the last joint that was named nor the first of a list is "
+    "the one that was answered. Bind the name to its own future when you send the request: "
+    "add_done_callback(functools.partial(self.on_answer, joint)). A lambda that only uses the variable "
+    "`joint` of a loop reads it later, when it has another value: write `lambda future, joint=joint: …`.",
     depends=["test_publishes_the_name"],
     misconception="mixes joints up",
     rule=("order", "success"),
@@ -94,6 +107,9 @@ def test_answers_in_another_order(several: Run) -> None:
 @check(
     points=4,
     hint="Look at success before you publish.",
+    todo="The response has a field success. If it is false, the field offset means nothing, whatever it holds. "
+    "Check success first in the done-callback, and return without publishing. The joint is no longer "
+    "waiting, though: an answer came. So take it off the list before you look at success.",
     depends=OFFSET,
     misconception="ignores success",
     rule="failure",
@@ -128,6 +144,10 @@ def test_offset_that_is_no_number(not_finite: Run) -> None:
 @check(
     points=5,
     hint="service_is_ready() says whether the service is there. Ask again in the timer.",
+    todo="service_is_ready() says at once whether the service is there, without waiting. In the callback of "
+    "/calibrate, put the name at the end of a list. In a method of its own, send a request for each name "
+    "of the list, the oldest first, as long as the service is ready. Call this method from the callback "
+    "and from the timer: the timer notices within 0.1 s that the service has appeared.",
     depends=ASKS,
     misconception="asks without a service",
     rule=("keep", "parallel", "never_wait"),
@@ -173,6 +193,10 @@ def test_pending_without_a_service(absent: Run) -> None:
 @check(
     points=4,
     hint="Remember when each request went out, and check the time in the timer.",
+    todo="When you send a request, keep the node's time along with its future: self.get_clock().now(). In the "
+    "timer, look at each request that has no answer, and forget those whose time is 5 s ago or more: "
+    "compare the difference with Duration(seconds=5.0). Do not start the 5 s when the message arrives, "
+    "because the service may not be there yet, and do not use time.time().",
     depends=COUNT,
     misconception="waits forever",
     rule=("give_up", "not_waiting", "clock", "parallel"),
@@ -197,6 +221,10 @@ def test_slow_answer(slow: Run) -> None:
 @check(
     points=3,
     hint="Forget the future when you give up.",
+    todo="A future whose joint was given up is still alive, and calls its done-callback when the late answer "
+    "comes. So the callback must first look at whether this very future is still among those that you "
+    "wait for, and return if not. The name of the joint is not enough: somebody may have asked for the "
+    "same joint again meanwhile.",
     depends=[*OFFSET, "test_gives_up"],
     rule="late",
 )

@@ -51,6 +51,10 @@ def test_reaches_the_goal(ahead: Run) -> None:
 @check(
     points=8,
     hint="A command holds for 1 s. Close to the goal, publish a Twist of zeros.",
+    todo="turtlesim obeys each command for one second, so a turtle that gets no more commands still drives on "
+    "for a while. When the distance to the goal is small enough, publish a new Twist() without setting "
+    "anything: all its numbers are 0.0. Do it once, and then forget the goal, so that the turtle does not "
+    "turn on the spot for ever: very close to the goal, the direction to it is chance.",
     depends=[test_drives],
     misconception="never stops",
     rule="stop",
@@ -69,6 +73,10 @@ def test_stops_at_the_goal(ahead: Run) -> None:
 @check(
     points=8,
     hint="max(-2.0, min(value, 2.0)) keeps a value within limits.",
+    todo="A speed that is proportional to the distance or to the angle is large when these are large: 10 m "
+    "away with a factor of 1 is 10 m/s. Limit each number just before you publish it, in both directions: "
+    "a turn to the right is negative, and -5 is too fast as well. Log the largest values that you "
+    "publish. Limit after all factors and sums, not before.",
     depends=[test_drives],
     misconception="too fast",
     rule="speed",

@@ -23,6 +23,9 @@ def must_come_near(run: Run, x: float, y: float, start: float, within: float = 1
 @check(
     points=6,
     hint="Without a goal, return at once.",
+    todo="Set self.goal = None in __init__, and let on_pose return at once as long as it is None. A Point() "
+    "that nobody has filled in has x = y = 0.0: as a goal it is the lower left corner, and the turtle "
+    "drives there. Nor may an attribute of the class or a default argument have a place in it.",
     depends=DRIVES,
     misconception="a goal from the beginning",
     rule="no_goal",
@@ -38,6 +41,10 @@ def test_stands_still_without_a_goal(no_goal: Run) -> None:
 @check(
     points=6,
     hint="Bring the difference of the two angles back to between -pi and pi: atan2(sin(d), cos(d)) does that.",
+    todo="atan2 gives an angle between -pi and pi, and so does theta. Their difference may be anything between "
+    "-2 pi and 2 pi: from 3.0 to -3.0 it is -6.0, nearly a whole turn to the right, where 0.28 to the "
+    "left would do. Bring the difference back, not the two angles: subtract first, then take "
+    "atan2(sin(difference), cos(difference)), or add or subtract 2 pi while it is outside.",
     depends=DRIVES,
     misconception="angle not wrapped",
     rule="shorter_way",
@@ -54,6 +61,11 @@ def test_turns_the_shorter_way(short_way: Run) -> None:
 @check(
     points=6,
     hint="Steer by the pose, until the turtle is there.",
+    todo="Go through on_pose with a goal exactly behind the turtle: the angle is near pi, so the turtle has to "
+    "turn on the spot first. Is the angle wrapped, and does the turn go on in one direction, or does its "
+    "sign change with each pose? Then it needs enough speed: 10 s for up to 10 m. A speed that is "
+    "proportional to the distance alone may become very small near the goal; is it inside 0.1 m when you "
+    "stop?",
     depends=DRIVES,
     rule="reach",
 )
@@ -65,6 +77,11 @@ def test_reaches_a_goal_behind(behind: Run) -> None:
 @check(
     points=5,
     hint="Let the speed depend on the distance.",
+    todo="With 2 m/s the turtle moves by more than 3 cm between two poses, and it obeys the last command until "
+    "the next one comes. Make linear.x depend on the distance, such as min(distance, 2.0) or twice the "
+    "distance, so that it is slow when it gets there. Driving and turning at once makes curves: drive "
+    "ahead only while the angle to the goal is small, for example with a factor of cos(angle) that is "
+    "never negative.",
     depends=DRIVES,
     rule="not_past",
 )
@@ -77,6 +94,10 @@ def test_does_not_go_past_the_goal(ahead: Run) -> None:
 @check(
     points=4,
     hint="Wait for the next goal when one is reached.",
+    todo="After the first goal, which attributes still have a value from it? A flag such as self.done must "
+    "become false again in on_goal, or the second goal is never driven to. Simplest is one attribute: "
+    "self.goal, which on_goal sets and which becomes None at the goal. Do not end the program, destroy "
+    "the subscription or stop the timer at the first goal.",
     depends=DRIVES,
     rule=("stop", "newest", "reach"),
 )
@@ -88,6 +109,10 @@ def test_reaches_the_next_goal(next_goal: Run) -> None:
 @check(
     points=5,
     hint="on_goal replaces the goal, whatever the turtle does.",
+    todo="on_goal should only replace self.goal, with no condition before it. Then on_pose uses the new goal "
+    "with the very next pose. If your node computes something once per goal, such as a direction, a start "
+    "or a state (turn, then drive), compute it again in on_goal. A loop in on_goal that drives until the "
+    "turtle is there keeps the next goal waiting.",
     depends=DRIVES,
     misconception="sticks to the first goal",
     rule=("newest", "reach"),
@@ -115,6 +140,10 @@ def test_same_goal_again(short_way: Run) -> None:
 @check(
     points=4,
     hint="Close to the goal, after the command of zeros, set self.goal to None.",
+    todo="The turtle may be carried away after it was at the goal. If your node still compares each pose with "
+    "the old goal, it drives back. When the turtle is there, publish the zeros, and set self.goal to "
+    "None: on_pose then returns at once until on_goal gets another one. A flag does it, too, if on_goal "
+    "resets it.",
     depends=DRIVES,
     misconception="a goal is never done",
     rule="done",

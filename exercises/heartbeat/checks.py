@@ -68,6 +68,11 @@ def test_publishes_beats(start: Run) -> None:
 @check(
     points=8,
     hint="A timer takes its period in seconds.",
+    todo="create_timer(period, callback) takes the time between two calls in seconds. Four per second means "
+    "one every quarter of a second. The timer must be the only thing that decides when a beat comes: no "
+    "time.sleep(), which goes by the computer's clock, no loop, no threading.Timer. main() must call "
+    "rclpy.spin(node), because the timer only fires while the node spins. `ros2 topic hz /heartbeat` "
+    "shows the rate.",
     depends=[test_publishes_beats],
     misconception="rate and period mixed up",
     rule=("rate", "clock"),
@@ -119,6 +124,10 @@ def test_one_message_for_each_beat(start: Run) -> None:
 @check(
     points=9,
     hint="Ask the node's clock again for each beat.",
+    todo="self.get_clock().now() is the time of the node's clock, and to_msg() makes the stamp of it, with "
+    "both of its fields: whole seconds, and the rest in nanoseconds. Call both in beat(), for each beat, "
+    "just before you publish. A stamp that __init__ has made stays the time of the start. time.time() and "
+    "datetime are the computer's clock, which says another time than the robot's.",
     depends=[test_publishes_beats],
     misconception="another time in the stamp",
     rule=("stamp", "clock"),
@@ -129,7 +138,17 @@ def test_stamp_is_the_time_of_the_beat(start: Run) -> None:
     start.must_stamp(field="stamp")
 
 
-@check(points=4, hint="Set frame_id in each message.", depends=[test_publishes_beats], rule="frame", partial=True)
+@check(
+    points=4,
+    hint="Set frame_id in each message.",
+    todo="frame_id is a field of the Header itself: message.frame_id. Set it for each message, before "
+    "publish(): what you change afterwards is not sent. The text is exactly the one in the task: small "
+    "letters, no slash before it, no spaces, and not the name of the node. A new Header() has an empty "
+    "text.",
+    depends=[test_publishes_beats],
+    rule="frame",
+    partial=True,
+)
 def test_frame_is_torso(start: Run) -> None:
     """The frame of each beat is torso."""
     must_have_the_frame(start)

@@ -71,6 +71,10 @@ def test_filters(default: Run) -> None:
 @check(
     points=6,
     hint="Call publish() once in the callback, whatever the message.",
+    todo="Publish in the callback of the subscription, once, as its last line, outside the loop over the "
+    "joints. Look at each `return` and each `if` before it: the first message, a message without joints, "
+    "and one that changes nothing must be answered, too. Nothing else should publish: no timer, and not "
+    "the on-set callback of the parameter.",
     depends=[test_filters],
     rule="answer",
     partial=True,
@@ -83,6 +87,11 @@ def test_answers_each_message(default: Run) -> None:
 @check(
     points=12,
     hint="Compute the first messages of one joint by hand: smooth + gain * (position - smooth).",
+    todo="Take one joint and compute its first three messages by hand. For the first, smooth is the position "
+    "itself. For each further one, smooth moves from its former value towards the position, by half of "
+    "the way if the gain is 0.5. So the result of one message must be kept for the next, per joint, in a "
+    "dictionary that __init__ creates. If you keep the position that arrived instead, or mix up gain and "
+    "1 - gain, the values look plausible and are wrong.",
     depends=[test_filters],
     rule=("formula", "declared", "new_joint"),
     partial=True,
@@ -149,6 +158,10 @@ def test_gain_of_the_start(started: Run) -> None:
 @check(
     points=8,
     hint="Which gain does the formula use for the next message? Read the parameter for each one.",
+    todo="get_parameter('gain').value is the gain as it is now. Read it in the callback for each message, "
+    "rather than once in __init__. If you would rather keep it in an attribute, change that in a post-set "
+    "callback, when the new value counts: the on-set callback runs before it is set, and get_parameter() "
+    "still has the old one there. The smooth positions must stay when the gain changes.",
     depends=[test_filters_with_the_default],
     misconception="reads the gain once",
     rule=("changed", "keeps", "formula", "parameter", "node"),

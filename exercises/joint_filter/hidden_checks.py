@@ -59,6 +59,9 @@ def must_filter_by_its_own_gain(run: Run) -> None:
 @check(
     points=4,
     hint="Publish in the callback of the subscription, once, and nowhere else.",
+    todo="A message without joints is a message: its answer has the same header, and empty lists. And a change "
+    "of the gain is no message: publish nothing then, and do not answer the last message again. Look for "
+    "a return such as `if not message.name`, and for a publish() in a callback of the parameter.",
     depends=FILTERS,
     rule="answer",
 )
@@ -117,6 +120,11 @@ def test_gain_can_be_read(default: Run) -> None:
 @check(
     points=6,
     hint="Use a range in the descriptor, and an on-set callback that refuses 0.0.",
+    todo="The range of a FloatingPointRange includes both of its ends, so 0.0 passes it, and some values that "
+    "are no number may, too. Write the condition positively in the on-set callback: accept only if 0.0 < "
+    "value <= 1.0 is true, and refuse everything else. Every comparison with nan is false, so `value <= "
+    "0.0 or value > 1.0` lets it through. Look at the parameter's name first: the callback is called for "
+    "all parameters.",
     depends=FILTERS,
     misconception="takes every gain",
     rule=("refused", "node"),
@@ -129,6 +137,10 @@ def test_refuses_what_is_not_allowed(refused: Run) -> None:
 @check(
     points=4,
     hint="Refuse before anything changes.",
+    todo="The on-set callback is asked before anything is set. It may only say yes or no: if it stores the "
+    "value in an attribute first, or clamps it, a refused gain counts all the same. Read the gain with "
+    "get_parameter() where you use it, or store it in a post-set callback, which runs for accepted values "
+    "only.",
     depends=["test_refuses_what_is_not_allowed"],
     rule="unchanged",
 )
@@ -145,6 +157,10 @@ def test_goes_on_after_a_refusal(refused: Run) -> None:
 @check(
     points=4,
     hint="A parameter keeps the type of its default, unless the descriptor says otherwise.",
+    todo="declare_parameter('gain', 0.5) makes the parameter a double for good: rclpy itself then refuses 1, "
+    "'1' and True. It stops doing so if the descriptor has dynamic_typing=True, or if the parameter is "
+    "declared without a value. Do not convert with float() in the on-set callback: it makes something "
+    "allowed of what is not.",
     depends=FILTERS,
     rule=("refused", "node"),
 )
@@ -169,6 +185,9 @@ def test_refuses_with_a_reason(refused: Run) -> None:
 @check(
     points=5,
     hint="Remember positions by name, not by index in the list.",
+    todo="The same index is another joint in the next message. Use a dictionary from the joint's name to its "
+    "smooth position, and go through the message with zip(message.name, message.position). The answer has "
+    "the names and the positions in the order of this message, not in the order of the dictionary.",
     depends=FILTERS,
     misconception="joints by index",
     rule=("by_name", "formula"),
@@ -181,6 +200,10 @@ def test_joints_in_another_order(reordered: Run) -> None:
 @check(
     points=4,
     hint="Keep the smooth position of each joint, even when it is missing.",
+    todo="Keep one dictionary for the whole life of the node, and change only the entries of the joints that "
+    "are in the message. If you make a new dictionary for each message, a joint that is missing once is "
+    "forgotten, and starts anew when it returns. Do not let a missing joint move either, for example "
+    "towards 0.",
     depends=FILTERS,
     rule=("missing_joint", "formula"),
 )
@@ -192,6 +215,10 @@ def test_missing_joint(missing_joint: Run) -> None:
 @check(
     points=4,
     hint="A joint that you don't know yet starts at its position.",
+    todo="Ask the dictionary for each joint of each message, not only for those of the first message: a joint "
+    "may appear at any time. If it has no entry, its smooth position is the position that has just "
+    "arrived, not 0.0, and not the position of another joint. dict.get(name, position) does that in one "
+    "call.",
     depends=FILTERS,
     rule=("new_joint", "formula"),
 )

@@ -11,6 +11,10 @@ from grader.checking import Run, check
 @check(
     points=8,
     hint="What does the goal callback return for this goal? It must be GoalResponse.ACCEPT or GoalResponse.REJECT.",
+    todo="The goal callback gets the goal before anything runs, and returns GoalResponse.ACCEPT or "
+    "GoalResponse.REJECT. Compare its position with both limits, which are in rad, and both are allowed. "
+    "Returning True, or nothing, is neither of the two. If the goal is accepted but ends at once, look at "
+    "execute: between two steps it has to wait 0.1 s by the node's clock.",
     rule=("action", "accept"),
 )
 def test_accepts_a_goal(up: Run) -> None:
@@ -27,6 +31,10 @@ def test_accepts_a_goal(up: Run) -> None:
 @check(
     points=10,
     hint="When does the loop in execute end, and what does it call on the goal handle then?",
+    todo="execute goes on until the position is the goal, calls succeed() on its goal handle, and returns a "
+    "Result. After many steps of 0.05, the sum is rarely exactly the goal: limit the last step to what is "
+    "left, so that the two become equal, and the loop ends. Every way out of execute needs one of "
+    "succeed(), canceled() and abort() before its return. Without one, the goal counts as aborted.",
     depends=[test_accepts_a_goal],
     misconception="forgets succeed()",
     rule=("at_goal", "meanwhile"),
@@ -56,6 +64,9 @@ def test_feedback_after_each_step(up: Run) -> None:
 @check(
     points=6,
     hint="Return MoveJoint.Result(position=…).",
+    todo="What execute returns is the result, whatever way the goal ended. Make a MoveJoint.Result, set its "
+    "field position to the place where the joint is at that moment, and return it. A bare `return` or "
+    "Result() says 0.0. Do not return the goal's position: after a cancel the joint is somewhere else.",
     depends=[test_accepts_a_goal],
     rule=("at_goal", "last"),
 )
@@ -67,6 +78,11 @@ def test_result_is_the_position(up: Run) -> None:
 @check(
     points=12,
     hint="The cancel callback accepts. Before each step, check goal_handle.is_cancel_requested, and call canceled().",
+    todo="Two things have to work together. The cancel callback, an argument of ActionServer, returns "
+    "CancelResponse.ACCEPT; without it, every request is rejected. And execute looks at "
+    "goal_handle.is_cancel_requested after each wait and before the next step. If it is true, execute "
+    "calls canceled() and returns a Result, with no further step. Both can only run at once with a "
+    "MultiThreadedExecutor and a ReentrantCallbackGroup.",
     depends=[test_accepts_a_goal],
     misconception="cannot be canceled",
     rule=("cancel", "meanwhile"),

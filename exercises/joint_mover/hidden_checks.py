@@ -12,6 +12,10 @@ ACCEPTS, STEPS = ["test_accepts_a_goal"], ["test_feedback_after_each_step"]
 @check(
     points=5,
     hint="Keep the position in the node, not in the goal. A step can go down, too.",
+    todo="The joint exists once, so its position belongs to the node: set it in __init__, and let each step "
+    "change it. A local variable in execute that begins at 0.0 makes the joint jump back with each goal. "
+    "A goal may be lower than the position: then each step is -0.05, and a loop with `while position < "
+    "goal` never runs.",
     depends=STEPS,
     rule=("next", "feedback", "steps", "last", "start"),
 )
@@ -59,6 +63,10 @@ def test_reaches_the_limit(limits: Run) -> None:
 @check(
     points=5,
     hint="Compare with both limits in goal_callback.",
+    todo="Compare with both limits, and combine the two: a position is allowed if it is at least the lower and "
+    "at most the upper one. Log the goal and the answer in the goal callback. Without a goal_callback, "
+    "ActionServer accepts everything; and a goal that execute aborts was accepted before, which the "
+    "client sees.",
     depends=ACCEPTS,
     misconception="accepts every goal",
     rule="reject",
@@ -106,6 +114,10 @@ def test_goal_after_a_cancel(after_cancel: Run) -> None:
 @check(
     points=4,
     hint="A new goal makes the old one end. Call abort(), because nobody asked to cancel it.",
+    todo="Let the node remember which goal handle is the newest, for example in execute's first line. Each "
+    "execute compares it with its own before each step: if they differ, another goal has come, so it "
+    "calls abort() and returns a Result with the position. It is aborted, not canceled, because nobody "
+    "has asked for a cancel. Both executes must be able to run at once for this.",
     depends=ACCEPTS,
     misconception="two goals at once",
     rule=("replace", "meanwhile"),
@@ -131,6 +143,10 @@ def test_result_of_a_replaced_goal(replaced: Run) -> None:
 @check(
     points=5,
     hint="Only the newest goal may move the joint.",
+    todo="For a moment two executes run. The old one must not move the joint any more once the new one has "
+    "begun: check which goal is the newest just before each step, after the wait and not before it. Both "
+    "use the position of the node. Neither keeps a copy of it over a wait, or it takes back what the "
+    "other has done.",
     depends=["test_second_goal_aborts_the_first", *STEPS],
     rule=("one_moves", "next", "feedback", "steps", "last", "start"),
 )

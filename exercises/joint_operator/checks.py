@@ -42,6 +42,10 @@ def must_report_every_end(run: Run) -> None:
 @check(
     points=8,
     hint="Where is send_goal_async() called, and which position does the goal hold then?",
+    todo="An ActionClient(self, MoveJoint, '/move_joint') in __init__, a MoveJoint.Goal with the target as its "
+    "position, and send_goal_async(goal) are all that is needed. The target is the field data of the "
+    "message on /targets. Log it just before you send: does the line appear? If server_is_ready() is "
+    "false, keep the target, and let the timer try again. Do not use send_goal(), which waits.",
     rule=("targets", "action", "progress_topic", "outcomes_topic"),
 )
 def test_sends_a_goal(succeeds: Run) -> None:
@@ -70,6 +74,10 @@ def test_publishes_the_outcome(succeeds: Run) -> None:
 @check(
     points=8,
     hint="Which method gets the feedback, and which field of the message does it publish?",
+    todo="send_goal_async() takes a second argument, feedback_callback: a method that is called with each "
+    "feedback. Its message has the feedback inside: the position is message.feedback.position, because "
+    "message itself also says to which goal it belongs. Make a Float64 of it and publish at once, each "
+    "one, with no rounding and no comparison with the one before.",
     depends=[test_sends_a_goal],
     rule=("feedback", "never_wait"),
     partial=True,
@@ -82,6 +90,10 @@ def test_publishes_progress(succeeds: Run) -> None:
 @check(
     points=8,
     hint="Where do targets wait, which one is taken out next, and what sends it when a goal has ended?",
+    todo="Put each target at the end of a list, and take the next one from its front, pop(0) or "
+    "deque.popleft(). Something must send the next goal: call the method that sends in the callback of "
+    "/targets, and again when a goal has ended, in whatever way. If only the timer sends, targets wait "
+    "too long; if nothing but the callback of /targets sends, the last ones wait for ever.",
     depends=[test_sends_a_goal],
     misconception="loses targets",
     rule=("order", "one", "goal", "never_wait"),
@@ -94,6 +106,10 @@ def test_every_target_in_order(several: Run) -> None:
 @check(
     points=8,
     hint="How does your node know that a goal is under way, and when does it learn that it has ended?",
+    todo="Keep in an attribute whether a goal is under way. It becomes true when you call send_goal_async(), "
+    "not only when the server has accepted: a second target may arrive between the two. It becomes false "
+    "when the result has arrived or the goal was rejected, and nowhere else. After that, send the next "
+    "target at once.",
     depends=[test_sends_a_goal],
     misconception="several goals at once",
     rule=("one", "order", "never_wait"),

@@ -44,6 +44,9 @@ def test_repeated_and_zero_targets(again: Run) -> None:
 @check(
     points=7,
     hint="Look at goal_handle.accepted before you ask for a result. Then continue with the next target.",
+    todo="A rejected goal has a goal handle, too, with accepted == False. It has no result: who waits for it "
+    "waits for ever. So look at accepted first in the callback of send_goal_async(). If it is false, "
+    "publish rejected, note that no goal is under way, and send the next target, as after any other end.",
     depends=SENDS,
     misconception="ignores accepted",
     rule=("outcome", "never_wait"),
@@ -57,6 +60,11 @@ def test_rejected(rejects: Run) -> None:
 @check(
     points=7,
     hint="future.result().status says how the goal ended.",
+    todo="The result of get_result_async() has two parts: status says how the goal ended, result holds the "
+    "position. Compare status with the constants of action_msgs.msg.GoalStatus: STATUS_SUCCEEDED, "
+    "STATUS_ABORTED, STATUS_CANCELED. An aborted goal has a result as well, so the position says nothing "
+    "about its success. Publish one outcome, and continue with the next target; do not try the same one "
+    "again.",
     depends=OUTCOME,
     misconception="ignores the status",
     rule="status",
@@ -80,6 +88,10 @@ def test_server_that_answers_late(answers_late: Run) -> None:
 @check(
     points=6,
     hint="server_is_ready() says whether the server is there. Look again in the timer.",
+    todo="server_is_ready() answers at once. Before you send, ask it, and return if it is false; the target "
+    "stays in the list. A timer with a period of 0.1 s that calls the same method notices within 0.25 s "
+    "that the server is there. Do not use wait_for_server(): it waits in a callback, and in __init__ it "
+    "keeps the node from starting.",
     depends=SENDS,
     misconception="sends without a server",
     rule=("server", "never_wait"),
@@ -99,6 +111,10 @@ def test_server_appears_late(appears: Run) -> None:
 @check(
     points=7,
     hint="Remember when the goal was accepted, and check the time in the timer.",
+    todo="When the goal was accepted, keep its goal handle and the node's time in 5 s. In the timer, compare: "
+    "if the time has come, call cancel_goal_async() on the goal handle, and forget the time, so that it "
+    "is asked only once. Feedback changes nothing about the 5 s. When a goal ends, forget both, so that "
+    "they do not count for the next goal.",
     depends=SENDS,
     misconception="waits forever",
     rule=("cancel", "clock"),
@@ -112,6 +128,10 @@ def test_asks_to_cancel(never_ends: Run, refuses_to_cancel: Run) -> None:
 @check(
     points=4,
     hint="A canceled goal has a result, too, with its own status.",
+    todo="A request to cancel is only a request. The goal ends later, with a status of its own in the result, "
+    "and that is what to publish. So asking for a cancel must change nothing else: the goal is still "
+    "under way, its feedback still counts, and the next target waits until the result is there. The "
+    "status 5 is STATUS_CANCELED; the outcome is spelled with one l.",
     depends=["test_publishes_the_outcome", "test_asks_to_cancel"],
     rule=("wait_on", "status"),
 )
@@ -123,6 +143,10 @@ def test_canceled(never_ends: Run) -> None:
 @check(
     points=5,
     hint="The 5 s begin when the goal is accepted, and go by the node's clock.",
+    todo="The 5 s begin when the server accepts the goal, in the callback of send_goal_async(), not when the "
+    "target arrived or the goal was sent: the server may take a while. Use self.get_clock().now(), and "
+    "set the time anew for every goal: one that is left over from the goal before comes too early for "
+    "this one.",
     depends=SENDS,
     misconception="cancels too early",
     rule=("cancel", "clock"),

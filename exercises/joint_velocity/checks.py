@@ -14,6 +14,11 @@ from grader.checking import Run, check
     points=5,
     hint="Is publish() called in the callback of the subscription, with a JointState? Which numbers does velocity come "
     "from, and do they change from message to message?",
+    todo="The callback gets one message per call, so it must remember the one before: its stamp, and the "
+    "position of each joint by name. For each joint that is in both, subtract the two positions and "
+    "divide by the seconds between the two stamps. Put the names into name and the results into velocity "
+    "of a new JointState, and publish it at the end of the callback. Then remember this message for the "
+    "next call.",
     misconception="publishes zeros or a constant",
     rule=("input", "output"),
 )
@@ -92,6 +97,10 @@ def test_velocity_of_each_joint(chapter: Run) -> None:
 @check(
     points=5,
     hint="dt is not always 0.1 s. Take it from the stamps.",
+    todo="The time between two messages changes, so the number by which you divide must change with it. Make "
+    "one number of each stamp, seconds plus nanoseconds times 1e-9, and subtract the one before from this "
+    "one. Log both stamps and the difference for a few messages. A constant such as 0.1, the period of a "
+    "timer, or the mean of several is right only for a while.",
     depends=[test_velocity_of_each_joint],
     misconception="fixed dt",
     rule=("dt", "velocity", "before", "clock", "both_parts", "velocities"),

@@ -67,6 +67,9 @@ def test_speed_that_never_changes(steady: Run) -> None:
 @check(
     points=5,
     hint="A message may arrive late. Its stamp says when it was true, the clock only when it arrived.",
+    todo="A message takes time to arrive. Its stamp says when the positions were measured, and only that "
+    "matters for a velocity. Do not use self.get_clock().now() or the time at which the callback runs in "
+    "the formula: take both times from the headers of the two messages.",
     depends=VELOCITY,
     misconception="time of arrival for the stamp",
     rule=("dt", "velocity", "before", "clock", "both_parts", "velocities"),
@@ -102,6 +105,9 @@ def test_frame_is_copied(delayed: Run) -> None:
 @check(
     points=4,
     hint="Neither time.time() nor the node's clock: only the stamps tell the time.",
+    todo="Your node got the same messages twice, at another pace of the computer, and gave different answers. "
+    "Something in the formula comes from the computer: time.time(), time.monotonic(), datetime.now(), or "
+    "a random number. Take both times from the stamps of the two messages, and nothing else.",
     depends=PUBLISHES,
     misconception="wall clock",
     rule="clock",
@@ -120,6 +126,10 @@ def test_same_messages_same_answers(irregular: Run, irregular_again: Run) -> Non
 @check(
     points=5,
     hint="The stamps give the time since the last message that arrived.",
+    todo="A message that is lost is one that the callback never sees. Nothing has to be detected: the message "
+    "before is simply the last one that arrived, and its stamp is 0.2 s ago rather than 0.1 s. If your "
+    "velocities are twice too large there, the time is a constant. If an answer is missing, look for a "
+    "condition that expects a certain time between messages.",
     depends=VELOCITY,
     rule=("lost", "dt", "velocity", "before", "both_parts", "velocities"),
 )
@@ -132,6 +142,10 @@ def test_lost_messages(lossy: Run) -> None:
 @check(
     points=6,
     hint="Remember positions by name, not by index in the list.",
+    todo="position[0] may be the elbow now and the shoulder next time. Make a dictionary of each message, from "
+    "the joint's name to its position, with dict(zip(message.name, message.position)). Look up each joint "
+    "of this message in the dictionary of the message before. An index, or zip() over the positions of "
+    "two messages, compares different joints.",
     depends=VELOCITY,
     misconception="joints by index",
     rule=("by_name", "velocity"),
@@ -215,6 +229,9 @@ def test_remembers_what_it_does_not_answer(repeated_stamp: Run, backward_stamp: 
 @check(
     points=4,
     hint="Divide by the whole time, however long.",
+    todo="After 30 s without a message, the next one is handled as usual: the difference of the positions, "
+    "divided by 30 s. Look for a line that limits the time, such as min(dt, 1.0), for one that takes a "
+    "long time to be an error, and for one that forgets the joints after a while.",
     depends=VELOCITY,
     rule=("gap", "dt", "velocity", "before", "both_parts", "velocities"),
 )

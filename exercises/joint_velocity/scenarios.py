@@ -41,13 +41,16 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         {joint: (lambda t, speed=speed: speed * t) for joint, speed in speeds.items()} for speeds in (STEADY, TURNING)
     )
     ragged = moving(ARMS, uneven(0.02, 0.4, 20, seed))
+    # The last two come 2 ms apart: no gap is too short for a velocity.
+    times = uneven(0.05, 0.5, 13, seed)
+    times += (times[-1] + 0.002, times[-1] + 0.004)
     reframed = framed(ragged, 10, "torso")
     broken = placed(placed(swing, 6, ELBOW, math.nan), 12, "right_elbow", math.inf)
     broken = placed(broken, 15, "left_shoulder_roll", -math.inf)
     streams = {
         "chapter": ("the chapter's own publisher", arm_swing(10)),
         "irregular": ("messages at uneven times", ragged),
-        "steady": ("joints at one speed each, at uneven times", moving(steady, uneven(0.05, 0.5, 15, seed))),
+        "steady": ("joints at one speed each, at uneven times", moving(steady, times)),
         "irregular_again": ("the same messages at uneven times, once more", ragged),
         "delayed": ("messages later than their stamps say; the frame changes", late(reframed, 0.3, seed)),
         "lossy": ("one in three messages is lost", lost(arm_swing(3), 3, seed)),

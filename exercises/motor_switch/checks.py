@@ -52,6 +52,11 @@ def share(judge: Callable[[Run], None], run: Run) -> float:
 @check(
     points=6,
     hint="Create the service in __init__. Its callback fills in the response and returns it.",
+    todo="create_service(SetBool, '/switch_motors', self.on_request) in __init__ makes the service. Its "
+    "callback gets the request and an empty response. It fills in both fields, success and message, and "
+    "ends with `return response`, on each way through it: without that, the client gets no answer. The "
+    "topics need a publisher and a subscription in __init__, too. Try it: `ros2 service call "
+    '/switch_motors std_srvs/srv/SetBool "{data: true}"`.',
     rule=("service", "stop", "motors"),
     partial=True,
 )
@@ -67,6 +72,10 @@ def test_responds(switching: Run) -> None:
 @check(
     points=8,
     hint="response.success says whether the request was carried out.",
+    todo="success says whether the motors are now as the request wants them. A new response has success = "
+    "False, so set it to True on each way on which the request is carried out, also on that to switch "
+    "off, and if there was nothing to do. It is not the state of the motors: a request to switch off that "
+    "is carried out has success true.",
     depends=[test_responds],
     rule=("says", "request"),
     partial=True,
@@ -97,6 +106,10 @@ def test_message(switching: Run) -> None:
 @check(
     points=9,
     hint="Publish at the moment when the motors are switched.",
+    todo="Keep the state of the motors in one attribute, and change it in one method only. Let this method "
+    "publish the new state, right after the change. Then each change is published, whoever asked for it. "
+    "Make a new Bool with the new state as its data: if you publish before you change the attribute, it "
+    "is the old one.",
     depends=[test_responds],
     rule=("changes", "start", "request"),
     partial=True,
@@ -109,6 +122,10 @@ def test_publishes_each_change(switching: Run) -> None:
 @check(
     points=6,
     hint="Publish only if the motors were in the other state before.",
+    todo="Compare before you switch: if the motors already are as they should be, there is no change, and "
+    "nothing is published. Do that in the method that switches, so that it holds for requests and for the "
+    "emergency stop. Publish nothing in __init__ and nothing from a timer: nobody has switched anything "
+    "there.",
     depends=[test_responds],
     rule=("nothing_else", "start"),
 )
@@ -121,6 +138,9 @@ def test_publishes_nothing_else(switching: Run, already: Run) -> None:
 @check(
     points=6,
     hint="success is true in either case, and message is the state.",
+    todo="A request to switch on what is on already is no mistake. Answer as if the motors had just been "
+    "switched: success is true, and the message says how they are. The only difference is that nothing is "
+    "published. Look for an `if` that sets success to False, or that leaves the response empty.",
     depends=[test_responds],
     rule=("already", "says", "request"),
 )

@@ -35,6 +35,10 @@ def changes_between(run: Run, begin: float, end: float, value: bool) -> list[int
 @check(
     points=7,
     hint="Remember what the last message on /emergency_stop said.",
+    todo="The callback of /emergency_stop stores message.data in an attribute of the node, which __init__ sets "
+    "to False. The callback of the service looks at it: if the request is to switch on and the stop is "
+    "pressed, success is False, and it returns at once. `emergency = True` without self. is a local "
+    "variable, and is forgotten when the callback ends.",
     depends=RESPONDS,
     misconception="ignores the emergency stop",
     rule="emergency",
@@ -48,6 +52,9 @@ def test_refuses_in_an_emergency(emergency: Run) -> None:
 @check(
     points=6,
     hint="Refuse before you switch.",
+    todo="The order counts: first ask whether the request is allowed, and return the refusal if not. Only then "
+    "switch and publish. If your node switches first and looks at the emergency afterwards, it says no "
+    "and does it all the same, and everybody sees true on /motors_on.",
     depends=RESPONDS,
     rule="emergency",
 )
@@ -61,6 +68,9 @@ def test_motors_stay_off_in_an_emergency(emergency: Run) -> None:
 @check(
     points=4,
     hint="The message is 'emergency stop', word for word.",
+    todo="The response to a refused request has both fields set: success is False, and message is the text of "
+    "the task, in small letters, without a full stop. A new response has an empty message. Set it on the "
+    "same way on which you set success to False.",
     depends=["test_refuses_in_an_emergency"],
     rule="emergency",
 )
@@ -76,6 +86,9 @@ def test_says_why_it_refuses(emergency: Run) -> None:
 @check(
     points=4,
     hint="The emergency stop forbids one thing only.",
+    todo="Refuse on two conditions together: the stop is pressed, and the request is to switch on. A request "
+    "to switch off goes the usual way even in an emergency: success is true, the message says that the "
+    "motors are off, and nothing is published if they were off.",
     depends=RESPONDS,
     rule=("off_always", "already"),
 )
@@ -87,6 +100,9 @@ def test_off_is_always_allowed(emergency: Run) -> None:
 @check(
     points=8,
     hint="Switch the motors off in the callback of /emergency_stop.",
+    todo="The callback of /emergency_stop has two things to do when data is true: remember it, and switch the "
+    "motors off, through the same method as the service, which publishes the change if there is one. Do "
+    "it in this callback. A timer or a thread that looks at the attribute is too late.",
     depends=RESPONDS,
     misconception="the emergency stop changes nothing",
     rule=("pressed", "changes"),
@@ -101,6 +117,10 @@ def test_emergency_switches_off(emergency: Run) -> None:
 @check(
     points=6,
     hint="Releasing the emergency stop changes no motor. Afterwards, the motors may be switched on again.",
+    todo="When the stop is released, remember that, and do nothing else. Keep no wish: neither the state "
+    "before the emergency nor a request that was refused may be carried out now. Afterwards, a request to "
+    "switch on works as usual. If it is still refused, the attribute does not become False: look at how "
+    "the callback handles data == False.",
     depends=RESPONDS,
     rule=("released", "pressed", "changes"),
 )
@@ -117,6 +137,9 @@ def test_released(released: Run) -> None:
 @check(
     points=4,
     hint="The emergency stop is pressed, whether the motors were on or not.",
+    todo="Remember the stop in any case, before you look at the motors. If the attribute is only set inside an "
+    "`if` that asks whether the motors are on, a stop that is pressed while they are off is never "
+    "noticed, and the next request switches them on.",
     depends=RESPONDS,
     rule=("emergency", "released"),
 )
@@ -128,6 +151,9 @@ def test_pressed_while_off(pressed_while_off: Run) -> None:
 @check(
     points=5,
     hint="The last message counts, however many there were before.",
+    todo="Store what the message says, self.emergency = message.data, instead of counting presses, or turning "
+    "the attribute round with `not`. Two messages that say the same then have the same effect as one. The "
+    "motors are off already, so the second press publishes nothing.",
     depends=RESPONDS,
     rule=("twice", "emergency", "released", "changes"),
 )

@@ -33,6 +33,10 @@ def must_start_with(run: Run) -> None:
 @check(
     points=5,
     hint="Create the publisher in __init__, and publish what the parameter says.",
+    todo="In __init__: create the publisher, declare the parameter with the default of the task, and publish a "
+    "String whose data is the parameter's value. get_parameter('robot_description').value is the value "
+    "that counts, also if the node was started with another one. Declare before you get. No timer is "
+    "needed: the publisher is latched, and keeps the message for those who come later.",
     rule=("topic", "parameter"),
 )
 def test_publishes_the_description(started: Run, changed: Run) -> None:
@@ -51,6 +55,9 @@ def test_publishes_the_description(started: Run, changed: Run) -> None:
 @check(
     points=5,
     hint="What is published first, and when? Only the parameter's value, at the end of __init__.",
+    todo="Publish once at the end of __init__, when the publisher and the parameter are there. Nobody has "
+    "subscribed then, and nobody has to: a latched publisher keeps its last message. Do not wait for "
+    "subscribers, and do not begin with an empty or an invented text.",
     depends=[test_publishes_the_description],
     rule="start",
 )
@@ -95,6 +102,10 @@ def test_quality_of_service(late: Run) -> None:
 @check(
     points=4,
     hint="A latched topic needs no timer.",
+    todo="Find every line that publishes, and ask when it runs. A timer that publishes again and again fills "
+    "the log of everybody who listens. So does a callback that runs for every parameter, or a post-set "
+    "callback in addition to the on-set callback. Publish in __init__, and after a change, and nowhere "
+    "else.",
     depends=[test_publishes_the_description],
     misconception="again and again",
     rule="nothing_else",

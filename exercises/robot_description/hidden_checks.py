@@ -16,6 +16,11 @@ def squeezed(text: str) -> str:
 @check(
     points=5,
     hint="A post-set callback sees the new value; an on-set callback does not.",
+    todo="add_post_set_parameters_callback(self.on_changed) in __init__ has a method called after parameters "
+    "have been set, with a list of them. Look for the one with the right name, and publish its value, "
+    "parameter.value. In an on-set callback, get_parameter() still gives the former text, and the new one "
+    "may yet be refused by another callback. Publish it even if it was published once before, but not "
+    "twice in a row.",
     depends=PUBLISHES,
     misconception="publishes the former text",
     rule=("change", "node"),
@@ -84,6 +89,10 @@ def test_same_text_again(same: Run) -> None:
 @check(
     points=2,
     hint="Try to read the text as XML before you accept it.",
+    todo="Let the on-set callback read the text with ElementTree.fromstring(), inside try. If it raises "
+    "ElementTree.ParseError, the text is not XML: refuse it. If the tag of what it returns is anything "
+    "but robot, in these very letters, refuse it, too. Do not look for '<robot' in the text: a comment or "
+    "an XML declaration may come first, and the word may stand somewhere inside.",
     depends=PUBLISHES,
     misconception="takes every text",
     rule=("refused", "survives", "node"),
