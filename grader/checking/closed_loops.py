@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
+from collections.abc import Sequence
 
+from grader.checking.cause import UNKNOWN, Cause
+from grader.checking.hint_texts import hints
 from grader.checking.patterns import common
 from grader.checking.recorded_run import RecordedRun, seconds
 from grader.recording.recording import ReceivedMessage, SentMessage
@@ -18,6 +21,17 @@ TRUTH = "truth"
 
 #: (seconds after the start, values of the fields) of each message, in order.
 Way = list[tuple[float, tuple[float, ...]]]
+
+#: (seconds after the start, how far it is to the goal then, with its sign), in order: the goal minus the place.
+Errors = Sequence[tuple[float, float]]
+
+#: A command or an error this close to 0 has no sign that counts.
+SMALLEST = 1e-3
+
+#: This many commands, at least, tell that a sign is wrong.
+FEWEST = 3
+
+_SIGN = hints("wrong_sign")
 
 
 def trajectory(run: RecordedRun, topic: str, *fields: str) -> Way:
@@ -113,6 +127,38 @@ def must_estimate(run: RecordedRun, topic: str, fields: dict[str, str], rmse: fl
     run.wrong_at(None, text, "", expected, got, common(values, name, unit))
 
 
+def must_steer(run: RecordedRun, topic: str, field: str, errors: Errors) -> None:
+    """Check that each value of `field` on `topic` has the sign of the error at that time.
+
+    Example: `run.must_steer("/out", "data", [(0.0, 2.0)])`
+    """
+    cause = steers_away(run, topic, field, errors)
+    for at, error, value in _steering(run, topic, field, errors):
+        if error * value <= 0:
+            expected, got = "more than 0" if error > 0 else "less than 0", _measure(value, run.unit_of(field, topic))
+            text = f"expected {field} {expected}, because the goal is {error:+.3g} away; got {got}."
+            run.wrong_at(_ns(at), text, topic, expected, got, cause)
+
+
+def steers_away(run: RecordedRun, topic: str, field: str, errors: Errors) -> Cause:
+    """Explain that every value of `field` on `topic` leads away from the goal; UNKNOWN if not every one does.
+
+    Example: `run.steers_away("/out", "data", [(0.0, 2.0)])`
+    """
+    telling = [error * value for _, error, value in _steering(run, topic, field, errors) if abs(value) > SMALLEST]
+    if len(telling) < FEWEST or max(telling) > 0:
+        return UNKNOWN
+    return Cause(f"Every {field} leads away from the goal: it has the wrong sign.", *_SIGN)
+
+
+def _steering(run: RecordedRun, topic: str, field: str, errors: Errors) -> list[tuple[float, float, float]]:
+    """Return (seconds, error, value) of each command on `topic` that comes when there is an error."""
+    times = [at for at, _ in errors]
+    commands = [(at, value, bisect_right(times, at + 1e-9)) for at, (value,) in trajectory(run, topic, field)]
+    pairs = [(at, errors[known - 1][1], value) for at, value, known in commands if known]
+    return [(at, error, value) for at, error, value in pairs if abs(error) > SMALLEST]
+
+
 def _never_there(
     run: RecordedRun,
     way: Way,
@@ -155,14 +201,14 @@ def _beyond(
             run.wrong_at(_ns(at), f"it goes {got} beyond {words}; {expected} is allowed.", "", expected, got)
 
 
-def _of_way(way: Way, goal: tuple[float, ...]) -> str:
+def _of_way(way: Way, goal: tuple[float, ...]) -> str | Cause:
     """Return what is systematically wrong with a path that does not lead to the goal."""
     begin, end = way[0][1], way[-1][1]
     length = math.dist(begin, goal)
     if all(math.dist(point, begin) < 1e-6 for _, point in way):
         return "It never moved."
     if math.dist(end, goal) > length and min(math.dist(point, goal) for _, point in way) > 0.99 * length:
-        return "It moves away from there: is a sign wrong?"
+        return Cause("It only moves away from there, as with a wrong sign.", *_SIGN)
     last = [point for at, point in way if at >= way[-1][0] - 1.0]
     if len(last) > 1 and all(math.dist(point, end) < 1e-6 for point in last):
         return f"It stopped {math.dist(end, goal):.3g} away."

@@ -72,6 +72,8 @@ class Run(RecordedRun):
     must_reach = closed_loops.must_reach
     must_stay_between = closed_loops.must_stay_between
     must_estimate = closed_loops.must_estimate
+    must_steer = closed_loops.must_steer
+    steers_away = closed_loops.steers_away
 
     end_points = graph.end_points
     publishers = graph.publishers

@@ -268,7 +268,22 @@ def _of_stamps(stamps: Sequence[int], messages: Sequence[ReceivedMessage]) -> Ca
         return Cause(text, *_STAMP)
     if len(stamps) > 2 and len(set(stamps)) == 1:
         return Cause("Every stamp is the same.", *_STAMP)
-    return UNKNOWN
+    text = _common_to_stamps([divmod(stamp, SECOND) for stamp in stamps], [divmod(m.at, SECOND) for m in messages])
+    return Cause(text, *_STAMP) if text and len(stamps) > 2 else UNKNOWN
+
+
+def _common_to_stamps(stamps: list[tuple[int, int]], times: list[tuple[int, int]]) -> str:
+    """Say what is wrong with the same part of each stamp (s, ns); empty if nothing is."""
+    pairs = list(zip(stamps, times, strict=True))
+    for part, number in (("sec", 0), ("nanosec", 1)):
+        if not any(stamp[number] for stamp in stamps):
+            return f"{part} is 0 in every stamp."
+    for factor, unit in ((1_000, "microseconds"), (1_000_000, "milliseconds")):
+        if all(s[0] == t[0] and abs(factor * s[1] - t[1]) <= factor for s, t in pairs):
+            return f"Every nanosec is in {unit}."
+    early = {SECOND * (time[0] - stamp[0]) + time[1] - stamp[1] for stamp, time in pairs}
+    words = [f"{abs(by) / SECOND:.4g} s too {'early' if by > 0 else 'late'}" for by in early]
+    return f"Every stamp is {words[0]}." if len(words) == 1 else ""
 
 
 _STAMP = hints("stamp")

@@ -108,6 +108,9 @@ def test_a_gap_is_reported_with_its_beginning() -> None:
         ),
         ((1.7e9, 1.7e9 + 1, 1.7e9 + 2), "Every stamp is the computer's time. Take the time from the node's clock"),
         ((99.0, 99.0, 99.0), "Every stamp is the same."),
+        ((99.75, 99.85, 99.95), "Every stamp is 0.25 s too early."),
+        ((0.0, 0.1, 0.2), "sec is 0 in every stamp."),
+        ((100.0, 100.0001, 100.0002), "Every nanosec is in microseconds."),
     ],
 )
 def test_stamps(stamps: tuple[float, ...], message: str) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from made_up import moved, run, says
+from made_up import finding, moved, published, run, says
 
 from grader.recording import Recording
 
@@ -21,7 +21,10 @@ def test_a_right_way_passes() -> None:
     ("mine", "message"),
     [
         (moved(START, (1.0, 0.0, 0.0)), "the closest it got was 5. It never moved."),
-        (moved(START, (1.0, -4.0, -3.0)), "the closest it got was 5. It moves away from there: is a sign wrong?"),
+        (
+            moved(START, (1.0, -4.0, -3.0)),
+            "the closest it got was 5. It only moves away from there, as with a wrong sign.",
+        ),
         (
             moved(START, (1.0, 2.0, 1.5), (2.5, 2.0, 1.5), (3.0, 2.0, 1.5)),
             "the closest it got was 2.5. It stopped 2.5 away.",
@@ -43,6 +46,23 @@ def test_what_must_stay_between_two_values() -> None:
     run(RIGHT).must_stay_between("/pose", "x", 0.0, 4.05)
     message = says(lambda: run(RIGHT).must_stay_between("/pose", "x", 0.0, 4.0))
     assert message == "At 3.00 s (as usual), /pose: expected x from 0 to 4, got 4.05."
+
+
+@pytest.mark.parametrize(
+    ("gain", "message"),
+    [
+        (-1.0, "At 1.00 s (as usual), /out: expected data more than 0, because the goal is +4 away; got -4 m. "
+               "Every data leads away from the goal: it has the wrong sign."),
+        (0.0, "got 0 m."),
+    ],
+)  # fmt: skip
+def test_a_command_with_the_wrong_sign(gain: float, message: str) -> None:
+    errors = [(1.0, 4.0), (2.0, 2.0), (3.0, -1.0), (4.0, 0.0)]
+    right, wrong = (published((1.0, 2.0, 3.0, 4.0), [g * e for _, e in errors]) for g in (1.0, gain))
+    run(right).must_steer("/out", "data", errors)
+    found = finding(lambda: run(wrong).must_steer("/out", "data", errors))
+    assert found.text.endswith(message)
+    assert found.where.startswith("Look at the line that computes it") == (gain < 0)
 
 
 def test_a_topic_without_messages_is_the_authors_fault() -> None:
