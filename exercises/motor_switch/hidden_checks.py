@@ -60,7 +60,7 @@ def test_refuses_in_an_emergency(emergency: Run) -> None:
 )
 def test_motors_stay_off_in_an_emergency(emergency: Run) -> None:
     """In an emergency the motors do not go on."""
-    if on := changes_between(emergency, 1.0, 3.0, True):
+    if on := changes_between(emergency, 1.1, 3.0, True):
         text = "the motors went on, and the emergency stop is pressed: expected nothing."
         emergency.wrong_at(on[0], text, "", "nothing", "true")
 
@@ -84,7 +84,7 @@ def test_says_why_it_refuses(emergency: Run) -> None:
 
 
 @check(
-    points=4,
+    points=3,
     hint="The emergency stop forbids one thing only.",
     todo="Refuse on two conditions together: the stop is pressed, and the request is to switch on. A request "
     "to switch off goes the usual way even in an emergency: success is true, the message says that the "
@@ -98,7 +98,22 @@ def test_off_is_always_allowed(emergency: Run) -> None:
 
 
 @check(
-    points=8,
+    points=1,
+    hint="Which text does a request to switch off get while the stop is pressed? The motors are off then.",
+    depends=["test_message", "test_off_is_always_allowed"],
+    rule=("says", "off_always"),
+)
+def test_says_off_in_an_emergency(emergency: Run) -> None:
+    """A request to switch off gets the message “motors off”, even in an emergency."""
+    for call in emergency.calls():
+        got = call.response["message"] if call.response else "no response"
+        if not call.request["data"] and got != "motors off":
+            text = f"expected the message “motors off”, got “{got}”."
+            emergency.wrong_at(call.at, text, "request to switch off", "motors off", got)
+
+
+@check(
+    points=7,
     hint="Switch the motors off in the callback of /emergency_stop.",
     todo="The callback of /emergency_stop has two things to do when data is true: remember it, and switch the "
     "motors off, through the same method as the service, which publishes the change if there is one. Do "
@@ -115,7 +130,27 @@ def test_emergency_switches_off(emergency: Run) -> None:
 
 
 @check(
-    points=6,
+    points=2,
+    hint="Does the callback of /emergency_stop publish by itself, or only through the method that switches?",
+    depends=["test_publishes_nothing_else"],
+    rule=("changes", "nothing_else", "pressed"),
+)
+def test_publishes_changes_in_an_emergency(
+    emergency: Run, released: Run, pressed_while_off: Run, pressed_twice: Run
+) -> None:
+    """The emergency stop, too, publishes a change once, and nothing if nothing changes."""
+    for run in (emergency, released, pressed_while_off, pressed_twice):
+        before = None  # whether the motors are off at the start is another check's question
+        for message in run.messages_on(MOTORS):
+            if message.fields["data"] == before:
+                state, word = "on" if before else "off", str(before).lower()
+                text = f"{word} was published, and the motors were {state} already: expected nothing."
+                run.wrong_at(message.at, text, "", "nothing", word)
+            before = message.fields["data"]
+
+
+@check(
+    points=5,
     hint="Releasing the emergency stop changes no motor. Afterwards, the motors may be switched on again.",
     todo="When the stop is released, remember that, and do nothing else. Keep no wish: neither the state "
     "before the emergency nor a request that was refused may be carried out now. Afterwards, a request to "
@@ -151,7 +186,7 @@ def test_pressed_while_off(pressed_while_off: Run) -> None:
 @check(
     points=5,
     hint="The last message counts, however many there were before.",
-    todo="Store what the message says, self.emergency = message.data, instead of counting presses, or turning "
+    todo="Store what the message says, instead of counting presses, or turning "
     "the attribute round with `not`. Two messages that say the same then have the same effect as one. The "
     "motors are off already, so the second press publishes nothing.",
     depends=RESPONDS,

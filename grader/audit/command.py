@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from grader.audit.report import on, show, write_json
+from grader.audit.report import on, show, write_json, write_markdown
 from grader.audit.result import Audit, AuditProblem
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import COURSE, NoExercise, find, load
@@ -38,6 +38,11 @@ PROVED, TO_FIX, OUR_FAULT, STOPPED = 0, 1, 3, 130
 @click.option("--json", "json_", type=click.Path(path_type=Path), help="Write the report as JSON, for programs.")
 @click.option("--html", type=click.Path(path_type=Path), help="Write the report as an HTML page.")
 @click.option(
+    "--markdown",
+    type=click.Path(path_type=Path),
+    help="Write the rules of each task as Markdown tables: which mistakes break them, and what these cost.",
+)
+@click.option(
     "--show", "shown", metavar="NAME", help="Print the whole program of one usual mistake, and audit nothing."
 )
 @click.option("--parallel", type=click.IntRange(1, 64), help="How many runs at once.  [default: twice the cores]")
@@ -49,6 +54,7 @@ def audit(
     seeds: int | None,
     json_: Path | None,
     html: Path | None,
+    markdown: Path | None,
     shown: str | None,
     parallel: int | None,
 ) -> None:
@@ -77,7 +83,7 @@ def audit(
         _show_mistake(exercises, shown)
         return
     leave_cpus_to_workers()
-    for option, file in (("--json", json_), ("--html", html)):
+    for option, file in (("--json", json_), ("--html", html), ("--markdown", markdown)):
         _must_be_writable(option, file)
     if solutions and (quick or mutants is not None or seeds):
         raise click.UsageError("--solutions tries no mutants and no seeds: leave out --quick, --mutants and --seeds.")
@@ -89,6 +95,8 @@ def audit(
             audits = _Audits(options, workers, quick, 0 if solutions else mutants, 1 if solutions else seeds)
             audits.run([_folder(name) for name in exercises] or _all_here())
         audits.write(json_, html)
+        if markdown:
+            write_markdown(audits.results, markdown)
     sys.exit(PROVED if audits.nothing_to_fix else TO_FIX)
 
 

@@ -16,7 +16,7 @@ from rich.syntax import Syntax
 from rich.table import Table
 from rich.text import Text
 
-from grader.audit.result import Audit, AuditProblem, Fate, MutantResult
+from grader.audit.result import Audit, AuditProblem, Fate, MutantResult, RuleResult
 from grader.report.pages import render
 from grader.report.printable import printable
 from groundwork.files import write_if_changed
@@ -72,16 +72,44 @@ def _rules(audit: Audit) -> Table:
     for name in ("rule", "points", "mistake", "costs", "caught by"):
         table.add_column(name, justify="right" if name in ("points", "costs") else "left", overflow="fold")
     for rule in audit.rules:
-        first = (rule.id, f"{rule.points:g}")
-        for broken in rule.mistakes or [None]:
-            costs = f"{broken.lost:g}{'' if broken.judged else '*'}" if broken else ""
-            table.add_row(
-                *first, broken.name if broken else "none", costs, " ".join(broken.caught_by if broken else ())
-            )
-            first = ("", "")
-    table.caption = "* its program ends by itself, or does not have what every other check needs"
+        for row in _rows(rule, rule.id):
+            table.add_row(*row)
+    table.caption = f"* {_UNJUDGED}"
     table.caption_justify = "left"
     return table
+
+
+_UNJUDGED = "its program ends by itself, or does not have what every other check needs"
+
+
+def _rows(rule: RuleResult, name: str) -> Iterator[tuple[str, ...]]:
+    """Yield the rows of a rule, one per mistake: rule, points, mistake, costs and checks. The first has its `name`."""
+    if not rule.mistakes:
+        yield name, f"{rule.points:g}", "none", "", ""
+    for number, broken in enumerate(rule.mistakes):
+        first = ("", "") if number else (name, f"{rule.points:g}")
+        yield *first, broken.name, f"{broken.lost:g}{'' if broken.judged else '*'}", " ".join(broken.caught_by)
+
+
+def write_markdown(audits: list[Audit], file: Path) -> None:
+    """Write the rules of each task as a table: the mistakes that break them, what these cost, and what catches them."""
+    write_if_changed(file, "\n".join(line for audit in audits for line in _markdown(audit)))
+
+
+def _markdown(audit: Audit) -> Iterator[str]:
+    yield f"## {audit.title} ({audit.exercise})\n"
+    right = [program.score for program in audit.programs if program.kind in ("solution", "right")]
+    baselines = ", ".join(f"{p.title} {p.score:g}" for p in audit.programs if p.kind == "baseline")
+    yield f"{len(right)} right solutions: at least {min(right):g} points. Without any work: {baselines}."
+    if audit.mutants:
+        yield f"Mutants: {_score(audit)}."
+    yield f"A `*` marks a mistake that can't be judged: {_UNJUDGED}.\n"
+    yield "| rule | points | mistake | costs | caught by |\n| --- | ---: | --- | ---: | --- |"
+    for rule in audit.rules:
+        name = f"**{rule.id}**: {rule.text}".replace("|", "\\|")
+        for row in _rows(rule, name):
+            yield f"| {' | '.join(row)} |"
+    yield ""
 
 
 def _checks(audit: Audit) -> Table:

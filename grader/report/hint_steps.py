@@ -7,6 +7,7 @@ and how many steps were shown of each check, ever. Counts go into the upload if 
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
     from grader.grading.grade import Grade
 
 FILE = Path(".spinbook") / "hints.json"
+
+#: The last line of a program from an exercise's page: see browser/static/exercise.js.
+_IN_PAGE = re.compile(r"^# Hints shown in the page: (\{.{0,10000}\})$", re.MULTILINE)
 
 
 def last_hints(grade: Grade) -> dict[str, Any]:
@@ -52,8 +56,21 @@ def next_hint(exercise: Exercise, folder: Path) -> str:
 
 def taken(exercise: Exercise, folder: Path) -> dict[str, int]:
     """Return how many steps of further hints were shown of each check, by its title."""
-    counts = _read(folder).get(exercise.name, {}).get("taken", {})
-    return {str(check): int(steps) for check, steps in counts.items()} if isinstance(counts, dict) else {}
+    return _counts(_read(folder).get(exercise.name, {}).get("taken", {}))
+
+
+def taken_in_page(source: str) -> dict[str, int]:
+    """Return what the last line of a program says that was downloaded from an exercise's page: the same as `taken`."""
+    line = _IN_PAGE.search(source)
+    try:
+        return _counts(json.loads(line[1]) if line else {})
+    except ValueError:
+        return {}
+
+
+def _counts(entries: Any) -> dict[str, int]:
+    pairs = entries.items() if isinstance(entries, dict) else ()
+    return {str(check): steps for check, steps in pairs if isinstance(steps, int)}
 
 
 def _read(folder: Path) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from grader.exercise.starter import starter
 from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
 from grader.grading.reference import versions
-from grader.report.hint_steps import taken
+from grader.report.hint_steps import taken, taken_in_page
 from grader.sandbox.program import SandboxUnavailable
 from grader.submission.file_kinds import can_be_read, kind_of
 from grader.submission.reader import NoSubmission, Submission, read
@@ -160,7 +160,7 @@ def write_upload(hand_in: HandIn, target: Path) -> None:
         "self_check": hand_in.check.record,
     }
     if exercise.count_hints:
-        record["hints"] = taken(exercise, Path.cwd())
+        record["hints"] = taken(exercise, Path.cwd()) | taken_in_page(program.source)
     write_if_changed(target, pack(record, files))
 
 

@@ -183,13 +183,14 @@ def shown(exercise: Exercise, judged: Any, hidden: dict[str, Any]) -> dict[str, 
         "log": judged.log.strip()[-4000:],
         "hidden": hidden,
         "rows": [_row(check, exercise, judged.recordings) for check in checks],
+        "counts_hints": exercise.count_hints,
         "plot": plot,
         "plot_says": plot_says(checks, plot) if plot else "",
     }
 
 
 def _row(check: ShownCheck, exercise: Exercise, recordings: Mapping[str, Recording]) -> dict[str, Any]:
-    """Return a check in the page's form. A page does not count hints: then they are only in the notebook."""
+    """Return a check in the page's form."""
     from grader.report.facts import facts
 
     table, remark = facts(check.finding, recordings, exercise.element_name) if check.finding else ((), "")
@@ -200,6 +201,6 @@ def _row(check: ShownCheck, exercise: Exercise, recordings: Mapping[str, Recordi
         "points": check.points,
         "text": remark,
         "facts": table,
-        "hints": () if exercise.count_hints else check.labelled_hints,
+        "hints": check.labelled_hints,
         "note": check.note,
     }

@@ -10,7 +10,34 @@ import { tellUpdate } from "./update.js";
 const LIMIT_S = 120;
 const SIGNS = { passed: "✓", failed: "✗", blocked: "–", error: "!", untested: "○" };
 
+// The last line of a downloaded program whose exercise counts hints. grader/report/hint_steps.py reads it.
+const TAKEN = /\n# Hints shown in the page: \{.*\}\n$/;
+
 let process = null;
+
+// Return how many steps of hints were shown of each check of an exercise, by its title.
+function taken(exercise) {
+  try {
+    return JSON.parse(localStorage.getItem(`hints:${exercise}`)) ?? {};
+  } catch {
+    return {};
+  }
+}
+
+function count(exercise, check, steps) {
+  const counts = taken(exercise);
+  counts[check] = Math.max(counts[check] ?? 0, steps);
+  try {
+    localStorage.setItem(`hints:${exercise}`, JSON.stringify(counts));
+  } catch {
+    // A browser that stores nothing counts nothing.
+  }
+}
+
+function withCounts(text, exercise) {
+  const counts = JSON.stringify(taken(exercise));
+  return counts === "{}" ? text : `${text.replace(TAKEN, "")}\n# Hints shown in the page: ${counts}\n`;
+}
 
 // Return the process that checks. There is one per page, until it has to be ended.
 function checker(hears) {
@@ -37,8 +64,11 @@ async function check(exercise, source, say) {
   return { problem: `The check did not finish within ${LIMIT_S} s. Is there a loop in your program that never ends?` };
 }
 
-function row(check) {
+// `shown` hears of each hint that is unfolded: the check's title, and which step it is, from 1.
+function row(check, shown) {
   const { status, title, earned, points, text, facts, hints, note } = check;
+  const steps = hints.map(([label, hint]) => folded(label, false, element("p", { textContent: hint })));
+  steps.forEach((step, i) => step.addEventListener("toggle", () => step.open && shown(title, i + 1)));
   return element(
     "li",
     { className: `check-${status}` },
@@ -47,7 +77,7 @@ function row(check) {
     element("span", { className: "check-points", textContent: `${earned} of ${points}` }),
     ...(text ? [element("p", { textContent: text })] : []),
     ...(facts.length ? [table(facts)] : []),
-    ...hints.map(([label, hint]) => folded(label, false, element("p", { textContent: hint }))),
+    ...steps,
     ...(note ? [element("p", { className: "check-note", textContent: note })] : []),
   );
 }
@@ -70,18 +100,20 @@ function plotted({ plot, plot_says: words, full }) {
   return folded(words, !full, figure);
 }
 
-function panel(result) {
+function panel(result, exercise) {
   if (result.problem) return [element("p", { className: "check-message", textContent: result.problem })];
   const { checks, points } = result.hidden;
   const later = checks ? `${checks} hidden check${checks > 1 ? "s" : ""} (${points} points) will be judged after you hand in. ` : "";
+  const shown = result.counts_hints ? (title, steps) => count(exercise, title, steps) : () => {};
+  const counted = result.counts_hints ? "Each hint that you unfold is counted. " : "";
   return [
     element("p", { className: "check-total", textContent: result.total }),
     ...(result.message ? [element("p", { className: "check-message", textContent: result.message })] : []),
     ...(result.step ? [element("p", { textContent: result.step })] : []),
     ...(result.log ? [folded("What your program printed", Boolean(result.message), element("pre", { textContent: result.log, tabIndex: 0 }))] : []),
-    element("ul", {}, ...result.rows.map(row)),
+    element("ul", {}, ...result.rows.map((check) => row(check, shown))),
     ...(result.plot ? [plotted(result)] : []),
-    element("p", { textContent: `${later}This is a preview, not your grade: the grade is the grader's.` }),
+    element("p", { textContent: `${counted}${later}This is a preview, not your grade: the grade is the grader's.` }),
   ];
 }
 
@@ -121,7 +153,7 @@ function opening(section) {
       await load(say);
       const checked = await check(name, editor.text, say);
       say("");
-      result.replaceChildren(...panel(checked));
+      result.replaceChildren(...panel(checked, name));
       show(result);
       announce(checked.problem ?? checked.total);
     } catch (error) {
@@ -156,7 +188,7 @@ function opening(section) {
     "div",
     { className: "check-tools" },
     checking,
-    button("Download", `Download your ${file}`, () => save(file, editor.text)),
+    button("Download", `Download your ${file}`, () => save(file, withCounts(editor.text, name))),
     button("Upload", "Continue with a file of yours", () => upload.click()),
     buttons,
     upload,

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from quiet_audit import Auditing
 from small_exercise import SmallExercise
 
+from grader.audit.report import write_markdown
 from grader.audit.result import Audit
 from grader.exercise.rules import named_by, rules_of
 
@@ -67,8 +70,11 @@ def test_a_rule_is_named_by_its_id_or_by_words() -> None:
     assert named_by("Publish nothing on `/clock`", rules) == ()
 
 
-def test_each_rule_has_its_points_and_what_breaks_it_costs(marked: SmallExercise, audited: Auditing) -> None:
-    rules = {rule.id: rule for rule in fully(audited, marked).rules}
+def test_each_rule_has_its_points_and_what_breaks_it_costs(
+    marked: SmallExercise, audited: Auditing, tmp_path: Path
+) -> None:
+    audit = fully(audited, marked)
+    rules = {rule.id: rule for rule in audit.rules}
     assert (rules["twice"].points, rules["twice"].checks) == (5, ("test_publishes", "test_twice_the_number"))
     assert [mistake.name for mistake in rules["twice"].mistakes] == ["adds_two", "says_nothing"]
     adds_two, says_nothing = rules["twice"].mistakes
@@ -77,6 +83,11 @@ def test_each_rule_has_its_points_and_what_breaks_it_costs(marked: SmallExercise
     # One of its four numbers is 2, so half of them or fewer are right, and the sign can't be judged.
     assert (adds_two.lost, adds_two.score) == (4, 6)
     assert not says_nothing.judged, "everything depends on the check that it fails"
+
+    write_markdown([audit], tmp_path / "rules.md")
+    rows = [[cell.strip() for cell in line.split(" | ")] for line in (tmp_path / "rules.md").read_text().split("\n")]
+    number = rows.index(["| **twice**: " + rules["twice"].text, "5", "adds_two", "4", "test_twice_the_number |"])
+    assert rows[number + 1][2:4] == ["says_nothing", "10*"]
 
 
 def test_rules_that_nobody_checks_or_breaks_twice(marked: SmallExercise, audited: Auditing) -> None:

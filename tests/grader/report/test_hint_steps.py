@@ -11,7 +11,7 @@ import pytest
 from grader.checking.verdict import Finding, Verdict
 from grader.exercise import Exercise, load
 from grader.grading.grade import Grade
-from grader.report.hint_steps import FILE, last_hints, next_hint, remember, taken
+from grader.report.hint_steps import FILE, last_hints, next_hint, remember, taken, taken_in_page
 
 ROOT = Path(__file__).parents[3]
 
@@ -68,3 +68,9 @@ def test_a_file_that_somebody_changed_does_no_harm(exercise: Exercise, tmp_path:
 
     assert taken(exercise, tmp_path) == {}
     assert next_hint(exercise, tmp_path)
+
+
+def test_a_program_from_a_page_says_which_hints_were_shown_there() -> None:
+    assert taken_in_page('main()\n\n# Hints shown in the page: {"It answers.":2}\n') == {"It answers.": 2}
+    assert taken_in_page('# Hints shown in the page: {"It answers.":"many"}\n') == {}
+    assert taken_in_page("# Hints shown in the page: {it answers}\n") == {}

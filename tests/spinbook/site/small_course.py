@@ -236,6 +236,8 @@ def write_course(root: Path) -> SmallCourse:
         shutil.copytree(ROOT / folder / "joint_velocity", root / folder / "joint_velocity")
     with (root / "exercises" / "joint_velocity" / "task.md").open("a", encoding="utf-8") as task:
         task.write("\n<!-- NOTE_OF_THE_TASK: most forget rule 5. -->\n")
+    declaration = root / "exercises" / "joint_velocity" / "exercise.toml"
+    declaration.write_text(declaration.read_text().replace("points = 100\n", "points = 100\ncount_hints = true\n"))
     return SmallCourse(root)
 
 

@@ -11,6 +11,7 @@ from small_course import SmallCourse
 
 from grader.exercise import load
 from grader.exercise.mistakes import mistake_of
+from grader.report.hint_steps import taken_in_page
 from spinbook.browser.files import can_run
 
 pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
@@ -156,6 +157,9 @@ def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str, tmp_
         for part in ("expected", "0.10 s after the start (message 2 of 100)", "Where to look", "What to do"):
             expect(failed).to_contain_text(part)
         expect(page.locator(".check-plot svg")).to_contain_text("first wrong")
+        expect(page.locator(".check-result")).to_contain_text("Each hint that you unfold is counted.")
+        failed.get_by_text("Where to look").click()
+        expect(failed.get_by_text("Which line turns")).to_be_visible()
         assert shown.violations() == []
         assert not shown.scrolls_sideways()
         check(solutions / "right" / "several_threads.py", "9 of 9 public checks, 37 of 37 points")
@@ -165,7 +169,10 @@ def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str, tmp_
         with page.expect_download() as download:
             page.get_by_role("button", name="Download your joint_velocity.py").click()
         assert download.value.suggested_filename == "joint_velocity.py"
-        assert Path(download.value.path()).read_text() == (solutions / "solution.py").read_text()
+        downloaded = Path(download.value.path()).read_text()
+        assert downloaded.startswith((solutions / "solution.py").read_text())
+        title = "Each joint's velocity is its change of position over the time between the two stamps."
+        assert taken_in_page(downloaded) == {title: 1}
 
         page.reload()
         page.get_by_role("button", name="Edit and check the starter here").click()
