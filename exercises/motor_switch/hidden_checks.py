@@ -181,6 +181,9 @@ def test_released(released: Run) -> None:
 def test_pressed_while_off(pressed_while_off: Run) -> None:
     """An emergency stop while the motors are off prevents switching them on, until it is released."""
     pressed_while_off.must_match_responses("success")
+    if early := changes_between(pressed_while_off, 1.4, 1.9, True):
+        text = "the motors went on when the emergency stop was released, and the request had been refused."
+        pressed_while_off.wrong_at(early[0], f"{text} Expected nothing.", "", "nothing", "true")
 
 
 @check(
