@@ -35,8 +35,8 @@ def must_be_between(run: Run) -> None:
         for name, position in exchange.sent.by("name", "position").items():
             arrived.setdefault(name, []).append(position)
         for answer in exchange.answers[:1]:
-            for name, got in zip(exchange.sent.name, answer.position, strict=False):
-                lowest, highest = min(arrived[name]), max(arrived[name])
+            for name, got in zip(answer.name or exchange.sent.name, answer.position, strict=False):
+                lowest, highest = min(arrived.get(name, [got])), max(arrived.get(name, [got]))
                 if not lowest - TOLERANCE <= got <= highest + TOLERANCE:
                     between = f"{lowest:.3f} to {highest:.3f} rad"
                     text = f"a smooth position is between those that arrived, {between}; got {got:.3f} rad."

@@ -52,6 +52,8 @@ def must_filter_by_its_own_gain(run: Run) -> None:
                     text = f"expected position {smooth[name]:.6g} rad, got "
                     text += f"{got[name]:.6g} rad." if name in got else "none."
                     run.wrong(exchange, text, name, f"{smooth[name]:.6g} rad", f"{got.get(name, 'none')}")
+            for name in set(got) - set(exchange.sent.name):
+                run.wrong(exchange, "the joint is not in the message, so none was expected.", name, "none", got[name])
 
     each(itertools.islice(run, first - 1, None), judge)
 
@@ -97,13 +99,14 @@ def test_header_of_late_messages(delayed: Run) -> None:
 
 @check(
     points=3,
-    hint="A gain of 1.0 is allowed.",
+    hint="Everything that is more than 0.0 and at most 1.0 is allowed.",
     depends=FILTERS,
     rule=("parameter", "changed", "node"),
 )
 def test_gain_of_one(after_refusal: Run) -> None:
-    """A gain of exactly 1.0 is accepted."""
+    """A gain of exactly 1.0 is accepted, and one of 0.01."""
     after_refusal.must_take("gain", 1.0)
+    after_refusal.must_take("gain", 0.01)
 
 
 @check(

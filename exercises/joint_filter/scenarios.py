@@ -40,13 +40,13 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         "refused": ("gains that are not allowed", (stream, *refused), {}),
         "other_types": ("gains of another type", (stream, *types), {}),
         "after_refusal": (
-            "a gain that is not allowed, then one that is",
-            (stream, gain(2.0, 0.65), gain(1.0, 1.05), read(1.95)),
+            "a gain that is not allowed, then two that are",
+            (stream, gain(2.0, 0.65), gain(1.0, 1.05), gain(0.01, 1.55), read(1.95)),
             {},
         ),
         "reordered": ("the joints in another order in each message", (published(shuffled(swing, seed)),), {}),
         "missing_joint": ("a joint that goes away and comes back", (published(without(swing, ELBOW, 7, 11)),), {}),
-        "empty": ("a message without joints", (published(emptied(swing, 9)),), {}),
+        "empty": ("two messages without joints", (published(emptied(emptied(swing, 9), 10)),), {}),
         "delayed": (
             "messages later than their stamps say; the frame changes",
             (published(late(framed(swing, 10, "torso"), 0.3, seed)),),

@@ -117,7 +117,7 @@ def test_publishes_once(late: Run) -> None:
 
 
 @check(
-    points=5,
+    points=4,
     hint="Is the published text the parameter's value, or the default?",
     todo="The default counts only if nobody gives another text. Declare the parameter with its default, and then "
     "ask for its value: self.get_parameter('robot_description').value. A Parameter itself is not the text, "

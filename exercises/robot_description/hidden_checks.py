@@ -13,8 +13,21 @@ def squeezed(text: str) -> str:
     return "".join(text.split())
 
 
+def must_publish_each_change(run: Run) -> None:
+    """Fail unless each text that is set is taken, and published once within 0.1 s."""
+    run.must_take(PARAMETER)
+    for change in run.recording.parameters:
+        soon = [m for m in run.messages_on() if change.at <= m.at <= change.at + 110_000_000]
+        texts = [squeezed(message.fields["data"]) for message in soon]
+        if texts != [squeezed(change.value)]:
+            got = soon[0].fields["data"] if soon else "nothing"
+            text = "the new text was expected within 0.1 s, once, got "
+            text += f"{len(soon)} messages." if len(soon) > 1 else "another text." if soon else "nothing."
+            run.wrong_at(change.at, text, "", change.value, got)
+
+
 @check(
-    points=5,
+    points=4,
     hint="A post-set callback sees the new value; an on-set callback does not.",
     todo="add_post_set_parameters_callback(self.on_changed) in __init__ has a method called after parameters "
     "have been set, with a list of them. Look for the one with the right name, and publish its value, "
@@ -27,15 +40,23 @@ def squeezed(text: str) -> str:
 )
 def test_description_that_changes(changed: Run) -> None:
     """When the parameter changes, the new description is published, once."""
-    changed.must_take(PARAMETER)
-    for change in changed.recording.parameters:
-        soon = [m for m in changed.messages_on() if change.at <= m.at <= change.at + 110_000_000]
-        texts = [squeezed(message.fields["data"]) for message in soon]
-        if texts != [squeezed(change.value)]:
-            got = soon[0].fields["data"] if soon else "nothing"
-            text = "the new text was expected within 0.1 s, once, got "
-            text += f"{len(soon)} messages." if len(soon) > 1 else "another text." if soon else "nothing."
-            changed.wrong_at(change.at, text, "", change.value, got)
+    must_publish_each_change(changed)
+
+
+@check(
+    points=2,
+    hint="With what is a new text compared, and how? Only the text that is there now counts, letter by letter.",
+    todo="Set these texts one after the other and watch /robot_description: one text, the same with a line break "
+    "at its end, the first one again, and `<robot/>`. Each is a new text, and each is valid. Compare with "
+    "== and with the current text alone, not with a set of all that were published, and not after strip() or "
+    "split(). Refuse only what the task refuses: a robot needs neither a name nor links. Publish the whole "
+    "text, however long.",
+    depends=["test_description_that_changes"],
+    rule=("change", "as_it_is", "refused"),
+)
+def test_every_change_counts(little: Run) -> None:
+    """A text that differs in a line break only, that was there before, or that is short or long, is a new text, too."""
+    must_publish_each_change(little)
 
 
 @check(

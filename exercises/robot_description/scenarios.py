@@ -8,13 +8,13 @@ from grader.scenario.scenario import Content
 TOPIC = NAME = "/robot_description"
 PARAMETER = "robot_description"
 
-#: A text with line breaks, an empty line, spaces, quotes and letters that are not English.
+#: A text with line breaks, an empty line, spaces, a tab, quotes and letters that are not English.
 ARM = """<?xml version="1.0"?>
 <robot name="right-arm">
   <link name="upper_arm"/>
   <!-- Länge: 0.3 m -->
 
-  <link name="forearm"/>
+  <link name="forearm"/>\t
   <joint name='elbow' type="revolute">
     <parent link="upper_arm"/>
     <child link="forearm"/>
@@ -22,6 +22,8 @@ ARM = """<?xml version="1.0"?>
 </robot>
 """
 LEG = '<robot name="leg"><link name="shin"/></robot>'
+CALF = f"{LEG}\n"  # the same but for a line break
+CENTIPEDE = "".join(("<robot>", *(f'<link name="leg_{n}"/>' for n in range(500)), "</robot>"))
 BAD = ("", "robot", "<robot", '<robot name="leg">', "<robots/>", "<ROBOT/>", "<model><robot/></model>")
 
 
@@ -47,6 +49,11 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         "changed": (
             "the description changes twice",
             (written(ARM, 0.55), written(LEG, 1.25), late(0.8, 1.6), read),
+            {},
+        ),
+        "little": (
+            "a text that differs in a line break only, one that was there before, a short one and a long one",
+            tuple(written(text, 0.5 + 0.4 * n) for n, text in enumerate((LEG, CALF, LEG, "<robot/>", CENTIPEDE))),
             {},
         ),
         "same": ("the description is set to what it is", (written(LEG, 0.5, 1.0, 1.5), late(2.0)), {}),

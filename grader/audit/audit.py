@@ -246,7 +246,8 @@ def audit(
     results = tuple(judged(program, tried.programs[program.name]) for program in programs)
     rules: tuple[RuleResult, ...] = ()
     if not quick:
-        edits = mistakes_of(exercise)
+        # The author may have written another mistake since the audit began.
+        edits = tuple(m for m in mistakes_of(exercise) if f"mistakes/{m.name}" in tried.programs)
         rules = rule_results(exercise, checks, edits, {m.name: tried.programs[f"mistakes/{m.name}"] for m in edits})
         problems += problems_of_rules(exercise, rules, edits, results)
 

@@ -26,6 +26,7 @@ def observed(exercise: Exercise, recording: Recording, reference: Recording) -> 
         _lifecycle,
         _int_as_float,
         _without_names,
+        _never_filled,
         _only_zeros,
         _only_false,
     )
@@ -99,6 +100,16 @@ def _without_names(exercise: Exercise, recording: Recording, reference: Recordin
                     f"{elements.called} each {field} belongs to.",
                     *hints("without_names", names=elements.named_by, field=field, element=elements.called),
                 )
+    return UNKNOWN
+
+
+def _never_filled(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    for topic in exercise.outputs:
+        for field in topic.units:
+            mine, its = (_lengths(run, topic, field) for run in (recording, reference))
+            if mine and not any(length for (length,) in mine) and any(length for (length,) in its):
+                seen = f"{field} is empty in every message on {topic.name}."
+                return Cause(seen, *hints("never_filled", field=field))
     return UNKNOWN
 
 

@@ -54,11 +54,13 @@ def test_values_without_names_are_not_called_missing() -> None:
     out = Topic("/out", FLOAT, "publish", units={"speed": "m/s"}, elements=Elements("wheel", "name"))
     exercise = replace(EXERCISE, topics=(EXERCISE.topics[0], out))
 
-    def robot(names: list[str]) -> Recording:
-        fields = {"name": names, "speed": [1.0, 2.0]}
+    def robot(names: list[str], speeds: tuple[float, ...] = (1.0, 2.0)) -> Recording:
+        fields = {"name": names, "speed": [*speeds]}
         return replace(EMPTY, received=(ReceivedMessage(ns(0.1), 0, "/out", FLOAT, fields),))
 
-    found = finding(lambda: run(robot([]), robot(["left", "right"]), exercise).must_match_series("name"))
+    wrong, right = run(robot(["left"], ()), robot(["left"]), exercise), robot(["left", "right"])
+    assert finding(lambda: wrong.must_match_series("speed")).cause == "speed is empty in every message on /out."
+    found = finding(lambda: run(robot([]), right, exercise).must_match_series("name"))
 
     assert found.cause == ("name is empty in every message on /out: nobody can know which wheel each speed belongs to.")
 
