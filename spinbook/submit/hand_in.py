@@ -160,7 +160,7 @@ def write_upload(hand_in: HandIn, target: Path) -> None:
         "self_check": hand_in.check.record,
     }
     if exercise.count_hints:
-        record["hints"] = taken(exercise, Path.cwd()) | taken_in_page(program.source)
+        record["hints"] = taken(exercise, Path.cwd()) | taken_in_page(hand_in.work.submission.source)
     write_if_changed(target, pack(record, files))
 
 

@@ -64,6 +64,16 @@ def test_a_file_is_checked_handed_in_and_read_again(folder: Path) -> None:
     assert (submission.source, submission.warning) == (SOLUTION, "")
 
 
+def test_hints_are_counted_if_the_exercise_says_so(folder: Path) -> None:
+    declaration = Path("exercises/joint_velocity/exercise.toml")
+    Path("joint_velocity.py").write_text(f'{SOLUTION}\n# Hints shown in the page: {{"It answers.":2}}\n')
+    assert submitted("--no-check").exit_code == 0
+    assert "hints" not in upload().record
+    declaration.write_text(declaration.read_text().replace("points = 100\n", "points = 100\ncount_hints = true\n"))
+    assert submitted("--no-check").exit_code == 0
+    assert upload().record["hints"] == {"It answers.": 2}
+
+
 def test_a_notebook_is_handed_in_with_its_cell_and_as_a_whole(folder: Path) -> None:
     write_notebook("week3.ipynb", SOLUTION)
     assert submitted("--no-check").exit_code == 0
