@@ -257,7 +257,8 @@ def _how(cell: ChapterCell) -> str:
     """Return the options that say how a node's code is started and completed."""
     words = [f"--class {name}" for name in cell.spin_classes]
     words += ["--main"] if cell.runs_main else []
-    words += ["--keep"] if cell.keeps else []
+    words += ["--keep"] if cell.keeps and not cell.shown_in else []
+    words += [f"--of {shlex.quote(cell.shown_in.stem)}"] if cell.shown_in else []
     words += [f"--as {package}/{executable}" for package, executable in cell.executables]
     words += [f"--replaces {cell.replaces}"] if cell.replaces else []
     if cell.before:

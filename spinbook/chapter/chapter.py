@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from spinbook.chapter.block import BlockKind, SourceLine
@@ -47,6 +48,8 @@ class ChapterCell:
     keeps: bool = False
     executables: tuple[tuple[str, str], ...] = ()
     commands: tuple[Command, ...] = ()
+    shown_in: Path | None = None
+    """The earlier chapter that shows this program, which a command of this one runs; None for a fence of its own."""
     tags: tuple[str, ...] = ()
     """Tags of Jupyter and MyST, such as `hide-input`."""
 
@@ -105,16 +108,21 @@ class Chapter:
 
     @property
     def nodes(self) -> Iterator[ChapterCell]:
-        """The cells that are nodes, in order."""
-        return (cell for cell in self.cells if cell.kind is CellKind.NODE)
+        """The cells that are nodes, in order, without the programs of earlier chapters."""
+        return (cell for cell in self.cells if cell.kind is CellKind.NODE and cell.shown_in is None)
 
 
 #: nbformat allows 64 characters of [A-Za-z0-9_-].
 _LONGEST_ID = 64
 
 
-def make_cells(pieces: Iterable[Piece], classified: dict[int, ClassifiedFence]) -> tuple[ChapterCell, ...]:
-    """Return the cells of a chapter. `classified` are its fences by their line."""
+def make_cells(
+    pieces: Iterable[Piece],
+    classified: Mapping[int, ClassifiedFence],
+    borrowed: Mapping[int, Sequence[ChapterCell]] = MappingProxyType({}),
+) -> tuple[ChapterCell, ...]:
+    """Return the cells of a chapter. `classified` are its fences by their line, `borrowed` the programs of earlier
+    chapters that the fence on a line runs."""
     ids = _Ids()
     cells: list[ChapterCell] = []
     lines: list[Piece] = []
@@ -128,9 +136,18 @@ def make_cells(pieces: Iterable[Piece], classified: dict[int, ClassifiedFence]) 
             name = piece.block.title
             cells.append(ChapterCell(CellKind.EXERCISE, ids.named(f"exercise-{name}"), "", piece.block.line, name=name))
         elif piece.block.fence is not None:
-            cells.append(_runnable(classified[piece.block.fence.line], ids))
+            line = piece.block.fence.line
+            cells.extend(_borrowed(cell, line, ids) for cell in borrowed.get(line, ()))
+            cells.append(_runnable(classified[line], ids))
     cells.extend(_prose(lines, ids))
     return tuple(cells)
+
+
+def _borrowed(cell: ChapterCell, line: int, ids: _Ids) -> ChapterCell:
+    """Return a cell that saves an earlier chapter's whole program, for `ros2 run` to start."""
+    name = ids.named(f"node-{cell.name}")
+    whole = replace(cell, source=cell.whole, before="", after=(), replaces="", keeps=True)
+    return replace(whole, id=name, line=line, tags=("hide-input",))
 
 
 def _prose(pieces: list[Piece], ids: _Ids) -> Iterator[ChapterCell]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from groundwork.problem import Problem, Severity
 from spinbook.chapter.block import Block, BlockKind, SourceLine
 from spinbook.chapter.blocks import read_blocks
-from spinbook.chapter.chapter import Chapter, StaticFence, make_cells
+from spinbook.chapter.chapter import Chapter, ChapterCell, StaticFence, make_cells
 from spinbook.chapter.classify import CellKind, ClassifiedFence, first_look, node_name, with_language
 from spinbook.chapter.excerpts import excerpts, is_excerpt
 from spinbook.chapter.fence import Fence, interface_of, interface_package
@@ -24,6 +24,15 @@ from spinbook.chapter.programs import Programs
 from spinbook.chapter.shells import Shells
 from spinbook.chapter.shown_interfaces import one_each, shown_interfaces
 from spinbook.chapter.source import Source, read_source
+
+#: (chapter, package, executable) -> the cell of an earlier chapter that shows this program; None if there is none.
+EarlierPrograms = Callable[[Path, str, str], ChapterCell | None]
+
+
+def no_earlier_program(chapter: Path, package: str, executable: str) -> ChapterCell | None:
+    """Return None: for a chapter that is read by itself."""
+    return None
+
 
 #: The tag of cells that a notebook has but that a build does not run: nbclient's own.
 SKIPPED = "skip-execution"
@@ -48,6 +57,8 @@ class Surroundings:
     labels: Mapping[str, Label] = field(default_factory=dict)
     titles: Mapping[Path, str] = field(default_factory=dict)
     not_compiled: Mapping[tuple[Path, int], Problem] = field(default_factory=dict)
+    earlier_programs: EarlierPrograms = no_earlier_program
+    """Finds the program that an earlier chapter shows under the names of `ros2 run`."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +95,7 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResu
     if parsed.source is None:
         return ReadResult(None, tuple(problems))
     with own_definitions(surroundings.interfaces):
-        classified, fence_problems = _classify(parsed, file, surroundings)
+        classified, fence_problems, borrowed = _classify(parsed, file, surroundings)
     title, title_problems = _title(parsed, file)
     own = labels(parsed.blocks, file)
     sections = {heading.slug: heading for heading in headings(parsed.blocks)}
@@ -95,7 +106,7 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResu
     pieces = _layout(by_line, surroundings).pieces(parsed.blocks)
     cells = tuple(
         replace(cell, source=references.resolved(cell.source)) if cell.kind is CellKind.PROSE else cell
-        for cell in make_cells([*_heading(parsed, title), *pieces], by_line)
+        for cell in make_cells([*_heading(parsed, title), *pieces], by_line, borrowed)
     )
     chapter = Chapter(
         name=surroundings.names.get(file, file.stem),
@@ -103,7 +114,7 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResu
         title=title,
         summary=str(parsed.source.front_matter.get("summary", "")),
         cells=cells,
-        uses=_uses(parsed, root, file),
+        uses=tuple(sorted({*_uses(parsed, root, file), *_shown_in(borrowed)})),
         references=references_in(parsed.source.text),
         static_fences=tuple(
             StaticFence(item.fence.line, item.fence.language, item.why, item.sign)
@@ -154,6 +165,12 @@ def headings_of(root: Path, file: Path) -> tuple[Heading, ...]:
     return tuple(headings(_parse(root, file).blocks))
 
 
+def text_of(root: Path, file: Path) -> str:
+    """Return the text of a chapter, without its front matter; "" if it can't be read."""
+    source = _parse(root, file).source
+    return source.text if source else ""
+
+
 def title_of(root: Path, file: Path) -> str:
     """Return the title of a chapter, as Markdown; "" if it can't be read."""
     parsed = _parse(root, file)
@@ -185,7 +202,7 @@ def _parsed(root: Path, file: Path) -> _ParsedChapter:
 
 def _classify(
     parsed: _ParsedChapter, file: Path, surroundings: Surroundings
-) -> tuple[list[ClassifiedFence], list[Problem]]:
+) -> tuple[list[ClassifiedFence], list[Problem], dict[int, list[ChapterCell]]]:
     problems: list[Problem] = []
     items: list[ClassifiedFence] = []
     not_executed: dict[int, ClassifiedFence] = {}
@@ -220,11 +237,16 @@ def _classify(
         programs.named_files,
         exercise,
         interfaces=frozenset(surroundings.interfaces),
+        earlier_programs=functools.partial(surroundings.earlier_programs, file),
     )
     items = shells.decide(items)
     for number, item in not_executed.items():
         items[number] = replace(item, name=node_name(item, "", file)[0] if item.kind is CellKind.NODE else None)
-    return items, problems + programs.problems + shells.problems
+    return items, problems + programs.problems + shells.problems, shells.borrowed
+
+
+def _shown_in(borrowed: Mapping[int, Sequence[ChapterCell]]) -> set[Path]:
+    return {cell.shown_in for cells in borrowed.values() for cell in cells if cell.shown_in}
 
 
 def _own(

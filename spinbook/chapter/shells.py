@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import itertools
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from grader.recording.types import OWN_SERVICES
 from groundwork.problem import Problem, Severity
 from interface_compiler import prefixes
 from ros_in_python.ros2 import executables
+from spinbook.chapter.chapter import ChapterCell
 from spinbook.chapter.classify import CellKind, ClassifiedFence
 from spinbook.chapter.imports import IN_ROS, interfaces_of, own_names, remedy, ros_packages
 from spinbook.chapter.launch_files import NotSupportedError
@@ -88,10 +89,15 @@ class Shells:
     named_files: Mapping[int, str] = field(default_factory=dict)
     has_exercise: bool = False
     interfaces: frozenset[str] = frozenset()
+    earlier_programs: Callable[[str, str], ChapterCell | None] = lambda package, executable: None
+    borrowed: dict[int, list[ChapterCell]] = field(default_factory=dict)
+    """The programs of earlier chapters that commands run, by the line of the fence."""
     problems: list[Problem] = field(default_factory=list)
     _created: set[str] = field(default_factory=set)
     _hello: set[tuple[str, str]] = field(default_factory=set)
     """The programs that `ros2 pkg create --node-name` makes: (package, executable)."""
+    _line: int = 0
+    """Where the fence begins that is decided now."""
     _launches: Launches = field(init=False)
     _said: _CodeSoFar = field(default_factory=_CodeSoFar)
     _nodes: dict[str, int] = field(default_factory=dict)
@@ -118,6 +124,7 @@ class Shells:
         return out
 
     def _fence(self, item: ClassifiedFence, out: list[ClassifiedFence]) -> ClassifiedFence:
+        self._line = item.fence.line
         commands = [self._compiled_here(command) for command in item.commands]
         item = replace(item, commands=tuple(part for command in commands for part in self._launches.started(command)))
         if all(command.kind is CommandKind.NOTE for command in item.commands):
@@ -132,6 +139,7 @@ class Shells:
                 continue
             problem = f"{reason.why} (`{command.text}`)."
             self.problems.append(Problem(self.file, line, problem, reason.fix, Severity.NOT_RUN, group=reason.group))
+            self.borrowed.pop(self._line, None)
             return replace(item, kind=CellKind.STATIC, why=reason.why, sign=f"{reason.why}.")
         return item
 
@@ -169,11 +177,13 @@ class Shells:
 
     def _run(self, command: Command, out: list[ClassifiedFence], line: int) -> _Reason | None:
         package, executable = command.runs or ("", "")
-        if package == self.package and executable in self.modules:
+        if package == self.package and executable in self._nodes:
             return None
         if not self._is_elsewhere(package):
             names = ProgramNames({number: out[number] for number in self._nodes.values()}, self.own)
             number = names.started(package, executable)
+            if number is None and self._borrow(package, executable):
+                return None
             if number is None and (number := names.similar(package, executable)) is not None:
                 self._say_which(package, executable, out[number].name or "", line)
             if number is not None:
@@ -185,11 +195,24 @@ class Shells:
                 fix = f"Did you mean `{close}`? Otherwise show its program in a fence above."
                 why = f"no fence above shows `{executable}` of `{package}`"
                 return _Reason(why, fix, "programs that no fence shows")
+        if package == self.package and executable in self.modules:
+            return None
         if package == self.package:
             problem = f"the course's package `{package}` has no executable `{executable}`"
             fix = f"Its node cells make these: {', '.join(sorted(self.modules)) or 'none'}."
             return _Reason(problem, fix, "")
         return self._foreign(package, executable)
+
+    def _borrow(self, package: str, executable: str) -> bool:
+        """Let a command run a program that an earlier chapter shows. Return whether there is one."""
+        cell = self.earlier_programs(package, executable)
+        if cell is None:
+            return False
+        known = tuple(dict.fromkeys([*cell.executables, (package, executable)]))
+        if not any(other.name == cell.name for other in itertools.chain(*self.borrowed.values())):
+            self.borrowed.setdefault(self._line, []).append(replace(cell, executables=known))
+        self._said.add(cell.whole)
+        return True
 
     def _start(self, number: int, command: Command, out: list[ClassifiedFence]) -> None:
         """Give a node the name by which a command starts it. One that counts its arguments waits for a command's."""

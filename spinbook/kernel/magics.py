@@ -135,6 +135,7 @@ class SpinbookMagics(Magics):
             metavar="PACKAGE/EXECUTABLE",
             help="the name of this node for `ros2 run`",
         )
+        reader.add_argument("--of", metavar="CHAPTER", help="only save this program, which another chapter shows")
         reader.add_argument("--replaces", metavar="NODE", help="stop this node first: it is an earlier version")
         reader.add_argument("--expect-error", action="store_true", help="its errors are meant: do not report them")
         if arguments := reader.read(line):
@@ -145,7 +146,10 @@ class SpinbookMagics(Magics):
             start = NodeStart(tuple(arguments.classes), arguments.main, tuple(arguments.known_as))
             bound = DisplayLimit(arguments.seconds, arguments.until, arguments.expect_error)
             self.session.replace_node(arguments.replaces)
-            if arguments.keep:
+            if arguments.of:
+                self.session.save_node(name, cell, start)
+                print(f"— saved: `ros2 run` starts this program of the chapter {arguments.of} —")
+            elif arguments.keep:
                 self.session.keep_node(name, cell, start, parts)
             else:
                 self.session.run_node(name, cell, bound, start, parts)

@@ -130,9 +130,9 @@ class Session:
             print(f"(replaces {earlier}, the earlier version of this node)")
             self.nodes.stop(earlier)
 
-    def save_program(self, name: str, code: str, known_as: str) -> None:
-        """Write a program as a module of its package, for `ros2 run` to start: `known_as` is PACKAGE/EXECUTABLE."""
-        self._saved(name, code, NodeStart(known_as=(known_as,)), None)
+    def save_node(self, name: str, code: str, start: NodeStart) -> None:
+        """Write a whole program as a module of its package, for `ros2 run` to start."""
+        self._saved(name, code, start, None)
 
     def keep_node(self, name: str, code: str, start: NodeStart, after: Sequence[str] | None = None) -> None:
         """Write a node's code as a module of its package, for `ros2 run` to start with arguments."""

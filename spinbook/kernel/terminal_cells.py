@@ -12,7 +12,7 @@ from interface_compiler import toolchain
 from spinbook.chapter.own_packages import created_node, created_package
 from spinbook.kernel.cell_output import DisplayLimit
 from spinbook.kernel.process import CellFailed
-from spinbook.kernel.session import Session
+from spinbook.kernel.session import NodeStart, Session
 from spinbook.package.workspace import write_package, written_definitions
 
 #: The program that `ros2 pkg create --node-name` makes.
@@ -93,7 +93,7 @@ def _create_package(session: Session, words: list[str]) -> None:
         return
     folder = write_package(session.workspace, replace(session.package, name=name), [])
     if node := created_node(["ros2", *words]):
-        session.save_program(node, _HELLO.format(package=name), f"{name}/{node}")
+        session.save_node(node, _HELLO.format(package=name), NodeStart(known_as=(f"{name}/{node}",)))
     print(f"Created the package {name} in {folder.relative_to(Path.cwd())}")
 
 

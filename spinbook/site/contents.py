@@ -224,7 +224,7 @@ def _minutes(chapter: Chapter) -> int:
 def _downloads(chapter: Chapter, contents: SiteContents) -> dict[str, str]:
     """Add the programs of a chapter's nodes to the site; return cell -> file. Programs may share a file name."""
     paths: dict[str, str] = {}
-    for cell in chapter.nodes:
+    for cell in (cell for cell in chapter.cells if cell.kind is CellKind.NODE):
         code = cell.whole.rstrip("\n") + "\n"
         path = f"{DOWNLOADS}/{cell.module}"
         if contents.files.get(path, code) != code:

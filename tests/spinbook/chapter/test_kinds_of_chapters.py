@@ -19,6 +19,15 @@ CREATE = "ros2 pkg create toolbox --build-type ament_python"
 
 #: Chapter -> its cells, and why its other fences are only shown.
 CELLS = {
+    "across_chapters": (
+        [
+            "asker robot/asker of methods_that_spin",
+            "ros2 run robot asker",
+            "ping_robot toolbox/pinger of named_below",
+            "ros2 run toolbox pinger",
+        ],
+        ["no executable `scan_node`"],
+    ),
     "arguments": ([CREATE, "adder toolbox/adder waits for arguments", "ros2 run toolbox adder 1 2"], []),
     "as_in_a_notebook": (["snippet"] * 4, ["nothing calls what it defines"]),
     "boxes": ([], []),
@@ -50,7 +59,7 @@ CELLS = {
         ["neither Python nor shell", "no fence above shows `Pingr`"],
     ),
     "names_as_arguments": ([CREATE, "tone_maker toolbox/tone_maker", "ros2 run toolbox tone_maker"], []),
-    "packages": (["d"], ["cv_bridge", "sensor_msg", "geometry_msgs.msg.Twits"]),
+    "packages": (["d"], ["nav2_simple_commander", "sensor_msg", "geometry_msgs.msg.Twits"]),
     "pictures_by_reference": ([], []),
     "placeholders": ([], ["placeholders"] * 4 + ["your_package"]),
     "transcripts": (
@@ -67,6 +76,7 @@ CELLS = {
 
 #: Chapter -> line, and what is said about it; warnings about missing file names are left out.
 PROBLEMS = {
+    "across_chapters": [(12, "Its node cells make these: adder, asker")],
     "interfaces_as_shown": [(47, "Did you mean `n`?"), (61, "Did you mean `n`?")],
     "mistakes_in_commands": [
         (4, "did you mean `topic`?"),
@@ -122,7 +132,8 @@ def shown(cell: ChapterCell) -> str:
     words = [cell.name or cell.kind.value, *("/".join(names) for names in cell.executables)]
     words += [f"replaces {cell.replaces}"] if cell.replaces else []
     words += [f"after {' '.join(cell.after)}"] if cell.after else []
-    return " ".join(words + (["waits for arguments"] if cell.keeps else []))
+    words += [f"of {cell.shown_in.stem}"] if cell.shown_in else []
+    return " ".join(words + (["waits for arguments"] if cell.keeps and not cell.shown_in else []))
 
 
 @pytest.mark.parametrize("name", CELLS)

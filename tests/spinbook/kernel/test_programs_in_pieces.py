@@ -108,3 +108,10 @@ def test_a_node_that_is_kept_is_started_by_ros2_run_with_its_words(kernel: Kerne
     assert "saved, not started" in kernel.run(f"%%node adder --keep --as sums/add\n{WORDS}").text
 
     assert kernel.run("%ros2 run sums add 2 3").text.startswith("5\n")
+
+
+def test_a_program_of_an_earlier_chapter_is_saved_for_ros2_run(kernel: Kernel) -> None:
+    saved = kernel.run("%%node greeter --of one --as robot/greeter\nprint('from chapter one')\n")
+
+    assert saved.text == "— saved: `ros2 run` starts this program of the chapter one —\n"
+    assert "from chapter one" in kernel.run("%ros2 run robot greeter").text
