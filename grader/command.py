@@ -151,6 +151,7 @@ def grade(
         loaded = load(_folder(exercise))
         if out and not mistake:
             _refuse_a_single_program(submission)
+            _refuse_results_among_submissions(Path(submission), out)
             class_options = {
                 "jobs": jobs,
                 "format": form,
@@ -192,6 +193,12 @@ def _refuse_a_single_program(submission: str) -> None:
             f"{submission}: this is one submission, and --out is for a class. Leave out --out, or give the folder, "
             "zip file or CSV file of a class."
         )
+
+
+def _refuse_results_among_submissions(submissions: Path, out: Path) -> None:
+    """Refuse a folder for results that the next run would read as a student's."""
+    if submissions.is_dir() and out.resolve().is_relative_to(submissions.resolve()):
+        raise click.UsageError(f"--out {out}: it is inside {submissions}. Give a folder outside of the submissions.")
 
 
 def _mistake(name: str, exercise: Exercise) -> Submission:

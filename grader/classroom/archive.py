@@ -64,7 +64,10 @@ def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
     try:
         opened = zipfile.ZipFile(archive)
     except BROKEN as error:
-        raise SubmissionsError(f"{archive}: it is not a valid zip file: {error}. Was the download cut off?") from None
+        raise SubmissionsError(
+            f"{archive}: it is not a valid zip file: {error}. Was the download cut off? A class may also be a "
+            "folder or a .csv file."
+        ) from None
     with opened:
         entries = [entry for entry in opened.infolist() if not entry.is_dir()]
         if len(entries) > MOST_FILES:

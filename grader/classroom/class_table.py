@@ -34,6 +34,8 @@ def by_row(table: Path, zone: tzinfo | None) -> tuple[list[tuple[File, UploadedF
                 f"{table}:{number}: file = {row['file']!r}, student = {row['student']!r}. Give both."
             )
         path = table.parent / row["file"]
+        if not path.exists():
+            path = table.parent / row["file"].replace("\\", "/")
         lms = {column: value for column, value in row.items() if column not in KNOWN}
         student = Student(normal(row["student"]), normal(row.get("name", "")), row.get("email", ""), lms)
         if not path.exists() and not path.is_symlink():

@@ -55,7 +55,8 @@ def read_groups(table: Path) -> tuple[Group, ...]:
 def in_groups(units: Sequence[Unit], groups: Sequence[Group]) -> list[Unit]:
     """Return the units, with each group, or the member who handed in for the others, replaced by all members.
 
-    If several members handed something in, each keeps their own submission, and the others have none.
+    If several members handed something in, each keeps their own submission, and all files together are the others':
+    equal programs count for them, different ones are a question.
     """
     placed = dict(enumerate(units))
     called, owned = defaultdict(set), defaultdict(set)
@@ -72,6 +73,13 @@ def in_groups(units: Sequence[Unit], groups: Sequence[Group]) -> list[Unit]:
             (number,) = theirs
             known = [student for one in by_member for student in units[one].students]
             placed[number] = replace(units[number], students=tuple(_known(member, known) for member in group.members))
+        elif theirs:
+            own = {sign for number in theirs for student in units[number].students for sign in signs(student)}
+            others = tuple(member for member in group.members if not signs(member) & own)
+            files = [
+                pair for number in sorted(theirs) for attempt in units[number].attempts.values() for pair in attempt
+            ]
+            placed |= {len(placed): Unit(others, {"": files})} if others else {}
     return list(placed.values())
 
 

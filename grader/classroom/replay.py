@@ -61,6 +61,8 @@ def _recorded(results: Path, student: str) -> Grade:
         names = sorted(folder.name for folder in folder_of(results, "").glob("*/"))
         known = ", ".join(names[:10]) + (" …" if len(names) > 10 else "")
         raise click.UsageError(f"{results}: there is no grade of a student called {student!r} (there are: {known}).")
+    if entry[0].grade.outcome in ("undecided", "missing"):
+        raise click.UsageError(f"{results}: nothing of {student} was run. {entry[0].grade.message}")
     if stored is None or not stored.recordings:
         raise click.UsageError(
             f"{results}: there is no recording of {student}. A class that was graded on a cluster has none; grade the "

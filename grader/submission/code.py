@@ -9,15 +9,16 @@ from __future__ import annotations
 import json
 import posixpath
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-from grader.exercise.exercise import Exercise, ProgramFile
+from grader.exercise.exercise import Exercise
 from grader.exercise.starter import MarkerError, starter
 from grader.submission import packages, python_code
 from grader.submission.archive import Contents, unpacked
+from grader.submission.file_choice import FileOption, ReadState, chosen, notes_on, targets
 from grader.submission.file_kinds import (
     NEITHER,
     OTHER_ARCHIVES,
@@ -25,12 +26,11 @@ from grader.submission.file_kinds import (
     kind_of_content,
     language_of,
     not_graded,
-    original_name,
 )
 from grader.submission.magics import cell_magic, without_commands
 from grader.submission.notebook import Notebook, NotebookCell, read_notebook
-from grader.submission.problems import AmbiguousProgram, Unreadable, merge_conflict
-from grader.submission.program_choice import Choice, choose, digest_of
+from grader.submission.problems import Unreadable, merge_conflict
+from grader.submission.program_choice import choose, digest_of
 from grader.submission.python_version import newer_syntax
 from grader.submission.several_files import MOST_FILES, files_in, joined, parts
 from grader.submission.unreadable import not_python
@@ -62,35 +62,6 @@ class Code:
     python: str = ""
 
 
-@dataclass(frozen=True)
-class _Option:
-    """One program that the student may mean: where it is from, its text, and how it is run."""
-
-    title: str
-    source: str
-    file: str = ""
-    function: str = ""
-    choice: Choice | None = None
-    why: str = ""
-
-
-@dataclass
-class _ReadState:
-    """The state of reading the files of one submission."""
-
-    contents: Contents
-    exercise: Exercise
-    called: str = ""
-    notebooks: dict[str, Notebook] = field(default_factory=dict)
-    problems: list[str] = field(default_factory=list)
-    questions: list[str] = field(default_factory=list)
-
-    @property
-    def files(self) -> Mapping[str, bytes]:
-        """The files by path."""
-        return self.contents.files
-
-
 def as_text(code: Code) -> str:
     """Return a program as JSON, for another process."""
     files = {name: content.decode("latin-1") for name, content in code.files.items()}
@@ -117,11 +88,6 @@ def code_of(name: str, content: bytes, exercise: Exercise) -> Code:
         return code_of_python(content, exercise)
     what = "an archive that can't be read here" if content.startswith(OTHER_ARCHIVES) else NEITHER
     raise Unreadable(f"{posixpath.basename(name)} is {what}. Hand in a .py, .ipynb or .zip file.")
-
-
-def targets(exercise: Exercise) -> tuple[ProgramFile, ...]:
-    """Return the programs that a submission must have."""
-    return exercise.programs or (ProgramFile(exercise.file_name, exercise.node_name, exercise.class_name),)
 
 
 def code_of_python(content: bytes, exercise: Exercise) -> Code:
@@ -242,22 +208,22 @@ def _package(cell: NotebookCell) -> list[str]:
 
 def code_of_files(contents: Contents, exercise: Exercise, called: str = "") -> Code:
     """Return the program in a folder or an archive; `called` is the folder's name. Raises as `code_of`."""
-    reading = _ReadState(contents, exercise, called)
+    reading = ReadState(contents, exercise, called)
     handed_out = starters(exercise)
-    options = {one.file: _chosen(reading, one, handed_out) for one in targets(exercise)}
+    options = {one.file: chosen(reading, one, handed_out) for one in targets(exercise)}
     if not exercise.programs:
         return _of_one(next(iter(options.values())), reading)
     files: dict[str, bytes] = {}
     for file, option in options.items():
         files |= _files_of(option, reading, file)
-    notes = tuple(dict.fromkeys(note for option in options.values() for note in _notes(option, reading)))
+    notes = tuple(dict.fromkeys(note for option in options.values() for note in notes_on(option, reading)))
     shown = {file: files[file] for file in options} | files
     return Code(files, next(iter(options)), joined({k: v for k, v in shown.items() if k.endswith(".py")}), notes)
 
 
-def _of_one(option: _Option, reading: _ReadState) -> Code:
+def _of_one(option: FileOption, reading: ReadState) -> Code:
     exercise = reading.exercise
-    notes = _notes(option, reading)
+    notes = notes_on(option, reading)
     if option.choice:
         code = code_of_notebook(reading.notebooks[option.file], exercise, posixpath.basename(option.file))
         return replace(code, notes=(*notes, *code.notes))
@@ -272,7 +238,7 @@ def _of_one(option: _Option, reading: _ReadState) -> Code:
     return Code(files, main, option.source, (*notes, *newer_syntax(option.source)))
 
 
-def _files_of(option: _Option, reading: _ReadState, file: str) -> dict[str, bytes]:
+def _files_of(option: FileOption, reading: ReadState, file: str) -> dict[str, bytes]:
     """Return a program's files. A small file called `file` starts a program that is in a package."""
     if option.choice:
         return {file: option.choice.code.encode(errors="replace")}
@@ -286,165 +252,6 @@ def _files_of(option: _Option, reading: _ReadState, file: str) -> dict[str, byte
     elif reading.exercise.programs and layout.main != file:
         files[file] = packages.launcher(layout.main.removesuffix(".py"), "")
     return files
-
-
-def _chosen(reading: _ReadState, target: ProgramFile, handed_out: frozenset[str]) -> _Option:
-    """Return the program `target` among the files, by the first rule that any file satisfies."""
-    options = [_of_python(name, reading) for name in packages.programs(reading.files)]
-    begun = [one for one in options if not python_code.is_empty(one.source) and digest_of(one.source) not in handed_out]
-    options = begun or options
-    named = [one for one in options if _is_called(one.file, target.file)] + _of_notebooks(reading, target, handed_out)
-    its_own = [one for one in options if _is_it(one.source, target)]
-    if not (named or its_own) and reading.questions:
-        raise AmbiguousProgram(reading.questions[0])
-    only_program = [] if reading.exercise.programs else _by_content(options, _language(reading))
-    for tier in (named, its_own, _by_executable(reading, options, target), *only_program):
-        if tier:
-            return _decided(tier, reading, target)
-    raise Unreadable(_nothing(reading, target))
-
-
-def _by_content(options: list[_Option], language: str) -> list[list[_Option]]:
-    """Return what an exercise with a single program takes for it: executables, what uses rclpy, or any Python.
-
-    Next to a program in another language, a script without rclpy is not the program.
-    """
-    tiers = [[one for one in options if one.function], [one for one in options if "rclpy" in one.source]]
-    return tiers if language else [*tiers, options]
-
-
-def _language(reading: _ReadState) -> str:
-    """Return the language of files that are not Python; C++ goes before C, which its headers look like."""
-    languages = {language_of(name) for name in reading.files if kind_of(name) == "other language"}
-    return "C++" if "C++" in languages else min(languages, default="")
-
-
-def _of_python(name: str, reading: _ReadState) -> _Option:
-    source = reading.files[name].decode("utf-8", errors="replace")
-    entries = [entry for entry in packages.entry_points(reading.files) if entry.file == name]
-    title = f"{name}, the executable {entries[0].name}" if entries else name
-    return _Option(title, source, name, entries[0].function if entries else "")
-
-
-def _of_notebooks(reading: _ReadState, target: ProgramFile, handed_out: frozenset[str]) -> list[_Option]:
-    found = []
-    for name in sorted(reading.files):
-        if kind_of(name) != "notebook":
-            continue
-        try:
-            notebook = reading.notebooks.setdefault(name, read_notebook(reading.files[name]))
-            choice = choose(notebook, reading.exercise, target, handed_out)
-        except Unreadable as error:
-            reading.problems.append(f"{name}: {error}")
-        except AmbiguousProgram as error:
-            reading.questions.append(f"{name}: {error}")
-        else:
-            found.append(_Option(name, choice.code, name, choice=choice))
-    begun = [one for one in found if digest_of(one.source) not in handed_out]
-    return begun or found
-
-
-def _is_called(path: str, file: str) -> bool:
-    return original_name(path).lower() == file
-
-
-def _is_it(source: str, target: ProgramFile) -> bool:
-    return python_code.defines(source, target.class_name) or python_code.creates(source, target.node)
-
-
-def _by_executable(reading: _ReadState, options: Sequence[_Option], target: ProgramFile) -> list[_Option]:
-    """Return the programs that are installed under the exercise's name or launched as its node."""
-    stem = target.file.removesuffix(".py")
-    wanted = {stem, target.node} | {
-        one.executable for one in packages.launched(reading.files) if one.name in (stem, target.node)
-    }
-    entries = [entry for entry in packages.entry_points(reading.files) if entry.name.removesuffix(".py") in wanted]
-    return [one for one in options if any(entry.file == one.file for entry in entries)]
-
-
-def _decided(options: Sequence[_Option], reading: _ReadState, target: ProgramFile) -> _Option:
-    checked = {
-        digest
-        for notebook in reading.notebooks.values()
-        for cell in notebook.cells
-        for name, digest in (cell.checked or {}).items()
-        if name == reading.exercise.name and digest
-    }
-    launched = {one.executable for one in packages.launched(reading.files)}
-    entries = [entry for entry in packages.entry_points(reading.files) if entry.name in launched]
-    rules: tuple[tuple[str, Callable[[_Option], bool]], ...] = (
-        ("", lambda one: True),
-        ("it is the one that %check judged", lambda one: digest_of(one.source) in checked),
-        (f"it is called {target.file}", lambda one: one.choice is not None or _is_called(one.file, target.file)),
-        (f"only it has the program {target.node}", lambda one: _is_it(one.source, target)),
-        ("it is installed as an executable", lambda one: bool(one.function)),
-        ("a launch file starts it", lambda one: any(entry.file == one.file for entry in entries)),
-    )
-    for why, fits in rules:
-        options = [one for one in options if fits(one)] or options
-        if len({python_code.normalized(one.source) for one in options}) == 1:
-            chosen = min(options, key=lambda one: (one.choice is not None, one.file.count("/"), one.file))
-            return replace(chosen, why=why)
-    titles = ", ".join(one.title for one in options[:5])
-    raise AmbiguousProgram(
-        f"{len(options)} programs in it can be {target.file}, and they differ: {titles}. Which one counts? Hand in "
-        "only that one."
-    )
-
-
-def _notes(option: _Option, reading: _ReadState) -> tuple[str, ...]:
-    """Return notes on the choice; none if there was only one program. Raises `AmbiguousProgram`."""
-    _refuse_own_interfaces(option, reading)
-    notes = []
-    others = [name for name in packages.programs(reading.files) if name != option.file]
-    notebooks = [name for name in reading.files if kind_of(name) == "notebook" and name != option.file]
-    called = any(_is_called(option.file, one.file) for one in targets(reading.exercise))
-    rivals = [] if reading.exercise.programs else [name for name in others if _is_rival(name, option, reading)]
-    if notebooks or rivals or ((others or option.function) and not called):
-        why = option.why or (f"it is called {reading.exercise.file_name}" if rivals and called else "")
-        notes.append(f"Taken: {option.title}{why and ', because '}{why}.")
-    if settings := packages.launch_settings(reading.files, option.file):
-        found = ", ".join(settings)
-        notes.append(f"Not applied from your launch file: {found}. The grader starts the program as the task says.")
-    return tuple(notes)
-
-
-def _is_rival(name: str, option: _Option, reading: _ReadState) -> bool:
-    source = reading.files[name].decode("utf-8", errors="replace")
-    same = python_code.normalized(source) == python_code.normalized(option.source)
-    return not same and any(_is_it(source, target) for target in targets(reading.exercise))
-
-
-def _refuse_own_interfaces(option: _Option, reading: _ReadState) -> None:
-    """Raise `AmbiguousProgram` if a program needs messages of the submission's own, unless they are installed here.
-
-    It is for the instructor to decide, as the definitions would be compiled outside of any sandbox: comments of a
-    definition get into the code that gcc reads, and gcc can be told to copy any file into the result.
-    """
-    used = packages.packages_of_messages(option.source, reading.files)
-    for package in sorted(packages.own_interfaces(reading.files) & used):
-        raise AmbiguousProgram(
-            f"The program imports {package}, a package of messages that was handed in with it, and the grader does not "
-            "build it. Use the types that the task names. To the instructor: to grade it as it is, put its definitions "
-            f"into the course's folder interfaces/{package}/, after you have read them."
-        )
-
-
-def _nothing(reading: _ReadState, target: ProgramFile) -> str:
-    if reading.problems:
-        return reading.problems[0]
-    if language := _language(reading):
-        return not_graded(language)
-    if lost := [*reading.contents.links, *reading.contents.damaged]:
-        what = "is a symbolic link" if reading.contents.links else "can't be read"
-        return (
-            f"{lost[0]} in it {what}, and there is no other code for {reading.exercise.name}. Hand in the file itself."
-        )
-    if reading.exercise.programs:
-        there = ", ".join(packages.programs(reading.files)[:5]) or "none"
-        return f"There is no {target.file} in it, and no program of the node {target.node}. Python files: {there}."
-    there = f" It holds: {', '.join(sorted(reading.files)[:5])}." if reading.files else ""
-    return f"There is no code for {reading.exercise.name} in it.{there} Hand in the file that `spinbook submit` writes."
 
 
 def starters(exercise: Exercise) -> frozenset[str]:

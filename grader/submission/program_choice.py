@@ -44,7 +44,7 @@ def choose(notebook: Notebook, exercise: Exercise, target: ProgramFile, starters
             raise Unreadable(not_graded(notebook.language.capitalize()))
         raise Unreadable(_no_cell(notebook, target))
     # A piece that an editor split from the cell keeps the cell's metadata.
-    numbers = {one.number for one in begun if one.name or _is_it(one.code, target)}
+    numbers = {one.number for one in begun if one.name or is_program(one.code, target)}
     programs = [(one, assemble(one, notebook.cells, exercise, numbers - {one.number})) for one in begun]
     if len(begun) > 1 and not any(is_complete(program.code) for _, program in programs):
         whole = joined(begun)
@@ -100,7 +100,7 @@ def _decided(
         return checked, "it is the one that %check judged last"
     rules: tuple[tuple[str, Callable[[NotebookCell, AssembledProgram], bool]], ...] = (
         ("the others are still the starter", lambda cell, program: digest_of(program.code) not in starters),
-        (f"only it has the program {target.node}", lambda cell, program: _is_it(program.code, target)),
+        (f"only it has the program {target.node}", lambda cell, program: is_program(program.code, target)),
         ("it is the whole of which the others are parts", lambda cell, program: not _is_inside(cell, programs)),
     )
     for why, fits in rules:
@@ -120,7 +120,8 @@ def _are_equal(programs: Sequence[tuple[NotebookCell, AssembledProgram]]) -> boo
     return len({python_code.normalized(program.code) for _, program in programs}) == 1
 
 
-def _is_it(code: str, target: ProgramFile) -> bool:
+def is_program(code: str, target: ProgramFile) -> bool:
+    """Return whether the code has the program's class, or creates its node."""
     return python_code.defines(code, target.class_name) or python_code.creates(code, target.node)
 
 
@@ -166,7 +167,7 @@ def _others(
     target: ProgramFile,
 ) -> list[NotebookCell]:
     """Return the cells that did not become part of the program, but are for the exercise as well."""
-    like_it = [one for one in notebook.cells if one.magic.name != "part" and _is_it(one.code, target)]
+    like_it = [one for one in notebook.cells if one.magic.name != "part" and is_program(one.code, target)]
     numbers = {one.number for one in (*candidates, *like_it)} - set(program.cells)
     same = python_code.normalized(cell.code)
     return [one for one in notebook.cells if one.number in numbers and python_code.normalized(one.code) != same]

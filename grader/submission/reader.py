@@ -176,7 +176,8 @@ def _code(upload: Upload, exercise: Exercise) -> Code:
 
 def _warning(upload: Upload, exercise: Exercise) -> str:
     faults = list(upload.faults)
-    if not upload.has_record and exercise.file_name in upload.files and len(upload.files) == 2:
+    kinds = sorted(map(kind_of, upload.files))
+    if not upload.has_record and exercise.file_name in upload.files and kinds == ["notebook", "python"]:
         faults.append(f"{RECORD} is missing: this file was not written by `spinbook submit`")
     if upload.record and upload.record.get("exercise") != exercise.name:
         faults.append(f"it was handed in for the exercise {upload.record.get('exercise')!r}")

@@ -66,6 +66,14 @@ def test_one_program_with_the_results_folder_of_a_class_is_refused_with_what_to_
     assert not (tmp_path / "results").exists()
 
 
+@pytest.mark.parametrize("out", [".", "results", "anna/results"])
+def test_results_among_the_submissions_would_be_read_as_a_students_and_are_refused(out: str, tmp_path: Path) -> None:
+    (tmp_path / "anna").mkdir()
+    done = grade("joint_velocity", str(tmp_path), "--out", str(tmp_path / out))
+    assert done.returncode == 2
+    assert "Give a folder outside of the submissions." in " ".join(done.stderr.split())
+
+
 def test_an_authors_fault_ends_with_3(tmp_path: Path) -> None:
     folder = tmp_path / "exercises" / "lonely"
     folder.mkdir(parents=True)

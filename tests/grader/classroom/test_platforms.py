@@ -235,6 +235,16 @@ def test_a_team_in_moodle_gives_each_member_the_grade(tmp_path: Path, names: lis
     assert len(found.students) == 3
 
 
+def test_of_a_group_whose_members_differ_nobody_gets_nothing_in_silence(tmp_path: Path) -> None:
+    (tmp_path / "groups.csv").write_text("group,student\nA,anna\nA,bert\nA,cleo\n", encoding="utf-8")
+    groups = read_groups(tmp_path / "groups.csv")
+    found = collected(folder(tmp_path / "class", {"anna.py": "one", "bert.py": "two"}), groups=groups)
+    assert not found.missing
+    contents = {one.student.id: one.file.path for one in found.handed_in}
+    assert (contents["anna"].read_text(), contents["bert"].read_text()) == ("one", "two")
+    assert sorted(file.read_text() for file in contents["cleo"].iterdir()) == ["one", "two"]
+
+
 def test_sakai_and_gradescope_say_who_is_in_a_group(tmp_path: Path) -> None:
     made = {
         "Lab/Ann Lee/members.txt": "Lee, Ann(ann1); Li, Bo(bo2)",

@@ -1,0 +1,211 @@
+"""Chooses the program that a student means among the files of a folder or an archive, or says that it is ambiguous."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+from grader.exercise.exercise import Exercise, ProgramFile
+from grader.submission import packages, python_code
+from grader.submission.archive import Contents
+from grader.submission.entry_points import EntryPoint, entry_points
+from grader.submission.file_kinds import kind_of, language_of, not_graded, original_name
+from grader.submission.launch_files import launch_settings, launched
+from grader.submission.notebook import Notebook, read_notebook
+from grader.submission.problems import AmbiguousProgram, Unreadable
+from grader.submission.program_choice import Choice, choose, digest_of, is_program
+
+
+@dataclass(frozen=True)
+class FileOption:
+    """One program that the student may mean: where it is from, its text, and how it is run."""
+
+    title: str
+    source: str
+    file: str = ""
+    function: str = ""
+    choice: Choice | None = None
+    why: str = ""
+
+
+@dataclass
+class ReadState:
+    """The state of reading the files of one submission."""
+
+    contents: Contents
+    exercise: Exercise
+    called: str = ""
+    notebooks: dict[str, Notebook] = field(default_factory=dict)
+    problems: list[str] = field(default_factory=list)
+    questions: list[str] = field(default_factory=list)
+
+    @property
+    def files(self) -> Mapping[str, bytes]:
+        """The files by path."""
+        return self.contents.files
+
+    @cached_property
+    def entries(self) -> list[EntryPoint]:
+        """The executables that the packages install."""
+        return entry_points(self.files)
+
+
+def targets(exercise: Exercise) -> tuple[ProgramFile, ...]:
+    """Return the programs that a submission must have."""
+    return exercise.programs or (ProgramFile(exercise.file_name, exercise.node_name, exercise.class_name),)
+
+
+def chosen(reading: ReadState, target: ProgramFile, handed_out: frozenset[str]) -> FileOption:
+    """Return the program `target` among the files, by the first rule that any file satisfies."""
+    options = [_of_python(name, reading) for name in packages.programs(reading.files)]
+    begun = [one for one in options if not python_code.is_empty(one.source) and digest_of(one.source) not in handed_out]
+    options = begun or options
+    named = [one for one in options if _is_called(one.file, target.file)] + _of_notebooks(reading, target, handed_out)
+    its_own = [one for one in options if is_program(one.source, target)]
+    if not (named or its_own) and reading.questions:
+        raise AmbiguousProgram(reading.questions[0])
+    only_program = [] if reading.exercise.programs else _by_content(options, _language(reading))
+    for tier in (named, its_own, _by_executable(reading, options, target), *only_program):
+        if tier:
+            return _decided(tier, reading, target)
+    raise Unreadable(_nothing(reading, target))
+
+
+def _by_content(options: list[FileOption], language: str) -> list[list[FileOption]]:
+    """Return what an exercise with a single program takes for it: executables, what uses rclpy, or any Python.
+
+    Next to a program in another language, a script without rclpy is not the program.
+    """
+    tiers = [[one for one in options if one.function], [one for one in options if "rclpy" in one.source]]
+    return tiers if language else [*tiers, options]
+
+
+def _language(reading: ReadState) -> str:
+    """Return the language of files that are not Python; C++ goes before C, which its headers look like."""
+    languages = {language_of(name) for name in reading.files if kind_of(name) == "other language"}
+    return "C++" if "C++" in languages else min(languages, default="")
+
+
+def _of_python(name: str, reading: ReadState) -> FileOption:
+    source = reading.files[name].decode("utf-8", errors="replace")
+    entries = [entry for entry in reading.entries if entry.file == name]
+    title = f"{name}, the executable {entries[0].name}" if entries else name
+    return FileOption(title, source, name, entries[0].function if entries else "")
+
+
+def _of_notebooks(reading: ReadState, target: ProgramFile, handed_out: frozenset[str]) -> list[FileOption]:
+    found = []
+    for name in sorted(reading.files):
+        if kind_of(name) != "notebook":
+            continue
+        try:
+            notebook = reading.notebooks.setdefault(name, read_notebook(reading.files[name]))
+            choice = choose(notebook, reading.exercise, target, handed_out)
+        except Unreadable as error:
+            reading.problems.append(f"{name}: {error}")
+        except AmbiguousProgram as error:
+            reading.questions.append(f"{name}: {error}")
+        else:
+            found.append(FileOption(name, choice.code, name, choice=choice))
+    begun = [one for one in found if digest_of(one.source) not in handed_out]
+    return begun or found
+
+
+def _is_called(path: str, file: str) -> bool:
+    return original_name(path).lower() == file
+
+
+def _by_executable(reading: ReadState, options: Sequence[FileOption], target: ProgramFile) -> list[FileOption]:
+    """Return the programs that are installed under the exercise's name or launched as its node."""
+    stem = target.file.removesuffix(".py")
+    wanted = {stem, target.node} | {
+        one.executable for one in launched(reading.files) if one.name in (stem, target.node)
+    }
+    entries = [entry for entry in reading.entries if entry.name.removesuffix(".py") in wanted]
+    return [one for one in options if any(entry.file == one.file for entry in entries)]
+
+
+def _decided(options: Sequence[FileOption], reading: ReadState, target: ProgramFile) -> FileOption:
+    checked = {
+        digest
+        for notebook in reading.notebooks.values()
+        for cell in notebook.cells
+        for name, digest in (cell.checked or {}).items()
+        if name == reading.exercise.name and digest
+    }
+    names = {one.executable for one in launched(reading.files)}
+    entries = [entry for entry in reading.entries if entry.name in names]
+    rules: tuple[tuple[str, Callable[[FileOption], bool]], ...] = (
+        ("", lambda one: True),
+        ("it is the one that %check judged", lambda one: digest_of(one.source) in checked),
+        (f"it is called {target.file}", lambda one: one.choice is not None or _is_called(one.file, target.file)),
+        (f"only it has the program {target.node}", lambda one: is_program(one.source, target)),
+        ("it is installed as an executable", lambda one: bool(one.function)),
+        ("a launch file starts it", lambda one: any(entry.file == one.file for entry in entries)),
+    )
+    for why, fits in rules:
+        options = [one for one in options if fits(one)] or options
+        if len({python_code.normalized(one.source) for one in options}) == 1:
+            first = min(options, key=lambda one: (one.choice is not None, one.file.count("/"), one.file))
+            return replace(first, why=why)
+    titles = ", ".join(one.title for one in options[:5])
+    raise AmbiguousProgram(
+        f"{len(options)} programs in it can be {target.file}, and they differ: {titles}. Which one counts? Hand in "
+        "only that one."
+    )
+
+
+def notes_on(option: FileOption, reading: ReadState) -> tuple[str, ...]:
+    """Return notes on the choice; none if there was only one program. Raises `AmbiguousProgram`."""
+    _refuse_own_interfaces(option, reading)
+    notes = []
+    others = [name for name in packages.programs(reading.files) if name != option.file]
+    notebooks = [name for name in reading.files if kind_of(name) == "notebook" and name != option.file]
+    called = any(_is_called(option.file, one.file) for one in targets(reading.exercise))
+    rivals = [] if reading.exercise.programs else [name for name in others if _is_rival(name, option, reading)]
+    if notebooks or rivals or ((others or option.function) and not called):
+        why = option.why or (f"it is called {reading.exercise.file_name}" if rivals and called else "")
+        notes.append(f"Taken: {option.title}{why and ', because '}{why}.")
+    if settings := launch_settings(reading.files, option.file):
+        found = ", ".join(settings)
+        notes.append(f"Not applied from your launch file: {found}. The grader starts the program as the task says.")
+    return tuple(notes)
+
+
+def _is_rival(name: str, option: FileOption, reading: ReadState) -> bool:
+    source = reading.files[name].decode("utf-8", errors="replace")
+    same = python_code.normalized(source) == python_code.normalized(option.source)
+    return not same and any(is_program(source, target) for target in targets(reading.exercise))
+
+
+def _refuse_own_interfaces(option: FileOption, reading: ReadState) -> None:
+    """Raise `AmbiguousProgram` if a program needs messages of the submission's own, unless they are installed here.
+
+    It is for the instructor to decide, as the definitions would be compiled outside of any sandbox: comments of a
+    definition get into the code that gcc reads, and gcc can be told to copy any file into the result.
+    """
+    used = packages.packages_of_messages(option.source, reading.files)
+    for package in sorted(packages.own_interfaces(reading.files) & used):
+        raise AmbiguousProgram(
+            f"The program imports {package}, a package of messages that was handed in with it, and the grader does not "
+            "build it. Use the types that the task names. To the instructor: to grade it as it is, put its definitions "
+            f"into the course's folder interfaces/{package}/, after you have read them."
+        )
+
+
+def _nothing(reading: ReadState, target: ProgramFile) -> str:
+    if reading.problems:
+        return reading.problems[0]
+    if language := _language(reading):
+        return not_graded(language)
+    if lost := [*reading.contents.links, *reading.contents.damaged]:
+        what = "is a symbolic link" if reading.contents.links else "can't be read"
+        return (
+            f"{lost[0]} in it {what}, and there is no other code for {reading.exercise.name}. Hand in the file itself."
+        )
+    if reading.exercise.programs:
+        there = ", ".join(packages.programs(reading.files)[:5]) or "none"
+        return f"There is no {target.file} in it, and no program of the node {target.node}. Python files: {there}."
+    there = f" It holds: {', '.join(sorted(reading.files)[:5])}." if reading.files else ""
+    return f"There is no code for {reading.exercise.name} in it.{there} Hand in the file that `spinbook submit` writes."

@@ -1,0 +1,87 @@
+"""Reads from a launch file which programs it starts, and what it sets for them.
+
+Source: "Creating a launch file" in the ROS 2 documentation, and launch_ros's Node. Nothing of a submission is run.
+"""
+
+from __future__ import annotations
+
+import ast
+import posixpath
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from grader.submission import python_code
+from grader.submission.entry_points import entry_points
+
+
+@dataclass(frozen=True)
+class LaunchFileNode:
+    """A node in a launch file: its executable, and the name that the launch file gives it, if any."""
+
+    executable: str
+    name: str
+    settings: tuple[str, ...] = ()
+    """What the launch file sets for it, by its keywords: see `SETTINGS`."""
+
+
+#: What a launch file can set for a node, as "Node" in the documentation of launch_ros has it, and in words.
+SETTINGS = {
+    **{"remappings": "remappings", "remap": "remappings", "parameters": "parameters", "param": "parameters"},
+    **{"namespace": "namespace", "arguments": "arguments", "args": "arguments", "ros_arguments": "arguments"},
+}
+
+_LAUNCH_FILE = re.compile(r"launch\.(?:py|xml|ya?ml)$|\.launch$")
+#: What a launch file can set for all nodes of a group, in Python, XML and YAML.
+_OF_GROUPS = re.compile(rb"SetRemap|SetParameters?|PushRosNamespace|set_remap|set_parameter|push[-_]ros[-_]namespace")
+
+
+def launched(files: Mapping[str, bytes]) -> list[LaunchFileNode]:
+    """Return the nodes that launch files start, if their executable is a plain string."""
+    found: list[LaunchFileNode] = []
+    for name in sorted(files):
+        text = files[name].decode("utf-8", errors="replace")
+        if name.endswith("launch.py"):
+            found += _launched_by_python(text)
+        elif _LAUNCH_FILE.search(name):
+            for node in re.findall(r"<node\b[^>]*>|^\s*-\s*node:.*?(?=^\s*-|\Z)", text, re.DOTALL | re.MULTILINE):
+                values = dict(re.findall(r"""\b(exec|name)\s*[=:]\s*["']?([\w.-]+)""", node))
+                keys = [key for key in SETTINGS if re.search(rf"\b{key}\b\s*[=:]|<{key}\b", _element(text, node))]
+                found.append(LaunchFileNode(values.get("exec", ""), values.get("name", ""), _in_words(keys)))
+    return [one for one in found if one.executable]
+
+
+def _launched_by_python(text: str) -> Iterator[LaunchFileNode]:
+    tree = python_code.tree_of(text)
+    for node in ast.walk(tree) if tree else ():
+        if isinstance(node, ast.Call) and getattr(node.func, "id", getattr(node.func, "attr", "")).endswith("Node"):
+            values = {
+                keyword.arg: keyword.value.value
+                for keyword in node.keywords
+                if isinstance(keyword.value, ast.Constant) and isinstance(keyword.value.value, str)
+            }
+            keys = [keyword.arg or "" for keyword in node.keywords]
+            yield LaunchFileNode(values.get("executable", ""), values.get("name", ""), _in_words(keys))
+
+
+def _element(text: str, tag: str) -> str:
+    """Return an XML element with what is in it, given its first tag; any other text as it is."""
+    if not tag.startswith("<node") or tag.endswith("/>"):
+        return tag
+    return tag + text.partition(tag)[2].partition("</node>")[0]
+
+
+def _in_words(keys: Iterable[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(SETTINGS[key] for key in keys if key in SETTINGS))
+
+
+def launch_settings(files: Mapping[str, bytes], file: str) -> list[str]:
+    """Return what launch files set for the program in `file`, in words."""
+    stem = posixpath.basename(file).removesuffix(".py")
+    names = {stem, f"{stem}.py"} | {entry.name for entry in entry_points(files) if entry.file == file}
+    nodes = [node for node in launched(files) if node.executable in names]
+    settings = [setting for node in nodes for setting in node.settings]
+    code = files[file].decode("utf-8", errors="replace")
+    settings += ["the node's name" for node in nodes if node.name and not python_code.creates(code, node.name)]
+    is_in_group = any(_OF_GROUPS.search(data) for name, data in files.items() if _LAUNCH_FILE.search(name))
+    return list(dict.fromkeys([*settings, *(["what it sets for a group"] if nodes and is_in_group else [])]))
