@@ -48,6 +48,7 @@ class Launch {
     const timer = setTimeout(() => {
       this.timers.delete(timer);
       this.begin(steps);
+      this.announce();
     }, after * 1000);
     this.timers.add(timer);
   }
@@ -74,6 +75,7 @@ class Launch {
       this.died ||= !this.interrupted;
     }
     this.begin(onExit);
+    if (onExit.length > 0) this.announce();
   }
 
   #interrupt() {
@@ -81,6 +83,12 @@ class Launch {
     this.timers.forEach(clearTimeout);
     this.timers.clear();
     return Promise.all(this.parts.map((part) => part.running && part.stop()));
+  }
+
+  // Say that it runs, when all of its nodes are ready: until then, each says what it is doing.
+  async announce() {
+    await Promise.race([Promise.allSettled(this.parts.map(({ ready }) => ready)), this.over]);
+    if (this.running) this.cell.say(`${this.name} runs.`, "running");
   }
 
   // Interrupt all of them, as Ctrl-C does.
@@ -117,10 +125,8 @@ export async function launch(cell, process, line) {
   started.set(name, launched);
   cell.now.runs(() => launched.stop());
   launched.begin(steps);
-  // Several start at once: the time for their output counts from when all have started.
-  const allReady = Promise.allSettled(launched.parts.map(({ ready }) => ready));
-  await Promise.race([allReady, launched.over]);
-  if (launched.running) cell.say(`${name} runs.`, "running");
+  // The time for their output counts from when all have started.
+  await launched.announce();
   launched.over.then(() => {
     cell.now.runs(null);
     cell.say(`${name} ended with ${launched.status}.`, launched.status ? "failed" : "ended");
