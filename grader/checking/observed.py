@@ -10,6 +10,7 @@ from grader.checking.hint_texts import hints
 from grader.exercise.exercise import Exercise, Topic
 from grader.recording.arrays import LongArray
 from grader.recording.recording import Recording
+from grader.recording.types import CHANGE_STATE
 from ros_in_python.field_path import NoSuchField, field_of
 
 #: A float with this many units in its last place, at most, is what C finds if it takes a small Python int for a float:
@@ -43,7 +44,8 @@ def _exception(exercise: Exercise, recording: Recording, reference: Recording) -
 def _lifecycle(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
     ends = {end.topic for end in recording.end_points if end.kind == "publisher"}
     node = next((node for node in recording.nodes if f"{node}/transition_event" in ends), "")
-    if not node or recording.received:
+    is_asked = any(call.service == f"{node}/{CHANGE_STATE}" for call in recording.calls)
+    if not node or recording.received or is_asked:
         return UNKNOWN
     return Cause(
         f"{node} is a lifecycle node, and it was never configured and activated: until then, its publishers send "

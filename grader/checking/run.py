@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from grader.checking import actions, answers, closed_loops, graph, parameters, series, services
+from grader.checking import actions, answers, closed_loops, graph, life_cycle, parameters, series, services
 from grader.checking.message import Exchange, Message
 from grader.checking.recorded_run import RecordedRun
 
@@ -50,6 +50,8 @@ class Run(RecordedRun):
     must_match_responses = services.must_match_responses
     must_call = services.must_call
     must_match_requests = services.must_match_requests
+
+    must_transition = life_cycle.must_transition
 
     goals = actions.goals
     goal = actions.scenario_goal

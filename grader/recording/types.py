@@ -16,6 +16,10 @@ OWN_SERVICES = (
     "set_parameters_atomically",
     "get_type_description",
 )
+#: The service of a node with a life cycle that changes its state, and the transitions that it may be asked for:
+#: https://design.ros2.org/articles/node_lifecycle.html
+CHANGE_STATE = "change_state"
+TRANSITIONS = ("configure", "activate", "deactivate", "cleanup", "shutdown")
 
 
 @cache

@@ -51,6 +51,7 @@ def _recorded(endpoint: EndpointFrame, node: str) -> Endpoint | None:
     elif (
         name in OWN_TO_ROS
         or "/_action/" in name
+        or type_name.startswith("lifecycle_msgs/srv/")
         or (endpoint.kind == SERVER and name.removeprefix(f"{node}/") in OWN_SERVICES)
     ):
         return None

@@ -11,7 +11,7 @@ from typing import Any, NoReturn, TypeVar
 from grader.exercise.exercise import Exercise, ExerciseError, ServiceOrAction
 from grader.exercise.modules import error_in, see_that_students_have, with_modules
 from grader.recording.recording import Fields
-from grader.recording.types import message_class
+from grader.recording.types import CHANGE_STATE, TRANSITIONS, message_class
 from grader.scenario.command_line import programs_of
 from grader.scenario.scenario import (
     SECOND,
@@ -31,6 +31,7 @@ from grader.scenario.scenario import (
     StartProgram,
     Step,
     Subscribe,
+    Transition,
 )
 from grader.scenario.servers import ActionServer, GoalScript, Reply, Server
 from grader.scenario.values import InvalidValue, checked_fields
@@ -175,6 +176,8 @@ class Resolver:
     def _step(self, step: Step) -> Step:
         if isinstance(step, Request):
             return self._request(step)
+        if isinstance(step, Transition):
+            return self._transition(step)
         if isinstance(step, SendGoal):
             return self._goal(step)
         if isinstance(step, Subscribe):
@@ -200,6 +203,13 @@ class Resolver:
         found = self._typed(step, step.service, "srv", declared, "service")
         kind = message_class(found.type).Request
         return replace(found, fields=self._check(step.line, step.service, kind, step.fields, f"{found.type}_Request"))
+
+    def _transition(self, step: Transition) -> Request:
+        if step.name not in TRANSITIONS:
+            self._fault(step.line, f"there is no transition {step.name!r}", f"There are: {', '.join(TRANSITIONS)}.")
+        service = f"{step.node or self._node()}/{CHANGE_STATE}"
+        fields = {"transition": {"label": step.name}}
+        return self._request(Request(step.at, service, "lifecycle_msgs/srv/ChangeState", fields, line=step.line))
 
     def _goal(self, step: SendGoal) -> SendGoal:
         declared = self._type_of(step.action, self._exercise.actions)

@@ -100,6 +100,14 @@ class GetParameter(Step):
 
 
 @dataclass(frozen=True)
+class Transition(Step):
+    """The grader asks a node with a life cycle for a transition. Without a `node` it is the one of exercise.toml."""
+
+    name: str
+    node: str = ""
+
+
+@dataclass(frozen=True)
 class Subscribe(Step):
     """One of the grader's subscribers joins; what it receives is recorded under its `name`."""
 

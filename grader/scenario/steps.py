@@ -19,6 +19,7 @@ from grader.scenario.scenario import (
     SetParameter,
     StartProgram,
     Subscribe,
+    Transition,
 )
 from grader.scenario.times import BEFORE_START, SECOND, START
 
@@ -61,6 +62,10 @@ class At:
     def get_parameter(self, name: str, node: str = "") -> tuple[GetParameter, ...]:
         """Read a parameter."""
         return self._each(lambda instant: GetParameter(instant, name, node))
+
+    def transition(self, name: str, node: str = "") -> tuple[Transition, ...]:
+        """Ask a node with a life cycle to `configure`, `activate`, `deactivate`, `cleanup` or `shutdown`."""
+        return self._each(lambda instant: Transition(instant, name, node))
 
     def subscribe(
         self,

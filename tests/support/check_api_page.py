@@ -12,7 +12,18 @@ import types
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from grader.checking import actions, answers, closed_loops, graph, parameters, partial, series, services, verdict
+from grader.checking import (
+    actions,
+    answers,
+    closed_loops,
+    graph,
+    life_cycle,
+    parameters,
+    partial,
+    series,
+    services,
+    verdict,
+)
 from grader.checking.message import Exchange, Message, WorldState
 from grader.checking.recorded_run import RecordedRun
 from grader.checking.run import Run
@@ -30,6 +41,7 @@ SUBJECTS: dict[str, types.ModuleType] = {
     "Nodes that answer messages": answers,
     "Nodes that publish on their own": series,
     "Services": services,
+    "Nodes with a life cycle": life_cycle,
     "Actions": actions,
     "Parameters": parameters,
     "Closed loops and estimates": closed_loops,

@@ -26,6 +26,8 @@ from grader.recording.events import (
 
 PAGE = Path(__file__).parents[3] / "docs" / "check-api.md"
 
+CHANGE = ("/worker/change_state", "lifecycle_msgs/srv/ChangeState")
+
 #: These say what is wrong, so they end the check.
 FAILING = ("fail", "run.wrong", "run.wrong_at")
 
@@ -61,6 +63,7 @@ def everything() -> Recording:
     calls = (
         Call(ns(0.5), "/add", ADD, {"a": 1, "b": 2}, "grader", ns(0.55), {"sum": 3}),
         Call(ns(0.6), "/ask", ADD, {"a": 1, "b": 2}, "node", ns(0.65), {"sum": 3}),
+        Call(ns(0.7), *CHANGE, {"transition": {"label": "activate"}}, "grader", ns(0.7), {"success": True}),
     )
     ends = [Endpoint("/worker", "publisher", "/point", STAMPED, "reliable", "volatile", 10)]
     ends += [

@@ -375,3 +375,31 @@ class Sour:
 def test_a_world_that_breaks_is_the_authors_to_fix(scripted: Scripted) -> None:
     with pytest.raises(ExerciseError, match=r"Sour.state\(\), /in: 1 \(int\) is given for data, which is double"):
         scripted(program(PUBLISHER), Scenario("s", "t", world=World(Sour), duration=0.5))
+
+
+LIFE_CYCLE = """
+import rclpy
+from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
+from std_msgs.msg import Float64
+
+class Camera(LifecycleNode):
+    def on_configure(self, state):
+        self.out = self.create_lifecycle_publisher(Float64, "/out", 10)
+        self.timer = self.create_timer(0.25, lambda: self.out.publish(Float64(data=1.0)))
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_deactivate(self, state):
+        return TransitionCallbackReturn.FAILURE
+
+rclpy.init()
+rclpy.spin(Camera("camera"))
+"""
+
+
+def test_a_node_with_a_life_cycle_is_configured_and_activated(scripted: Scripted) -> None:
+    asked = ((0.5, "configure"), (1.1, "activate"), (2.1, "deactivate"))
+    steps = tuple(at(second).transition(name, "/camera") for second, name in asked)
+    found = scripted(LIFE_CYCLE, Scenario("up", "configured and activated", steps))
+    assert [call.response["success"] for call in found.calls if call.response] == [True, True, False]
+    assert [seconds(message.at) for message in found.received] == [1.25, 1.5, 1.75, 2.0, 2.25, 2.5]
+    assert not [end for end in found.end_points if end.kind == "server"]

@@ -48,7 +48,7 @@ def test_the_examples_of_scenarios_can_be_read(tmp_path: Path) -> None:
     examples = [text for text in fences("python") if text not in definitions]
     lines = [line.partition("  #")[0] for text in examples for line in text.splitlines()]
     found = [line for line in lines if line.startswith("Scenario(")]
-    assert len(found) == 6
+    assert len(found) == 7
     assert sum(line.startswith(("Server(", "ActionServer(")) for line in lines) == 7
     servers = ",\n".join(line for line in lines if line.startswith(("Server(", "ActionServer(")))
     source = "\n\n".join(
@@ -63,7 +63,7 @@ def test_the_examples_of_scenarios_can_be_read(tmp_path: Path) -> None:
         ]
     )
     names = [one.name for one in declared(load(exercise_in(tmp_path, TOML, source)), 1)]
-    assert names == ["calls", "corner", "reach", "tank", "late", "killed", "two"]
+    assert names == ["calls", "active", "corner", "reach", "tank", "late", "killed", "two"]
 
 
 def test_the_example_of_an_interface_can_be_read(tmp_path: Path) -> None:

@@ -136,6 +136,7 @@ def scenario_of(folder: Path, step: str = "", more: str = "") -> Scenario:
         ('at(0.5).cancel_all("/climb")', "there is no action /climb"),
         ('at(0.5).kill("talker.py")', "there is no program 'talker.py'"),
         ('at(0.5).leave("/moon")', "nothing here is called '/moon'"),
+        ('at(0.5).transition("start")', "there is no transition 'start'"),
         ("Message(0, '/in', 'std_msgs/msg/Float64', {'data': None})", "which is double"),
         ('at(6.05).publish("/in", data=1.0)', "6.05 s after the start, but the scenario first ends after 3 s"),
     ],
