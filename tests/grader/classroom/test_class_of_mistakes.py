@@ -1,7 +1,7 @@
 """A class in which every mistake in an exercise is made once: which names each submission gets.
 
-`make test` grades the mistakes in one exercise, `make soak` those in all of them: that takes about a second of CPU time
-per mistake. What is compared, such as values, is tested without grading in test_misconception.py.
+Only `make soak` grades them: that takes about a second of CPU time per mistake. What is compared, such as values, is
+tested without grading in test_misconception.py.
 """
 
 from __future__ import annotations
@@ -23,11 +23,9 @@ from grader.submission.reader import of_source
 from grader.workers import WorkerPool
 
 ROOT = Path(__file__).parents[3]
-#: Its programs are the quickest to grade.
-ALWAYS = {"robot_description"}
-EXERCISES = [pytest.param(name, marks=() if name in ALWAYS else pytest.mark.soak) for name in sorted(UNLISTED)]
+EXERCISES = sorted(UNLISTED)
 
-pytestmark = pytest.mark.timeout(900)
+pytestmark = [pytest.mark.soak, pytest.mark.timeout(900)]
 
 #: Listed mistakes that other listed ones describe, too: if the first were not listed, the others would be true of it.
 AKIN = {
@@ -133,13 +131,10 @@ def test_other_programs_stand_under_mistakes_that_they_make_or_under_other(
             assert names & set(UNLISTED[exercise][name].may_be_called), f"{name} stands under {names}"
 
 
-@pytest.mark.parametrize("exercises", [sorted(ALWAYS), pytest.param(sorted(UNLISTED), marks=pytest.mark.soak)], ids=len)
-def test_most_of_them_that_make_a_listed_mistake_stand_under_its_name(
-    exercises: list[str], mistakes: Callable[[str], Mistakes]
-) -> None:
+def test_most_of_them_that_make_a_listed_mistake_stand_under_its_name(mistakes: Callable[[str], Mistakes]) -> None:
     stand = [
         bool(named(grade, signatures_of(mistakes(exercise).listed)))
-        for exercise in exercises
+        for exercise in EXERCISES
         for name, grade in mistakes(exercise).unlisted.items()
         if UNLISTED[exercise][name].may_be_called and failures_of(grade)
     ]

@@ -72,6 +72,7 @@ def works_through(
         notebook.save()
 
 
+@pytest.mark.soak
 @pytest.mark.timeout(600)
 def test_from_the_zip_to_full_marks(
     browser: Browser, small_course: CourseFolder, small: HandedOut, tmp_path: Path
