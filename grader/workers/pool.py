@@ -111,9 +111,9 @@ class Worker:
 _THREADS_OF_NUMPY = "OPENBLAS_NUM_THREADS"
 
 #: For the worker and its runners, which import ROS's message types. Without RMW_IMPLEMENTATION of the user's, which may
-#: name a middleware that is not installed.
+#: name a middleware that is not installed: empty, it takes the one that is.
 WORKER_ENVIRONMENT = {
-    "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
+    "RMW_IMPLEMENTATION": "",
     "PYTHONHASHSEED": "0",
     _THREADS_OF_NUMPY: "1",
 }
