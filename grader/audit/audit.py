@@ -225,7 +225,9 @@ def audit(
         run_on(plan, tried, trials, store)
     tidy(exercise.name)
 
-    mutants = tuple(result_of(mutant, tried.mutants[mutant.id], reasons) for mutant in plan.mutants)
+    mutants = tuple(
+        result_of(mutant, tried.mutants[mutant.id], reasons, exercise.many_answers) for mutant in plan.mutants
+    )
     different = {r.mutant.id: tried.mutants[r.mutant.id] for r in mutants if r.fate != "equivalent"}
     trials_of_mistakes = {mistake.name: tried.programs[mistake.name] for mistake in plan.mistakes}
     evidence = {**trials_of_mistakes, **{f"the mutant {id_}": trial for id_, trial in different.items()}}

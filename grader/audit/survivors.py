@@ -63,8 +63,11 @@ def stale(exercise: Exercise, reasons: dict[str, str], fates: dict[str, Fate]) -
 QUESTION = "Is this a right solution? Then list it in {}, as mutant = {!r}, with a reason. If not, add a check."
 
 
-def result_of(mutant: Mutant, trial: Trial, reasons: dict[str, str]) -> MutantResult:
-    """Return the result of one mutant, with the evidence."""
+def result_of(mutant: Mutant, trial: Trial, reasons: dict[str, str], many_answers: bool = False) -> MutantResult:
+    """Return the result of one mutant, with the evidence.
+
+    With `many_answers`, one that differs from the solution and that no check refuses is another right answer.
+    """
     if trial.caught:
         first = trial.failed[0]
         message = trial.message or trial.findings[first].text
@@ -72,7 +75,7 @@ def result_of(mutant: Mutant, trial: Trial, reasons: dict[str, str]) -> MutantRe
     if not trial.differences:
         messages = f"all {trial.messages} messages of {len(trial.run_in)} scenarios"
         return MutantResult(mutant, "equivalent", (), f"{messages}, the graph and the end are the solution's")
-    fate: Fate = "listed" if mutant.id in reasons else "survived"
+    fate: Fate = "listed" if mutant.id in reasons else "equivalent" if many_answers else "survived"
     return MutantResult(mutant, fate, (), _evidence(trial), reasons.get(mutant.id, ""))
 
 

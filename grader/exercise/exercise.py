@@ -106,7 +106,8 @@ class Exercise:
     out, as in a student's copy. `programs` are the programs of a submission with several; `class_name` and `node_name`
     are then those of the first. `packages` are packages from PyPI that programs may use, such as "scipy==1.16.3".
     `advice` maps the name of an exception, such as "KeyError", to a sentence for students whose program ended with it.
-    With `count_hints`, the upload says how many further hints a student took.
+    With `count_hints`, the upload says how many further hints a student took. With `many_answers`, checks judge by
+    properties that other answers than the solution's have, too.
     """
 
     name: str
@@ -127,6 +128,7 @@ class Exercise:
     advice: dict[str, str] = field(default_factory=dict)
     count_hints: bool = False
     packages: tuple[str, ...] = ()
+    many_answers: bool = False
 
     @property
     def scenarios_file(self) -> Path:

@@ -39,7 +39,19 @@ DEADLINE = "deadline"
 #: The keys of exercise.toml, of its tables, and whether a table's key is required.
 KEYS: dict[str, dict[str, bool]] = {
     "": dict.fromkeys(
-        ("title", "points", "file", "class", "node", "reference_node", "advice", "count_hints", "packages"), False
+        (
+            "title",
+            "points",
+            "file",
+            "class",
+            "node",
+            "reference_node",
+            "advice",
+            "count_hints",
+            "packages",
+            "many_answers",
+        ),
+        False,
     ),
     **{
         direction: {

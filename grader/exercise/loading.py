@@ -57,6 +57,7 @@ def load(folder: Path | str) -> Exercise:
         advice=top.texts("advice", '{ KeyError = "What if a key is missing?" }'),
         count_hints=top.flag("count_hints"),
         packages=packages(top),
+        many_answers=top.flag("many_answers"),
     )
     if not exercise.topics and not exercise.endpoints and not exercise.parameters:
         fix = "Declare each topic under [[subscribe]] or [[publish]], and services, actions and parameters likewise."

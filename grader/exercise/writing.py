@@ -16,6 +16,7 @@ def to_toml(exercise: Exercise) -> str:
     top["reference_node"] = "" if exercise.reference_node == REFERENCE_NODE else exercise.reference_node
     top["advice"] = exercise.advice
     top |= {"count_hints": True} if exercise.count_hints else {}
+    top |= {"many_answers": True} if exercise.many_answers else {}
     top["packages"] = list(exercise.packages)
     tables = [_lines(top)]
     tables += [_table("program", _program(program)) for program in exercise.programs]
