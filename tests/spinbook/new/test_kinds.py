@@ -129,7 +129,7 @@ def test_an_exercise_of_each_kind_is_about_its_name_and_short(kind: ExerciseKind
 
 
 #: What every node publishes or subscribes to.
-OF_ROS = ("clock", "parameter_events", "rosout")
+OF_ROS = ("clock", "map", "parameter_events", "rosout")
 
 
 @pytest.mark.parametrize(
