@@ -182,6 +182,14 @@ def never_initialized(names: Sequence[str], classes: Mapping[str, ast.ClassDef])
 
 
 @functools.cache
+def init_returns_nothing() -> bool:
+    """Return whether rclpy is from before Kilted, whose `rclpy.init` can't be used with `with`; False without rclpy."""
+    spec = importlib.util.find_spec("rclpy")
+    text = Path(spec.origin).read_text(encoding="utf-8") if spec and spec.origin else "InitContextManager"
+    return "InitContextManager" not in text
+
+
+@functools.cache
 def node_attributes() -> frozenset[str]:
     """Return the attributes of every rclpy Node, read from rclpy's source; empty if there is no rclpy."""
     try:

@@ -93,6 +93,15 @@ def loops_forever(statement: ast.stmt) -> bool:
     return isinstance(value, ast.Call) and last_name(value.func) in {"serve_forever", "run_forever", "mainloop"}
 
 
+def with_init(everything: Sequence[ast.AST]) -> int:
+    """Return the line of `with rclpy.init():`, which ROS 2 has since Kilted; 0 if there is none."""
+    items = (
+        item.context_expr for statement in everything if isinstance(statement, ast.With) for item in statement.items
+    )
+    calls = (item for item in items if isinstance(item, ast.Call))
+    return next((call.lineno for call in calls if dotted_name(call.func) == "rclpy.init"), 0)
+
+
 def only_defines(statement: ast.stmt) -> bool:
     """Return whether a statement is an import, a definition, a constant or a text, so that running it shows nothing."""
     if isinstance(statement, ast.Expr | ast.Assign | ast.AnnAssign):

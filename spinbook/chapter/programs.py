@@ -11,7 +11,7 @@ from groundwork.problem import Problem, Severity
 from spinbook.chapter.classify import CellKind, ClassifiedFence, node_name
 from spinbook.chapter.complete_program import CompleteProgram, join, usual_import
 from spinbook.chapter.imports import MissingPackage, missing_imports
-from spinbook.chapter.node_classes import needs_arguments, snake_case
+from spinbook.chapter.node_classes import init_returns_nothing, needs_arguments, snake_case
 from spinbook.chapter.node_versions import NodeVersions
 from spinbook.chapter.python_code import PythonCode, inspect
 from spinbook.chapter.syntax import syntax_tree
@@ -71,6 +71,8 @@ class Programs:
         """Return the fence as a static one, with the reason; None if it can run."""
         if joined.missing:
             return self._undefined(item, code, joined.missing)
+        if code.with_init and init_returns_nothing():
+            return self._too_new(item, code)
         if code.never_initialized:
             return self._uninitialized(item, code)
         if code.wants_ros and not _facts(joined, code).initializes:
@@ -146,6 +148,13 @@ class Programs:
             at = item.fence.first_code_line + code.wants_ros - 1
             self.problems.append(Problem(self.file, at, problem, fix, Severity.NOT_RUN))
         return _static(item, "nothing calls `rclpy.init` before it")
+
+    def _too_new(self, item: ClassifiedFence, code: PythonCode) -> ClassifiedFence:
+        problem = "`with rclpy.init():` needs ROS 2 Kilted or newer, and rclpy here is older."
+        fix = "Call `rclpy.init()` in a line of its own, and `rclpy.try_shutdown()` at the end; this works everywhere."
+        at = item.fence.first_code_line + code.with_init - 1
+        self.problems.append(Problem(self.file, at, problem, fix, Severity.NOT_RUN))
+        return _static(item, "`with rclpy.init():` needs ROS 2 Kilted or newer")
 
     def _check_fields(self, item: ClassifiedFence, before: str) -> None:
         """Report fields that messages do not have, in the fence itself, unless its failing is meant."""

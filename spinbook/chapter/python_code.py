@@ -32,6 +32,7 @@ from spinbook.chapter.program_start import (
     spins,
     starts_ros,
     wants_ros,
+    with_init,
     words_read,
 )
 from spinbook.chapter.syntax import descendants, last_name, syntax_tree
@@ -114,6 +115,8 @@ class PythonCode:
     """Whether it calls `rclpy.init`, however it is imported."""
     leaves: str = ""
     """How it would end a notebook's kernel, or read the kernel's command line."""
+    with_init: int = 0
+    """The line of `with rclpy.init():`; 0 if there is none."""
     only_defines: bool = False
     """Whether its top level only imports and defines."""
     counts_words: bool = False
@@ -241,6 +244,7 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         starts_ros=any(map(starts_ros, calls)),
         loops=any(map(loops_forever, at_top(tree))),
         programs=programs_started(everything),
+        with_init=with_init(everything),
         only_defines=all(map(only_defines, tree.body)),
         counts_words=any(map(counts_words, everything)),
         words_read=words_read(everything),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -25,6 +26,8 @@ from spinbook.chapter.shells import Shells
 from spinbook.chapter.shown_interfaces import one_each, shown_interfaces
 from spinbook.chapter.source import Source, read_source
 
+_OTHER_SYSTEM = re.compile(r"\b(windows|mac ?os|os ?x|powershell)\b", re.IGNORECASE)
+_LINUX = re.compile(r"linux|ubuntu|wsl", re.IGNORECASE)
 #: (chapter, package, executable) -> the cell of an earlier chapter that shows this program; None if there is none.
 EarlierPrograms = Callable[[Path, str, str], ChapterCell | None]
 
@@ -208,6 +211,7 @@ def _classify(
     not_executed: dict[int, ClassifiedFence] = {}
     own = interface_package(surroundings.package)
     repeated = excerpts([with_language(block.fence) for block in parsed.fences if block.fence])
+    for_others = _for_other_systems(parsed.blocks)
     for block, fence in _fences(parsed, own):
         item, fence_problems = first_look(fence, file, own) if block.closed else _unclosed(block, fence, file)
         if is_excerpt(item, repeated.get(fence.line, "")):
@@ -216,6 +220,8 @@ def _classify(
         if item.kind is CellKind.INTERFACE and (fault := surroundings.not_compiled.get((file, fence.first_code_line))):
             why = "its definition is not compiled"
             item, fence_problems = ClassifiedFence(fence, CellKind.STATIC, why, fault.problem), [fault]
+        if fence.line in for_others and item.kind is CellKind.SHELL:
+            item, fence_problems = ClassifiedFence(fence, CellKind.STATIC, "its tab is for another system"), []
         if SKIPPED in fence.tags:
             if item.kind in {CellKind.NODE, CellKind.SNIPPET, CellKind.SHELL}:
                 not_executed[len(items)] = item
@@ -247,6 +253,13 @@ def _classify(
 
 def _shown_in(borrowed: Mapping[int, Sequence[ChapterCell]]) -> set[Path]:
     return {cell.shown_in for cells in borrowed.values() for cell in cells if cell.shown_in}
+
+
+def _for_other_systems(blocks: Iterable[Block]) -> set[int]:
+    """Return the lines of the fences in tabs for Windows or macOS: ROS 2 runs on Linux here."""
+    tabs = (block for top in blocks for block in top.walk() if block.kind is BlockKind.TAB)
+    others = (tab for tab in tabs if _OTHER_SYSTEM.search(tab.title) and not _LINUX.search(tab.title))
+    return {inner.fence.line for tab in others for inner in tab.walk() if inner.fence is not None}
 
 
 def _own(

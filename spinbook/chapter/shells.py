@@ -336,6 +336,8 @@ class Shells:
         if command.words[1] not in _ASKING or command.words[2] not in _ASKING[command.words[1]] or self.has_exercise:
             return None
         name = _last_name(words[0]) if words else ""
+        if command.words[1] == "lifecycle" and "lifecyclenode" not in self._said:
+            return _Reason("nothing above makes a node with a life cycle", "Show it in a fence above.", "")
         typed = command.words[1:3] == ("topic", "echo") and len(words) > 1
         if not name or typed or name in {"rosout", "parameter_events"} or name in self._said:
             return None

@@ -27,6 +27,8 @@ ROS2 = {
     "run": set(),
     "launch": set(),
 }
+#: Next to a command that runs, this is the general form of it.
+_FORM = "it holds placeholders for what a reader fills in"
 _IN_A_TERMINAL = frozenset({"bag", "multicast", "doctor", "wtf"})
 MOVING_ABOUT = frozenset({"cd", "source", ".", "export", "unset", "clear"})
 #: Commands that show or make files: a notebook can skip them if the fence has a command that runs.
@@ -151,7 +153,8 @@ def programs_of(code: str) -> list[tuple[str, ...]]:
 
 
 def _noted(command: UnsupportedCommand) -> Command | UnsupportedCommand:
-    if command.text.split(" ")[0] in _BESIDE and not _SHELL_SYNTAX.search(command.text):
+    is_form = command.why == _FORM
+    if is_form or (command.text.split(" ")[0] in _BESIDE and not _SHELL_SYNTAX.search(command.text)):
         return Command(CommandKind.NOTE, f"# {command.text}", (), command.line)
     return command
 
@@ -224,7 +227,7 @@ def _read(text: str, line: int) -> Command | UnsupportedCommand:
     if program not in PROGRAMS:
         return UnsupportedCommand(text, line, f"`{program}` is not ros2, colcon, rqt_plot or rqt_graph")
     if any(_PLACEHOLDER.fullmatch(word) for word in words[1:]):
-        return UnsupportedCommand(text, line, "it holds placeholders for what a reader fills in")
+        return UnsupportedCommand(text, line, _FORM)
     if _SHELL_SYNTAX.search(outside_quotes):
         return UnsupportedCommand(text, line, "pipes, `;`, `&` and redirections need a real shell")
     if re.search(r"\.\.\.|…", outside_quotes):

@@ -39,7 +39,10 @@ def _wrong(values: object, known: InterfaceFields) -> Iterator[WrongField]:
         return
     for name, value in values.items():
         kind = known.fields.get(str(name))
-        if kind is None:
+        if kind is None and isinstance(name, bool):
+            problem = f"`{known.name}` has no field `{name}`."
+            yield WrongField(1, problem, "YAML reads on, off, yes and no as True or False: quote the field's name.")
+        elif kind is None:
             yield missing_field(str(name), known, 1)
         elif kind.is_message and not kind.is_list and (inner := fields_of(kind.base)):
             yield from _wrong(value, inner)

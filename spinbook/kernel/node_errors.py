@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from spinbook.kernel.long_lines import shortened
-from spinbook.kernel.reader_frames import ReaderFrames
+from spinbook.kernel.reader_frames import ReaderFrames, is_log_line
 
 #: The key of an error in the metadata of a cell's output.
 ERROR = "spinbook_error"
@@ -118,15 +118,21 @@ class NodeLog:
     def _line(self, line: str, stopping: bool) -> None:
         if line.strip() == _TRACEBACK:
             self._frames, self._uncaught = [], False
-        elif self._frames is not None:
+        elif self._frames is not None and not is_log_line(line):
             self._in_traceback(line, self._frames)
+        elif self._frames is not None:
+            # Another thread logs while Python prints the traceback.
+            self._log(line, stopping)
         elif line.startswith(_CHAINED) or not line.strip():
             return
         else:
             self._end_chain(stopping)
             self._ignored = line.startswith("Exception ignored")
-            if (log := _LOGGED.match(line)) and not (stopping and _ON_CTRL_C.match(_text_of(log))):
-                self.logged.append(_in_words(log))
+            self._log(line, stopping)
+
+    def _log(self, line: str, stopping: bool) -> None:
+        if (log := _LOGGED.match(line)) and not (stopping and _ON_CTRL_C.match(_text_of(log))):
+            self.logged.append(_in_words(log))
 
     def _in_traceback(self, line: str, frames: list[tuple[str, int]]) -> None:
         if frame := _FRAME.match(line):

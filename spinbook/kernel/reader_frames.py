@@ -14,6 +14,14 @@ _FRAME = re.compile(_LAUNCHED + r'(?P<before>\s+File ")(?P<file>[^"]+)(?P<after>
 _INDENTED = re.compile(_LAUNCHED + r"\s")
 
 
+_LOG_LINE = re.compile(_LAUNCHED + r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] ")
+
+
+def is_log_line(line: str) -> bool:
+    """Return whether a line is one of ROS's log, which another thread may write in the middle of a traceback."""
+    return bool(_LOG_LINE.match(line))
+
+
 class ReaderFrames:
     """Goes through the lines of an output in order, and leaves out frames of files that are not below `root`."""
 
@@ -39,7 +47,7 @@ class ReaderFrames:
         elif self._inside and _INDENTED.match(line):
             return line if self._keeps else None
         else:
-            self._inside = False
+            self._inside = self._inside and is_log_line(line)
         return line
 
     def _of_reader(self, name: str) -> str:

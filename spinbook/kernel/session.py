@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from interface_compiler import prefixes
 from spinbook.chapter.complete_program import join
 from spinbook.chapter.launch_files import is_package_file
 from spinbook.chapter.python_code import CodeError, inspect
@@ -185,6 +186,9 @@ class Session:
         if not pairs:
             return self.package, ()
         package = pairs[0][0]
+        if prefixes.interfaces_of(package, prefixes.installed()):
+            # Its compiled messages are imported from that package, which a folder of programs would hide.
+            return self.package, ()
         executables = tuple(executable for name, _, executable in pairs if name == package)
         return (self.package if package == self.package.name else replace(self.package, name=package)), executables
 

@@ -37,6 +37,8 @@ def run_colcon(session: Session, words: list[str], bound: DisplayLimit) -> None:
     prefixes = [p for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
     settings = {
         "AMENT_PREFIX_PATH": os.pathsep.join(dict.fromkeys([*prefixes, sys.prefix])),
+        # Otherwise setuptools warns of it in each package.
+        "PYTHONDONTWRITEBYTECODE": "",
         # It would warn that this prefix has no local_setup script; nothing here needs one.
         "COLCON_LOG_LEVEL": os.environ.get("COLCON_LOG_LEVEL", "error"),
     }

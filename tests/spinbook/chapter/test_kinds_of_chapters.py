@@ -62,6 +62,10 @@ CELLS = {
     "packages": (["d"], ["nav2_simple_commander", "sensor_msg", "geometry_msgs.msg.Twits"]),
     "pictures_by_reference": ([], []),
     "placeholders": ([], ["placeholders"] * 4 + ["your_package"]),
+    "systems": (
+        ["ros2 topic list", "# ros2 topic info <topic_name>; ros2 topic list -t"],
+        ["for another system", "needs ROS 2 Kilted"],
+    ),
     "transcripts": (
         ["ros2 node list", "ros2 topic list; ros2 node list", "ros2 interface show std_msgs/msg/String"],
         [],
@@ -97,6 +101,7 @@ PROBLEMS = {
     "named_below": [(39, "Did you mean `ping_robot`?")],
     "packages": [(5, "PyPI does not have ROS 2's"), (14, "Did you mean `sensor_msgs`?"), (23, "Did you mean `Twist`?")],
     "placeholders": [(line, "`static`") for line in (4, 8, 12, 16, 20)],
+    "systems": [(23, "Call `rclpy.init()` in a line of its own")],
     "various_commands": [(8, "real shell"), (13, "`rviz2`"), (17, "in a terminal")],
 }
 

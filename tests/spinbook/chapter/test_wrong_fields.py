@@ -128,6 +128,7 @@ def test_a_program_that_never_calls_init_is_reported(tmp_path: Path) -> None:
             "topic pub /x std_msgs/msg/Int32 '{data: many}'",
             "`data` of `Int32` is an int32, and this is a string, `'many'`",
         ),
+        ("service call /x turtlesim/srv/SetPen '{off: 0}'", "`SetPen.Request` has no field `False`"),
         ("service call /x std_srvs/srv/SetBool '{dta: true}'", "`SetBool.Request` has no field `dta`"),
         ("action send_goal /x example_interfaces/action/Fibonacci '{ordr: 3}'", "`Fibonacci.Goal` has no field `ordr`"),
     ],

@@ -31,6 +31,8 @@ def test_a_definition_is_compiled_once_and_a_changed_one_says_what_to_restart(
     assert "Run the cells of these nodes again; they still use the old text: holder." in changed.text
     assert "This kernel has imported robot_interfaces already: restart it" in changed.text
     assert "Limits(name='', upper=0.0)" in kernel.run(NODE).text
+    program = "%%node user --as robot_interfaces/user\nfrom robot_interfaces.msg import Limits\nprint(Limits())\n"
+    assert "Limits(name='', upper=0.0)" in kernel.run(program).text, "its package has messages and programs"
     assert (
         kernel.folder / "robot_ws/src/robot_interfaces/msg/Limits.msg"
     ).read_text() == "string name\nfloat64 upper\n"

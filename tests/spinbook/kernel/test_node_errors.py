@@ -74,6 +74,15 @@ def test_a_program_that_ctrl_c_ends_has_no_error_when_it_is_stopped(text: str) -
     assert report(text) is not None, "nobody stopped it"
 
 
+def test_a_line_of_the_log_in_a_traceback_does_not_end_it() -> None:
+    log = NodeLog()
+    first, *rest = SHUT_DOWN.splitlines(keepends=True)
+    log.add("".join([first, *rest[:1], "[INFO] [arm]: bye\n", *rest[1:]]), stopping=True)
+
+    assert log.was_interrupted
+    assert describe("arm", log, "", find_line) is None
+
+
 def test_an_exception_while_a_program_is_stopped_is_an_error() -> None:
     error = report(CTRL_C + AGAIN + RAISED, stopping=True)
 
