@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from ros_in_python.ros2.cli import CONTEXT, CommandError
+from ros_in_python.ros2.hello import hello
 from spinbook.doctor.diagnosis import CHECKS, MachineCheck, MachineFinding, State, diagnose, is_able, show
 
 
@@ -60,17 +61,21 @@ def _with_progress(chosen: list[MachineCheck]) -> list[MachineFinding]:
 OF_ROS = ("python", "libraries", "ros", "middleware", "logs", "message", "environment", "memory")
 
 
-@click.command(name="doctor", context_settings=CONTEXT)
+@click.group(name="doctor", context_settings=CONTEXT, invoke_without_command=True)
+@click.pass_context
 @click.option("-r", "--report", is_flag=True, help="Also print what was found.")
 @click.option("-rf", "--report-failed", is_flag=True, help="Also print what was found, of what failed.")
 @click.option("-iw", "--include-warnings", is_flag=True, help="Count warnings as failures.")
-def ros2_doctor(report: bool, report_failed: bool, include_warnings: bool) -> None:
+def ros2_doctor(context: click.Context, report: bool, report_failed: bool, include_warnings: bool) -> None:
     """Check whether ROS 2 works here: libraries, middleware, a message from one process to another.
 
     \b
       ros2 doctor
       ros2 doctor --report
+      ros2 doctor hello       on each of several computers: whether they hear each other
     """
+    if context.invoked_subcommand:
+        return
     findings = diagnose([check for check in CHECKS if check.word in OF_ROS], lambda finding: None)
     for finding in findings:
         if report or (report_failed and finding.state is not State.OK):
@@ -83,3 +88,6 @@ def ros2_doctor(report: bool, report_failed: bool, include_warnings: bool) -> No
     if failed:
         raise CommandError(f"{len(failed)}/{len(findings)} check(s) failed", "", f"Failed modules: {' '.join(failed)}")
     click.echo(f"\nAll {len(findings)} checks passed\n")
+
+
+ros2_doctor.add_command(hello)

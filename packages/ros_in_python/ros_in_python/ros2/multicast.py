@@ -29,6 +29,20 @@ _group = click.option("--group", default=GROUP, show_default=True, help="The mul
 _port = click.option("--port", type=click.IntRange(1, 65535), default=PORT, show_default=True, help="The UDP port.")
 
 
+def receiver(group: str, port: int) -> socket.socket:
+    """Return a socket that receives what is sent to a group. Raises OSError."""
+    end = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        end.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        end.bind(("", port))
+        membership = struct.pack("4sl", socket.inet_aton(group), socket.INADDR_ANY)
+        end.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+    except OSError:
+        end.close()
+        raise
+    return end
+
+
 @click.command(context_settings=CONTEXT)
 @_group
 @_port
@@ -41,11 +55,7 @@ def receive(group: str, port: int, timeout: float | None) -> None:
     """
     click.echo("Waiting for UDP multicast datagram...")
     try:
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as end:
-            end.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            end.bind(("", port))
-            membership = struct.pack("4sl", socket.inet_aton(group), socket.INADDR_ANY)
-            end.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+        with receiver(group, port) as end:
             end.settimeout(timeout)
             data, (sender, from_port) = end.recvfrom(4096)
     except TimeoutError:

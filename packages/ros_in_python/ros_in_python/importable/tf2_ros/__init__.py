@@ -1,5 +1,7 @@
 """tf2 over ROS 2: broadcasters send the transforms of a robot's frames, listeners collect them in a buffer."""
 
+# Programs import it from here, as ROS 2's tutorial on URDF does.
+from geometry_msgs.msg import TransformStamped
 from tf2_py import (
     BufferCore,
     ConnectivityException,
@@ -41,6 +43,7 @@ __all__ = [
     "TransformException",
     "TransformListener",
     "TransformRegistration",
+    "TransformStamped",
     "TypeException",
     "convert",
 ]
