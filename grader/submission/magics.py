@@ -20,7 +20,7 @@ _TOKEN = re.compile(
     """.replace("*+", "*"),
     re.VERBOSE | re.DOTALL,
 )
-_COMMAND = re.compile(r"[ \t]*(?P<sign>%%?|!!?|\?\??)(?P<rest>.*)")
+_COMMAND = re.compile(r"[ \t]*(?P<sign>%%?|!!?|\?\??|[,;/])(?P<rest>.*)")
 _ASSIGNED = re.compile(r"(?P<target>[\w.,\[\]'\" \t]+=)[ \t]*(?:![^=]|%[ \t]*[A-Za-z])")
 _HELP = re.compile(r"[^'\"#]*[\w*\]]\?\??[ \t]*(?:#.*)?$")
 _TIMED = re.compile(r"%(?:time|prun)[ \t]+(?P<statement>[^-\s].*)$")

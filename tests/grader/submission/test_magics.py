@@ -42,6 +42,10 @@ def test_a_block_of_commands_stays_a_block_and_an_assigned_name_a_name() -> None
     assert without_commands("files = !ls\n") == "files = None\n"
 
 
+def test_calls_without_brackets_are_commands_too() -> None:
+    assert without_commands("x = 1\n/print 1\n,print a b\n;print a b\n") == "x = 1\n\n\n\n"
+
+
 def test_a_timed_statement_is_a_statement() -> None:
     assert without_commands("%time node = Heartbeat()\n") == "node = Heartbeat()\n"
 
@@ -59,6 +63,8 @@ def test_commands_without_their_sign_count_where_the_cell_is_no_python() -> None
         ("x = 1\n%%node heartbeat", "", "x = 1\n%%node heartbeat"),
         (">>> x = 1\n>>> if x:\n...     y = 2", "", "x = 1\nif x:\n    y = 2"),
         ("    x = 1\n    y = 2", "", "x = 1\ny = 2"),
+        ("    x = 1\n  # less\n    y = 2", "", "x = 1\n  # less\ny = 2"),
+        (" %%node heartbeat\n x = 1", "node", "\nx = 1"),
     ],
 )
 def test_a_cell_is_split_from_its_magic_and_its_prompts(source: str, name: str, code: str) -> None:

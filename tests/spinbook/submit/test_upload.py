@@ -92,10 +92,12 @@ def test_an_edited_upload_says_which_part_and_is_graded_all_the_same(
 
 
 def test_a_zip_that_was_packed_by_hand_is_graded_and_that_is_said(exercise: Exercise) -> None:
-    submission = of_upload("upload.zip", changed(submission__json=None), exercise)
+    same = NOTEBOOK.replace(b"x = 1", b"pass")
+    submission = of_upload("upload.zip", changed(submission__json=None, week3__ipynb=same), exercise)
     assert "submission.json is missing" in submission.warning
     assert submission.source == CODE.decode()
     assert submission.notes == ("Taken: joint_velocity.py.",)
+    assert "they differ" in of_upload("upload.zip", changed(submission__json=None), exercise).question
 
 
 def test_damaged_code_is_taken_from_the_notebook_beside_it(exercise: Exercise) -> None:
