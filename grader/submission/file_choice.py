@@ -158,8 +158,7 @@ def _decided(options: Sequence[FileOption], reading: ReadState, target: ProgramF
 
 def notes_on(option: FileOption, reading: ReadState) -> tuple[str, ...]:
     """Return notes on the choice; none if there was only one program. Raises `AmbiguousProgram`."""
-    _refuse_own_interfaces(option, reading)
-    notes = []
+    notes = _notes_on_interfaces(option, reading)
     others = [name for name in packages.programs(reading.files) if name != option.file]
     notebooks = [name for name in reading.files if kind_of(name) == "notebook" and name != option.file]
     called = any(_is_called(option.file, one.file) for one in targets(reading.exercise))
@@ -179,19 +178,22 @@ def _is_rival(name: str, option: FileOption, reading: ReadState) -> bool:
     return not same and any(is_program(source, target) for target in targets(reading.exercise))
 
 
-def _refuse_own_interfaces(option: FileOption, reading: ReadState) -> None:
-    """Raise `AmbiguousProgram` if a program needs messages of the submission's own, unless they are installed here.
+def _notes_on_interfaces(option: FileOption, reading: ReadState) -> list[str]:
+    """Return a note if a program imports messages that it defines and the course has, too.
 
-    It is for the instructor to decide, as the definitions would be compiled outside of any sandbox: comments of a
-    definition get into the code that gcc reads, and gcc can be told to copy any file into the result.
+    Raises `AmbiguousProgram` if the course does not have them. It is for the instructor to decide, as the definitions
+    would be compiled outside of any sandbox: comments of a definition get into the code that gcc reads, and gcc can be
+    told to copy any file into the result.
     """
     used = packages.packages_of_messages(option.source, reading.files)
-    for package in sorted(packages.own_interfaces(reading.files) & used):
+    both = sorted(packages.own_interfaces(reading.files) & used)
+    for package in [one for one in both if not packages.is_installed(one)]:
         raise AmbiguousProgram(
             f"The program imports {package}, a package of messages that was handed in with it, and the grader does not "
             "build it. Use the types that the task names. To the instructor: to grade it as it is, put its definitions "
             f"into the course's folder interfaces/{package}/, after you have read them."
         )
+    return [f"The course's {package} is used, not the one that was handed in." for package in both]
 
 
 def _nothing(reading: ReadState, target: ProgramFile) -> str:

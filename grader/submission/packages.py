@@ -149,17 +149,18 @@ def packages_of_messages(source: str, files: Mapping[str, bytes]) -> set[str]:
 
 
 def own_interfaces(files: Mapping[str, bytes]) -> set[str]:
-    """Return the packages that define messages, services or actions, and are not installed here as well."""
+    """Return the packages that define messages, services or actions."""
     found = set()
     for root in roots(files):
         manifest = _PACKAGE_NAME.search(files.get(posixpath.join(root, "package.xml"), b""))
         kinds = [name for name in files if is_below(name, root) and re.search(r"\.(msg|srv|action)$", name)]
-        if manifest and kinds and not _is_installed(manifest[1].decode()):
+        if manifest and kinds:
             found.add(manifest[1].decode())
     return found
 
 
-def _is_installed(package: str) -> bool:
+def is_installed(package: str) -> bool:
+    """Return whether a package can be imported here."""
     try:
         return importlib.util.find_spec(package) is not None
     except (ImportError, ValueError):

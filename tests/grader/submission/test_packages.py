@@ -354,7 +354,9 @@ def test_messages_of_their_own_are_a_question_unless_they_are_the_courses(
     (tmp_path / "my_msgs").mkdir()
     (tmp_path / "my_msgs" / "__init__.py").touch()
     monkeypatch.syspath_prepend(tmp_path)
-    assert of_content("ws.zip", zipped(files), exercise).program
+    submission = of_content("ws.zip", zipped(files), exercise)
+    assert submission.program
+    assert "The course's my_msgs is used, not the one that was handed in." in submission.notes
 
 
 @pytest.mark.parametrize(
