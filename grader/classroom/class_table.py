@@ -28,7 +28,7 @@ def by_row(table: Path, zone: tzinfo | None) -> tuple[list[tuple[File, UploadedF
     """
     uploads: dict[str, list[tuple[File, UploadedFile]]] = defaultdict(list)
     absent: list[tuple[Student, Skipped]] = []
-    for number, row in table_rows(table, NEEDED):
+    for number, row in table_rows(table, NEEDED, KNOWN):
         if not row["student"] or not row["file"]:
             raise SubmissionsError(
                 f"{table}:{number}: file = {row['file']!r}, student = {row['student']!r}. Give both."

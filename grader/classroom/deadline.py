@@ -93,15 +93,11 @@ def deadline_of(exercise: Exercise) -> Deadline | None:
         raise ExerciseError(file, "[deadline] has no due", "Write due = 2026-11-22T23:59:00+01:00.")
     percent, unit, at_most = _rule(entries.get("penalty", "0 % a day"), file)
     zone = _zone(entries, file)
-    return Deadline(
-        due=_moment(entries["due"], "due", file, zone),
-        grace=_length(entries.get("grace", "0 minutes"), file),
-        percent=percent,
-        unit=unit,
-        at_most=at_most,
-        closes=_moment(entries["closes"], "closes", file, zone) if "closes" in entries else None,
-        zone=zone,
-    )
+    due = _moment(entries["due"], "due", file, zone)
+    closes = _moment(entries["closes"], "closes", file, zone) if "closes" in entries else None
+    if closes and closes < due:
+        raise ExerciseError(file, f"closes = {closes} is before due", "Write a time after due, or leave it out.")
+    return Deadline(due, _length(entries.get("grace", "0 minutes"), file), percent, unit, at_most, closes, zone)
 
 
 def _zone(entries: dict[str, Any], file: Path) -> tzinfo | None:
@@ -165,7 +161,7 @@ def overrides_in(file: Path, students: set[str], zone: tzinfo | None = None) -> 
     """
     found: dict[str, tuple[Override, ...]] = {}
     try:
-        for number, row in table_rows(file, ("student", "reason")):
+        for number, row in table_rows(file, ("student", "reason"), ("points", "due")):
             override = _override(row, f"{file}:{number}", students, zone)
             found[override.student] = (*found.get(override.student, ()), override)
     except SubmissionsError as error:
@@ -182,7 +178,7 @@ def _override(row: dict[str, str], place: str, students: set[str], zone: tzinfo 
     if bool(points) == bool(due):
         raise OverridesError(f"{place}: points = {points!r}, due = {due!r}. Give one of the two.")
     if due:
-        date = moment(due, zone)
+        date = moment(due if ":" in due else f"{due} 23:59:59", zone)
         if date is None:
             raise OverridesError(f"{place}: due = {due!r}. Write it as 2026-11-22 23:59.")
         return Override(student, row["reason"], due=date)

@@ -41,7 +41,7 @@ def read_groups(table: Path) -> tuple[Group, ...]:
     """
     members: dict[str, list[Student]] = defaultdict(list)
     groups: dict[str, str] = {}
-    for number, row in table_rows(table, ("group", "student")):
+    for number, row in table_rows(table, ("group", "student"), ("name", "email")):
         if not row["group"] or not row["student"]:
             raise SubmissionsError(
                 f"{table}:{number}: group = {row['group']!r}, student = {row['student']!r}. Give both."

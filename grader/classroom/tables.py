@@ -23,11 +23,11 @@ FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "＝", "＋", "－", "＠")
 LONGEST_CELL = 20_000
 
 
-def table_rows(table: Path, needed: Sequence[str]) -> list[tuple[int, dict[str, str]]]:
+def table_rows(table: Path, needed: Sequence[str], more: Sequence[str] = ()) -> list[tuple[int, dict[str, str]]]:
     """Return the rows with their line numbers. Spaces around values are removed, and empty rows are left out.
 
-    Commas, semicolons or tabs separate columns; names of `needed` columns may be in any case. Raises `SubmissionsError`
-    if the file can't be read, lacks a column, or has a row with more values than columns.
+    Commas, semicolons or tabs separate columns; the columns in `needed` and `more` may be in any case. Raises
+    `SubmissionsError` if the file can't be read, lacks a column, or has a row with more values than columns.
     """
     number, columns, rows = _read(table, lambda columns: {*needed} <= {column.casefold() for column in columns})
     known = {column.casefold() for column in columns}
@@ -36,7 +36,7 @@ def table_rows(table: Path, needed: Sequence[str]) -> list[tuple[int, dict[str, 
             raise SubmissionsError(
                 f"{table}:{number}: there is no column {column!r} (there are: {', '.join(columns) or 'none'})."
             )
-    return _by_column(table, [one.casefold() if one.casefold() in needed else one for one in columns], rows)
+    return _by_column(table, [one.casefold() if one.casefold() in (*needed, *more) else one for one in columns], rows)
 
 
 def platform_rows(table: Path, is_header: Callable[[dict[str, str]], bool]) -> list[tuple[int, dict[str, str]]]:

@@ -79,6 +79,7 @@ def test_a_due_date_may_be_a_day_and_a_rule_may_be_by_the_hour(exercise: Exercis
         (["due = 2026-11-22", 'penalty = "110 % a day"'], "110 %"),
         (["due = 2026-11-22", 'grace = "soon"'], "grace = 'soon'"),
         (["due = 2026-11-22", "late = 3"], "has 'late'"),
+        (["due = 2026-11-22", "closes = 2026-11-20"], "is before due"),
     ],
 )
 def test_what_can_not_be_understood_names_the_file_and_what_to_write(
@@ -121,6 +122,13 @@ def test_points_that_are_set_count_late_or_not_also_after_a_fault_of_ours(tmp_pa
     for grade in (plain.HALF, plain.FAULT):
         late = plain.entry(grade, submitted=after(days=3))
         assert plain.entry(grade, adjustments=adjust(late)).final == 7
+
+
+def test_an_extension_to_a_day_lasts_until_its_end(tmp_path: Path) -> None:
+    file = tmp_path / "overrides.csv"
+    file.write_text("Student;Due;Reason\nada;24.11.2026;ill\n", encoding="utf-8")
+    (extension,) = overrides_in(file, {"ada"}, timezone.utc)["ada"]
+    assert str(extension.due) == "2026-11-24 23:59:59+00:00"
 
 
 def test_nobody_gets_less_than_nothing(tmp_path: Path) -> None:
