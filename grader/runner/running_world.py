@@ -13,7 +13,7 @@ from grader.runner.message import message_class
 from grader.runner.message_order import in_canonical_order, unordered_sources
 from grader.runner.publishers import ReferencePublishers
 from grader.runner.service_servers import AuthorFault
-from grader.scenario.scenario import START, Message
+from grader.scenario.scenario import START, Message, ToWorld
 from grader.scenario.values import InvalidValue, checked_fields
 from grader.scenario.world import World
 from rmw_lockstep.hub import DeliveredMessage
@@ -54,6 +54,10 @@ class RunningWorld:
         for topic, fields in self._state().items():
             self._publish(Message(now, topic, self._model.publishes[topic], fields))
         self._schedule.plan(now + self._period, self._step)
+
+    def do(self, step: ToWorld) -> None:
+        """Call the method that a step names."""
+        self._ask(lambda: getattr(self._model, step.method)(**step.arguments))
 
     def _state(self) -> dict[str, dict[str, object]]:
         state: dict[str, dict[str, object]] = {}

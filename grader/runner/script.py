@@ -28,6 +28,7 @@ from grader.scenario.scenario import (
     StartProgram,
     Step,
     Subscribe,
+    ToWorld,
 )
 from grader.scenario.servers import ActionServer
 from grader.scenario.servers import Server as DeclaredServer
@@ -100,6 +101,8 @@ class Script:
             self._recorder.join(step.name, step.topic, step.type, hub_qos(step.qos))
         elif isinstance(step, Leave):
             self._leave(step.name)
+        elif isinstance(step, ToWorld) and self._world:
+            self._world.do(step)
         elif isinstance(step, Kill) and self._team:
             self._team.stop(step.program, step.at)
         elif isinstance(step, StartProgram) and self._team:

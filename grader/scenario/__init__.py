@@ -2,6 +2,7 @@
 
 from grader.exercise.exercise import Qos
 from grader.scenario.models import JointChain, Turtle
+from grader.scenario.physics import MuJoCo
 from grader.scenario.scenario import Companion, Message, Program, Scenario
 from grader.scenario.servers import ActionServer, Server, aborts, never_ends, no_reply, rejects, reply, succeeds
 from grader.scenario.steps import at, before_start
@@ -13,6 +14,7 @@ __all__ = [
     "Companion",
     "JointChain",
     "Message",
+    "MuJoCo",
     "Program",
     "Qos",
     "Scenario",

@@ -75,9 +75,18 @@ AUTHORS_FILE = "scenarios.py"
 
 def line_of_the_author() -> int:
     """Return the line of the innermost call in a scenarios.py, or 0 if there is none."""
+    return _place_of_the_author()[1]
+
+
+def folder_of_the_author() -> Path:
+    """Return the folder of the innermost scenarios.py that calls this; the current one if there is none."""
+    return Path(_place_of_the_author()[0]).parent
+
+
+def _place_of_the_author() -> tuple[str, int]:
     frame = sys._getframe(1)
     while frame is not None:
         if frame.f_code.co_filename.endswith(f"/{AUTHORS_FILE}"):
-            return frame.f_lineno
+            return frame.f_code.co_filename, frame.f_lineno
         frame = frame.f_back  # type: ignore[assignment]  # None at the end
-    return 0
+    return "", 0

@@ -31,6 +31,7 @@ from grader.scenario.scenario import (
     StartProgram,
     Step,
     Subscribe,
+    ToWorld,
     Transition,
 )
 from grader.scenario.servers import ActionServer, GoalScript, Reply, Server
@@ -192,6 +193,8 @@ class Resolver:
             self._see_program(step)
         if isinstance(step, (Leave, ComeBack)):
             self._see_peer(step)
+        if isinstance(step, ToWorld):
+            self._see_method(step)
         return step
 
     def _node(self) -> str:
@@ -239,6 +242,17 @@ class Resolver:
                 fix = 'Give each its own name, such as Program("robot.py", name="left", namespace="/left").'
                 self._fault(0, f"two programs are called {one.id!r}", fix)
             names.append(one.id)
+
+    def _see_method(self, step: ToWorld) -> None:
+        world = self._scenario.world
+        if world is None:
+            self._fault(step.line, f"there is no world to {step.method}", "Give the scenario a world.")
+        try:
+            getattr(world.begin(), step.method)(**step.arguments)
+        except Exception as error:
+            subject, fix = f"the world's {step.method} fails", "Look at the arguments."
+            file = self._exercise.scenarios_file
+            raise error_in(error, self._exercise.folder, file, subject, fix, step.line) from None
 
     def _see_peer(self, step: Leave | ComeBack) -> None:
         known = [message.topic for message in self._scenario.messages]

@@ -139,6 +139,14 @@ class Kill(Step):
 
 
 @dataclass(frozen=True)
+class ToWorld(Step):
+    """Something happens to the world: its method of this name is called with these arguments."""
+
+    method: str
+    arguments: dict[str, Any]
+
+
+@dataclass(frozen=True)
 class StartProgram(Step):
     """One of the submission's programs is started."""
 

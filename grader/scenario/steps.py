@@ -19,6 +19,7 @@ from grader.scenario.scenario import (
     SetParameter,
     StartProgram,
     Subscribe,
+    ToWorld,
     Transition,
 )
 from grader.scenario.times import BEFORE_START, SECOND, START
@@ -88,6 +89,10 @@ class At:
     def come_back(self, name: str) -> tuple[ComeBack, ...]:
         """Bring a server back."""
         return self._each(lambda instant: ComeBack(instant, name))
+
+    def world(self, method: str, /, **arguments: Any) -> tuple[ToWorld, ...]:
+        """Call a method of the world's, such as MuJoCo's `push`."""
+        return self._each(lambda instant: ToWorld(instant, method, arguments))
 
     def kill(self, program: str) -> tuple[Kill, ...]:
         """Kill one of the submission's programs."""

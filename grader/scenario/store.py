@@ -27,6 +27,7 @@ _STEPS = (
     steps.ComeBack,
     steps.Kill,
     steps.StartProgram,
+    steps.ToWorld,
 )
 _CLASSES: dict[str, Any] = {
     one.__name__: one

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from grader.recording.recording import Fields
-from grader.scenario.code import AuthorCode, code_of, line_of_the_author
+from grader.scenario.code import AuthorCode, code_of, folder_of_the_author, line_of_the_author
 
 #: The duration of one step of a world, unless the author says otherwise (s).
 PERIOD = 0.02
@@ -43,8 +43,10 @@ class World:
     period: float = PERIOD
     line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
 
-    def __init__(self, model: Callable[..., Any] | AuthorCode, period: float = PERIOD, **arguments: Any) -> None:
+    def __init__(self, model: Callable[..., Any] | AuthorCode, /, period: float = PERIOD, **arguments: Any) -> None:
         """Take the class itself, and the arguments for its constructor."""
+        if with_files := getattr(model, "with_files", None):
+            arguments = with_files(arguments, folder_of_the_author())
         given = {"code": model if isinstance(model, AuthorCode) else code_of(model), "arguments": arguments}
         for name, value in {**given, "period": period, "line": line_of_the_author()}.items():
             object.__setattr__(self, name, value)
