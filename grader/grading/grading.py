@@ -142,7 +142,7 @@ def _isolation_of_ones_own(options: Options) -> Isolation:
     except SandboxUnavailable:
         if options.isolation is not None:
             raise
-        return Isolation.NONE
+        return choose(Isolation.NONE)
 
 
 def grade_submission(exercise: Exercise, submission: Submission, options: Options | None = None) -> Grade:

@@ -6,6 +6,7 @@ import contextlib
 import json
 import os
 import pickle
+import resource
 import signal
 import socket
 import subprocess
@@ -19,7 +20,7 @@ from grader.sandbox.environment import RUNTIME_VARIABLES, for_trusted
 from grader.sandbox.isolation import forget
 from grader.sandbox.middleware import variables
 from grader.sandbox.monitor import Monitor, ProcessExit, ProgramOutput
-from grader.sandbox.program import START_REQUEST, Isolation, Limits, ProgramSpec, SandboxError
+from grader.sandbox.program import OPEN_FILES, START_REQUEST, Isolation, Limits, ProgramSpec, SandboxError
 from groundwork.clean_environment import module_command
 
 _START_S = 30.0
@@ -156,6 +157,9 @@ class ForkServer:
         Raises:
             MiddlewareUnavailable: if the middleware has not been compiled here.
         """
+        soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+        if 0 <= soft < OPEN_FILES <= hard:
+            resource.setrlimit(resource.RLIMIT_NOFILE, (OPEN_FILES, hard))
         self._preload = set(preload)
         self._zygote = _Zygote(preload)
 

@@ -19,7 +19,7 @@ from functools import cache
 from pathlib import Path
 
 from grader.sandbox.environment import RUNTIME_VARIABLES, for_trusted
-from grader.sandbox.program import IN_DOCKER, Isolation, SandboxUnavailable
+from grader.sandbox.program import IN_DOCKER, OPEN_FILES, Isolation, SandboxUnavailable
 from groundwork.clean_environment import module_command
 from groundwork.files import cached, write_if_changed
 
@@ -48,8 +48,9 @@ def choose(wanted: Isolation | None = None) -> Isolation:
     """Return the level to use: `wanted`, or the strongest that works here. It is NONE only if that is `wanted`.
 
     Raises:
-        SandboxUnavailable: if `wanted`, or without it every level, does not work here.
+        SandboxUnavailable: if `wanted`, or without it every level, does not work here, or what all need is missing.
     """
+    _refuse_what_no_level_works_with()
     if wanted is not None:
         reason = _reason_against(wanted)
         if reason is not None:
@@ -66,6 +67,19 @@ def choose(wanted: Isolation | None = None) -> Isolation:
         f"Allow user namespaces (in a container: {IN_DOCKER} ...), or use a kernel with Landlock (5.13 or newer). "
         "If you trust the code, --isolation none runs it without a sandbox."
     )
+
+
+def _refuse_what_no_level_works_with() -> None:
+    if not Path("/proc/self/statm").exists():
+        raise SandboxUnavailable(
+            "/proc is not there, from which the grader reads what a program uses. Mount it: proc(5)."
+        )
+    hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+    if 0 <= hard < OPEN_FILES:
+        raise SandboxUnavailable(
+            f"A program here may open {hard} files at once, and a student's needs {OPEN_FILES}. Raise the limit: "
+            "`ulimit -Hn` shows it, /etc/security/limits.conf or the container's --ulimit sets it."
+        )
 
 
 def _reason_against(level: Isolation) -> str | None:

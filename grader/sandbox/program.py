@@ -14,6 +14,8 @@ SUBMISSION = "/submission"
 
 #: The descriptor of every program through which its processes connect to the hub.
 HUB = 1000
+#: How many files a program may have open: `HUB` is one of them, and liblockstep reads three per thread of the program.
+OPEN_FILES = 1024
 
 #: The message to the fork server that requests a supervisor. Any other message is the name of a module to import.
 START_REQUEST = b" start"
@@ -152,7 +154,7 @@ def apply_limits(limits: Limits, *, other_processes: int = 0) -> None:
         resource.RLIMIT_AS: limits.memory_bytes,
         resource.RLIMIT_NPROC: limits.processes + other_processes,
         resource.RLIMIT_FSIZE: limits.file_bytes,
-        resource.RLIMIT_NOFILE: 1024,  # liblockstep reads three files per thread of the program
+        resource.RLIMIT_NOFILE: OPEN_FILES,
         resource.RLIMIT_CORE: 0,
         resource.RLIMIT_MEMLOCK: 8 * _MIB,
         resource.RLIMIT_MSGQUEUE: 0,

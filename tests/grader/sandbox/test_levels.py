@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -54,6 +55,14 @@ def test_where_nothing_works_it_is_refused_with_every_reason(reasons: dict[Isola
     for reason in NOTHING_WORKS.values():
         assert reason in str(refusal.value)
     assert "--isolation none" in str(refusal.value)
+
+
+def test_a_session_in_which_too_few_files_may_be_open_is_named_before_anything_runs(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (64, 128))
+    with pytest.raises(SandboxUnavailable, match="may open 128 files at once, and a student's needs 1024"):
+        choose(Isolation.NONE)
 
 
 def test_no_sandbox_is_used_only_where_it_is_asked_for(reasons: dict[Isolation, str]) -> None:

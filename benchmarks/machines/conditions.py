@@ -1,0 +1,149 @@
+"""What can be odd about a machine: each condition is a changed environment, a changed folder, or a command in front."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+#: Modules that a program imports, in a version that breaks whatever gets it.
+POLLUTION = ("rclpy", "numpy", "json", "pytest", "yaml", "std_msgs", "sitecustomize", "sensor_msgs")
+COMPILERS = ("cc", "gcc", "g++", "c++", "clang", "clang++")
+#: Inside a user namespace of its own, the command may make no further one.
+NO_NAMESPACES = ("unshare", "--user", "--map-root-user", "sh", "-c")
+FORBID = 'echo 0 > /proc/sys/user/max_user_namespaces; exec "$@"'
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One oddity: variables to set (`None` unsets one), and words in front of each command."""
+
+    name: str
+    variables: Mapping[str, str | None] = field(default_factory=dict)
+    prefix: tuple[str, ...] = ()
+    #: Programs that must be there for it to be tried.
+    needs: tuple[str, ...] = ()
+
+    def environment(self) -> dict[str, str]:
+        """Return the environment of its commands."""
+        variables = {**os.environ, **self.variables}
+        return {name: value for name, value in variables.items() if value is not None}
+
+    def missing(self) -> str | None:
+        """Return why it can't be tried here, or `None`."""
+        absent = [program for program in self.needs if not shutil.which(program)]
+        return f"no {', '.join(absent)} here" if absent else None
+
+
+def limited(name: str, limit: str) -> Condition:
+    """Return a condition with a limit of the shell's `ulimit`, such as `-n 64`."""
+    return Condition(f"ulimit {name}", prefix=("sh", "-c", f'ulimit {limit}; exec "$@"', "sh"))
+
+
+def conditions(scratch: Path) -> list[Condition]:
+    """Return every condition; what they need is written into `scratch`."""
+    return [
+        Condition("as it is"),
+        *variables_of_others(scratch),
+        *places(scratch),
+        *kinds_of_text(),
+        *limits(),
+        *parts_missing(scratch),
+    ]
+
+
+def variables_of_others(scratch: Path) -> list[Condition]:
+    """Return conditions in which another installation has set variables."""
+    polluted, libraries = scratch / "polluted", scratch / "libraries"
+    for folder in (polluted, libraries):
+        folder.mkdir()
+    for module in POLLUTION:
+        (polluted / f"{module}.py").write_text("raise RuntimeError('a module of another installation')\n")
+    for library in ("librcl.so", "libstdc++.so.6", "libpython3.so"):
+        (libraries / library).write_text("not a library")
+    ros = {"ROS_DISTRO": "foxy", "AMENT_PREFIX_PATH": "/nowhere", "RMW_IMPLEMENTATION": "rmw_nowhere_cpp"}
+    return [
+        Condition("PYTHONPATH polluted", {"PYTHONPATH": os.fspath(polluted)}),
+        Condition("LD_LIBRARY_PATH polluted", {"LD_LIBRARY_PATH": os.fspath(libraries)}),
+        Condition("LD_PRELOAD of nothing", {"LD_PRELOAD": "/nowhere/libnothing.so"}),
+        Condition("PYTHON* set", {"PYTHONOPTIMIZE": "2", "PYTHONHASHSEED": "7", "PYTHONSAFEPATH": "1"}),
+        Condition("PYTHONWARNINGS=error", {"PYTHONWARNINGS": "error"}),
+        Condition("ROS variables of Foxy", ros),
+        Condition("ROS_DOMAIN_ID=kitchen", {"ROS_DOMAIN_ID": "kitchen"}),
+    ]
+
+
+def places(scratch: Path) -> list[Condition]:
+    """Return conditions in which a usual folder is odd."""
+    spaced = scratch / "a folder with spaces"
+    spaced.mkdir()
+    return [
+        Condition("HOME unset", {"HOME": None}),
+        Condition("HOME that is not there", {"HOME": "/nowhere/home"}),
+        Condition("HOME that can't be written", {"HOME": "/proc"}),
+        Condition("TMPDIR that is not there", {"TMPDIR": "/nowhere/tmp"}),
+        Condition("TMPDIR with spaces", {"TMPDIR": os.fspath(spaced)}),
+        Condition("XDG_CACHE_HOME not there", {"XDG_CACHE_HOME": "/proc/nowhere"}),
+    ]
+
+
+def kinds_of_text() -> list[Condition]:
+    """Return conditions that concern text, time and the terminal."""
+    return [
+        Condition("locale C, ASCII", {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}),
+        Condition("locale that is not there", {"LC_ALL": "tr_TR.ISO-8859-9", "LANG": "tr_TR"}),
+        Condition("stdout in Latin-1", {"PYTHONIOENCODING": "latin-1"}),
+        Condition("TZ of Chatham", {"TZ": "Pacific/Chatham"}),
+        Condition("TZ wrong", {"TZ": "Middle/Earth"}),
+        Condition("no TERM, no colours", {"TERM": None, "NO_COLOR": "1", "COLUMNS": "20"}),
+    ]
+
+
+def limits() -> list[Condition]:
+    """Return conditions with a resource limit, and with a priority."""
+    return [
+        Condition("umask 077", prefix=("sh", "-c", 'umask 077; exec "$@"', "sh")),
+        Condition("umask 000", prefix=("sh", "-c", 'umask 000; exec "$@"', "sh")),
+        limited("files 128", "-n 128"),
+        limited("stack 1 MB", "-s 1024"),
+        limited("no core, 100 MB a file", "-c 0 -f 204800"),
+        limited("memory 1 GB", "-v 1048576"),
+        Condition("lowest priority", prefix=("nice", "-n", "19")),
+    ]
+
+
+def parts_missing(scratch: Path) -> list[Condition]:
+    """Return conditions in which a part of the machine is not there."""
+    no_proc = 'mount -t tmpfs none /proc && exec "$@"'
+    return [
+        Condition("no compiler", {"PATH": _path_without(scratch / "no-compiler", *COMPILERS)}),
+        Condition("no g++", {"PATH": _path_without(scratch / "no-gxx", "g++", "c++", "clang++")}),
+        Condition("no bubblewrap", {"PATH": _path_without(scratch / "no-bwrap", "bwrap")}),
+        Condition("no git, no unshare", {"PATH": _path_without(scratch / "no-git", "git", "unshare")}),
+        Condition("no namespaces", prefix=(*NO_NAMESPACES, FORBID, "sh"), needs=("unshare",)),
+        Condition("no network", prefix=("unshare", "--net"), needs=("unshare",)),
+        Condition("no /proc", prefix=("unshare", "--mount", "sh", "-c", no_proc, "sh"), needs=("unshare",)),
+        Condition(
+            "not root",
+            {"HOME": "/nonexistent"},
+            ("setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"),
+            ("setpriv",),
+        ),
+    ]
+
+
+def _path_without(folder: Path, *names: str) -> str:
+    """Return a PATH with every program of today's but these."""
+    folder.mkdir()
+    _link(folder, lambda program: program not in names and not program.startswith(tuple(f"{name}-" for name in names)))
+    return os.fspath(folder)
+
+
+def _link(folder: Path, wanted: Callable[[str], bool]) -> None:
+    for place in map(Path, os.get_exec_path()):
+        for program in place.iterdir() if place.is_dir() else ():
+            link = folder / program.name
+            if wanted(program.name) and not link.is_symlink():
+                link.symlink_to(program)
