@@ -33,9 +33,9 @@ def hashed_pins(*locks: Path) -> str:
     return "".join(entry for entry in entries if canonicalize_name(re.split("[=; ]", entry, maxsplit=1)[0]) in names)
 
 
-def needed() -> set[str]:
+def needed(name: str = NAME, extra: str = EXTRA) -> set[str]:
     """Return the names of everything that is needed on any of these Pythons, as far as it is installed here."""
-    waiting, done = [(NAME, frozenset({EXTRA}))], set[tuple[str, frozenset[str]]]()
+    waiting, done = [(name, frozenset({extra}))], set[tuple[str, frozenset[str]]]()
     while waiting:
         one = waiting.pop()
         if one not in done:

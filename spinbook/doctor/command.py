@@ -12,7 +12,17 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from ros_in_python.ros2.cli import CONTEXT, CommandError
 from ros_in_python.ros2.hello import hello
-from spinbook.doctor.diagnosis import CHECKS, MachineCheck, MachineFinding, State, diagnose, is_able, show
+from spinbook.doctor.diagnosis import (
+    CHECKS,
+    OF_STUDENTS,
+    MachineCheck,
+    MachineFinding,
+    State,
+    diagnose,
+    in_handout,
+    is_able,
+    show,
+)
 
 
 @click.command()
@@ -22,7 +32,8 @@ def doctor(checks: tuple[str, ...], as_json: bool) -> None:
     """Say what works on this machine, and how to fix what does not.
 
     Each CHECK really tries it: a message goes from one process to another, a kernel starts, colcon builds a package, a
-    program runs in each sandbox. Nothing is changed. Without CHECK, all checks run, in a few seconds:
+    program runs in each sandbox. Nothing is changed. Without CHECK, all checks run, in a few seconds; in a handout's
+    folder, those that notebooks and self-checks need:
 
     \b
       python       folder       libraries    ros
@@ -38,7 +49,8 @@ def doctor(checks: tuple[str, ...], as_json: bool) -> None:
 
     Exit code: 0 everything needed works (there may be warnings), 1 something needed does not work.
     """
-    chosen = [check for check in CHECKS if not checks or check.word in checks]
+    words = checks or (OF_STUDENTS if in_handout() else ())
+    chosen = [check for check in CHECKS if not words or check.word in words]
     findings = _with_progress(chosen)
     if as_json:
         rows = [dataclasses.asdict(finding) for finding in findings]

@@ -20,6 +20,7 @@ from rich.text import Text
 
 from groundwork.child_process import run_program
 from groundwork.clean_environment import GUARD, ignored, module_command
+from spinbook.update.handout import BASE
 
 
 class State(str, Enum):
@@ -61,6 +62,19 @@ def missing(name: str, found: str, fix: str) -> MachineFinding:
     return MachineFinding(name, State.MISSING, found, fix)
 
 
+def in_handout() -> bool:
+    """Return whether this is a handout's folder: what helps an author then helps nobody."""
+    return Path(BASE).is_dir()
+
+
+def set_up_again(python: str = "python3") -> str:
+    """Return how the environment is set up again, here, with this Python."""
+    if in_handout():
+        return f"Set the environment up again: rm -r .venv, then step 1 of README.md, with {python} -m venv .venv"
+    other = "" if python == "python3" else f"PYTHON={python} "
+    return f"Set the environment up again, in the terminal that you want to use: make {other}setup"
+
+
 SIGNS = {State.OK: ("✓", "green"), State.WARNING: ("!", "yellow"), State.MISSING: ("✗", "red")}
 
 
@@ -90,12 +104,14 @@ def is_able(findings: Sequence[MachineFinding]) -> bool:
 
 
 def _summary(findings: Sequence[MachineFinding]) -> str:
+    does = "run notebooks and checks" if in_handout() else "build or grade a course"
+    works = "Notebooks and checks work here" if in_handout() else "Courses can be built and graded here"
     missing_count = sum(finding.state is State.MISSING for finding in findings)
     warnings = sum(finding.state is State.WARNING for finding in findings)
     also = f" ({warnings} {'warning' if warnings == 1 else 'warnings'})" if warnings else ""
     if missing_count:
-        return f"Fix every ✗ before you build or grade a course here. Failed: {missing_count} of {len(findings)}{also}."
-    return f"Courses can be built and graded here{also}."
+        return f"Fix every ✗ before you {does} here. Failed: {missing_count} of {len(findings)}{also}."
+    return f"{works}{also}."
 
 
 def _with_tilde(text: str) -> str:
@@ -118,6 +134,11 @@ class MachineCheck:
     needs: tuple[str, ...] = ()
 
 
+#: The checks of what a student needs.
+OF_STUDENTS = (
+    *("python", "folder", "libraries", "ros", "middleware", "logs", "message", "environment", "memory"),
+    *("kernel", "colcon", "lockstep", "ros2"),
+)
 #: The checks of what programs find that are not Spinbook's, with the terminal's own variables.
 OF_TERMINAL = ("libraries", "ros", "colcon")
 #: The checks that every node depends on.
@@ -185,8 +206,9 @@ def examine(check: MachineCheck) -> MachineFinding:
             f"the check did not finish within {check.seconds:g} s",
             f"Run it alone, when the machine is less busy: spinbook doctor {check.word}",
         )
+    more = "README.md" if in_handout() else "docs/installing.md"
     return _reported(done.stdout) or missing(
-        check.name, _how_it_ended(done.returncode, done.stderr), "See the message, and docs/installing.md."
+        check.name, _how_it_ended(done.returncode, done.stderr), f"See the message, and {more}."
     )
 
 

@@ -17,7 +17,7 @@ from groundwork.child_process import run_program
 from interface_compiler import prefixes, shipped, toolchain
 from ros_in_python.ros2.executables import is_built_in, real_ros2
 from spinbook.doctor import python_build
-from spinbook.doctor.diagnosis import MachineFinding, missing, ok, warning
+from spinbook.doctor.diagnosis import MachineFinding, in_handout, missing, ok, set_up_again, warning
 
 OLDEST, NEWEST = (3, 10), (3, 14)
 
@@ -26,8 +26,8 @@ def examine_python(name: str) -> MachineFinding:
     """Check the version of this Python, and how it was compiled."""
     found = f"{platform.python_implementation()} {platform.python_version()}, {sys.executable}"
     if not (OLDEST <= sys.version_info[:2] <= NEWEST and platform.python_implementation() == "CPython"):
-        return missing(name, found, "Spinbook needs CPython 3.10 to 3.14. Choose one: make PYTHON=python3.12 setup")
-    if python_build.is_optimized():
+        return missing(name, found, f"Spinbook needs CPython 3.10 to 3.14. Choose one. {set_up_again('python3.12')}")
+    if python_build.is_optimized() or in_handout():
         return ok(name, found)
     return warning(name, f"{found}, compiled without optimizations", _faster_build())
 
@@ -104,9 +104,7 @@ def examine_colcon(name: str) -> MachineFinding:
     try:
         colcon, setuptools = version("colcon-core"), version("setuptools")
     except PackageNotFoundError as error:
-        return missing(
-            name, f"{error.name} is not installed for {sys.executable}", "Set the environment up again: make setup"
-        )
+        return missing(name, f"{error.name} is not installed for {sys.executable}", set_up_again())
     found = f"colcon-core {colcon}, setuptools {setuptools}"
     with tempfile.TemporaryDirectory(prefix="spinbook-doctor-") as folder:
         workspace = Path(folder)
@@ -117,7 +115,7 @@ def examine_colcon(name: str) -> MachineFinding:
         built = _build(workspace)
         if built.returncode:
             lines = [line for line in built.stderr.splitlines() if line.strip()] or [f"exit code {built.returncode}"]
-            return missing(name, f"{found}; a build fails: {lines[-1]}", "Set the environment up again: make setup")
+            return missing(name, f"{found}; a build fails: {lines[-1]}", set_up_again())
         linked = not any((workspace / "install").glob(f"{_NAME}/lib/python*/site-packages/{_NAME}/trial.py"))
     if not linked or int(setuptools.split(".")[0]) >= _TOO_NEW:
         return warning(
@@ -200,7 +198,7 @@ def examine_kernel(name: str) -> MachineFinding:
     try:
         from jupyter_client.manager import start_new_kernel
     except ImportError as error:
-        return missing(name, str(error), "Set the environment up again: make setup")
+        return missing(name, str(error), set_up_again())
     start = time.monotonic()
     try:
         manager, client = start_new_kernel(kernel_name="python3", startup_timeout=_KERNEL_DEADLINE_S)
@@ -217,7 +215,7 @@ def examine_kernel(name: str) -> MachineFinding:
         manager.shutdown_kernel(now=True)
     took = time.monotonic() - start
     if fault:
-        return missing(name, f"a cell fails: {fault}", "Set the environment up again: make setup")
+        return missing(name, f"a cell fails: {fault}", set_up_again())
     if printed.strip().splitlines()[-1:] != [sys.prefix]:
         return missing(name, f"the kernel runs another Python: {printed.strip()}", "jupyter kernelspec remove python3")
     return ok(name, f"started and ran a cell in {took:.1f} s")

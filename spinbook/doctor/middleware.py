@@ -14,7 +14,7 @@ from pathlib import Path
 
 from rmw_lockstep import IDENTIFIER
 from rmw_lockstep.library import PREBUILT, Library, library
-from spinbook.doctor.diagnosis import MachineFinding, missing, ok, warning
+from spinbook.doctor.diagnosis import MachineFinding, missing, ok, set_up_again, warning
 from spinbook.kernel.environment import claim_domain, for_domain, missing_middleware
 
 #: rclpy's exit code if RMW_IMPLEMENTATION can't be loaded.
@@ -44,7 +44,7 @@ def examine_middleware(name: str) -> MachineFinding:
             "Nodes would exit with code 102 and no message. Fix: unset RMW_IMPLEMENTATION",
         )
     lines = trial.stderr.strip().splitlines() or [f"exit code {trial.returncode}"]
-    return missing(name, f"does not load: {lines[-1]}", "Set the environment up again: make setup")
+    return missing(name, f"does not load: {lines[-1]}", set_up_again())
 
 
 _NEEDED = "Without it nothing can be graded or checked."

@@ -10,13 +10,12 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from groundwork.clean_environment import GUARD, ignored
-from spinbook.doctor.diagnosis import MachineFinding, missing, ok, warning
+from spinbook.doctor.diagnosis import MachineFinding, missing, ok, set_up_again, warning
 from spinbook.doctor.ros_origin import NoRos, ros_origin, this_machine
 from spinbook.kernel.environment import HIGHEST, LOOPBACK_PROFILE
 
 #: Packages of messages that the chapters and the grader use.
 MESSAGES = ("builtin_interfaces", "geometry_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs")
-_SET_UP_AGAIN = "Set the environment up again, in the terminal that you want to use: make setup"
 
 
 def examine_ros_library(name: str) -> MachineFinding:
@@ -37,7 +36,7 @@ def examine_ros_library(name: str) -> MachineFinding:
         return missing(
             name,
             f"two installations: rclpy {version} from {package.parent}, and PyPI's wheels in {sys.prefix}",
-            f"It would be random which libraries are loaded. {_SET_UP_AGAIN}",
+            f"It would be random which libraries are loaded. {set_up_again()}",
         )
     return ok(name, f"rclpy {version}, {'PyPI wheels' if wheels else 'sourced'}, {package.parent}")
 
@@ -71,7 +70,7 @@ def _fix_of(error: ImportError) -> str:
         return "A library is missing. Open a new terminal; if you source ROS 2, source its setup file again."
     if absent in MESSAGES and os.environ.get("ROS_DISTRO"):
         return f"sudo apt-get install ros-{os.environ['ROS_DISTRO']}-common-interfaces"
-    return _SET_UP_AGAIN
+    return set_up_again()
 
 
 _PROFILES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")

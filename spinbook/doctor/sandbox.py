@@ -7,7 +7,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from spinbook.doctor.diagnosis import MachineFinding, missing, ok, warning
+from spinbook.doctor.diagnosis import MachineFinding, missing, ok, set_up_again, warning
 
 _ALLOW = (
     "Install bubblewrap (sudo apt-get install bubblewrap) and allow namespaces (see the finding about them); "
@@ -21,7 +21,7 @@ def examine_sandbox(name: str) -> MachineFinding:
         from grader.sandbox.isolation import available
         from grader.sandbox.program import Isolation
     except ImportError as error:
-        return missing(name, f"the grader does not load: {error}", "Set the environment up again: make setup")
+        return missing(name, f"the grader does not load: {error}", set_up_again())
     levels = available()
     strong = [level for level in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES) if levels[level] is None]
     reasons = "; ".join(f"{level}: {reason}" for level, reason in levels.items() if reason)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import re
 import shutil
+import subprocess
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import metadata
@@ -20,24 +22,26 @@ from grader.workers.jobs import ListJob
 from grader.workers.pool import HostFault, WorkerPool
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem
-from interface_compiler.wheel_file import zipped
+from interface_compiler.wheel_file import EARLIEST, zipped
 from spinbook import __version__
 from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course, find_course
 from spinbook.handout.leaks import Secret, authors_code, located, secrets_of_all
+from spinbook.handout.pins import jupyterlab_pins, students_pins
 from spinbook.handout.student_copy import exercise_files, for_students
 from spinbook.handout.wheels import interface_wheels, package_of, requirement, spinbook_wheel
 from spinbook.interfaces.definitions import compile_course
 from spinbook.problem import SpinbookError
 from spinbook.update.handout import base_files
 
-#: Packages that students need in the instructor's version, so that checks give the same results.
+#: Packages that students need in the instructor's version, so that checks give the same results, if nothing is pinned.
 _PINNED = ("ros-{distro}-rclpy", "ros-{distro}-rmw-fastrtps-cpp", "ros-{distro}-common-interfaces")
 
 #: Name in the handout -> template.
 _TEMPLATES = {
     "README.md": "README.md.j2",
     "requirements.txt": "requirements.txt.j2",
+    "jupyterlab.txt": "jupyterlab.txt.j2",
     "environment.yml": "environment.yml.j2",
     ".devcontainer/devcontainer.json": "devcontainer.json.j2",
 }
@@ -84,7 +88,11 @@ def guide_files(
         "wheel": wheel,
         "notebooks": notebooks,
         "exercises": exercises,
-        "pins": _pins(distro),
+        "pinned": (pinned := students_pins()),
+        # Every package is in the list: pip need not look for more.
+        "options": " --no-deps --no-compile" if pinned else "",
+        "pins": pinned or _pins(distro),
+        "jupyterlab": jupyterlab_pins(),
         "packages": packages,
         "compiled": [requirement(file) for file in compiled],
         "interfaces": any(package_of(file) for file in compiled),
@@ -122,7 +130,7 @@ def handout(course: Course) -> Handout:
     compile_course(course)
     notebooks = _notebooks(course)
     files = dict(notebooks)
-    exercises = [_load(course, name) for name in sorted(_used(course, notebooks))]
+    exercises = [_load(course, name) for name in _used(course, notebooks)]
     listings = []
     with WorkerPool() as workers:
         for exercise in exercises:
@@ -143,7 +151,7 @@ def handout(course: Course) -> Handout:
     slug = re.sub(r"[^a-z0-9]+", "-", course.title.lower()).strip("-") or "course"
     packages = sorted({package for exercise in exercises for package in exercise.packages})
     files |= guide_files(
-        course.title, slug, course.ros_distro, name, sorted(notebooks), listings, sorted(compiled), packages
+        course.title, slug, course.ros_distro, name, list(notebooks), listings, sorted(compiled), packages
     )
     files |= base_files(files)
     _prove(files, known)
@@ -169,10 +177,11 @@ def _nodes(notebooks: dict[str, bytes]) -> Iterator[str]:
                 yield cell["source"]
 
 
-def _used(course: Course, notebooks: dict[str, bytes]) -> set[str]:
-    """Return the exercises that are in the chapters: one that is not set yet is not handed out."""
+def _used(course: Course, notebooks: dict[str, bytes]) -> list[str]:
+    """Return the exercises that are in the chapters, in their order: one that is not set yet is not handed out."""
     text = b"".join(notebooks.values()).decode()
-    return {name for name in course.exercises if f'"exercise": "{name}"' in text}
+    places = {name: text.find(f'"exercise": "{name}"') for name in course.exercises}
+    return sorted((name for name, place in places.items() if place >= 0), key=lambda name: places[name])
 
 
 def _load(course: Course, name: str) -> Exercise:
@@ -224,13 +233,24 @@ def command(start: Path) -> None:
     folder = course.build_folder / "handout" / made.slug
     archive = folder.with_suffix(".zip")
     _write(folder, made)
-    write_if_changed(archive, zipped({f"{made.slug}/{name}": content for name, content in made.files.items()}))
+    inside = {f"{made.slug}/{name}": content for name, content in made.files.items()}
+    write_if_changed(archive, zipped(inside, date=_date(course)))
     for exercise in made.exercises:
         click.echo(
             f"  {exercise.name}: {exercise.public} checks that students can run, {exercise.hidden} that stay hidden"
         )
     click.echo(f"{len(made.files)} files, no solution and no hidden check among them.")
     click.echo(f"Folder: {_shown(folder)}/\nZip:    {_shown(archive)} ({archive.stat().st_size / 1e6:.1f} MB)")
+
+
+def _date(course: Course) -> tuple[int, ...]:
+    """Return when the course was last committed (UTC); without Git, always the same date."""
+    asked = ["git", "-C", str(course.root), "log", "-1", "--format=%ct", "--", "."]
+    try:
+        commit = subprocess.run(asked, capture_output=True, text=True, check=False).stdout.strip()
+    except OSError:
+        commit = ""
+    return max(time.gmtime(int(commit or 0))[:6], EARLIEST)
 
 
 def _write(folder: Path, made: Handout) -> None:

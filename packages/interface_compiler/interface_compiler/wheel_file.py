@@ -75,15 +75,18 @@ def record(files: Mapping[str, bytes], listing: str) -> bytes:
 
 
 #: The earliest date that a zip can contain.
-_DATE = (1980, 1, 1, 0, 0, 0)
+EARLIEST = (1980, 1, 1, 0, 0, 0)
 
 
-def zipped(files: Mapping[str, bytes], last: str = "") -> bytes:
-    """Return an archive of `files`, sorted by name; `last` names one that goes to the end."""
+def zipped(files: Mapping[str, bytes], last: str = "", date: tuple[int, ...] = EARLIEST) -> bytes:
+    """Return an archive of `files`, sorted by name; `last` names one that goes to the end.
+
+    `date` is that of every file: year, month, day, hour, minute, second.
+    """
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w") as archive:
         for name in sorted(files, key=lambda name: (name == last, name)):
-            entry = zipfile.ZipInfo(name, _DATE)
+            entry = zipfile.ZipInfo(name, date)  # type: ignore[arg-type]
             entry.create_system = 3
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = (stat.S_IFREG | 0o644) << 16

@@ -6,9 +6,10 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 from rich.console import Console
-from running import doctor
+from running import doctor, finding_of
 
 from spinbook.doctor.diagnosis import CHECKS, MachineFinding, is_able, missing, ok, show, warning
 
@@ -33,6 +34,14 @@ def test_a_person_reads_a_line_for_each_check_and_a_sum() -> None:
     assert f"(environment: {sys.prefix})" in first
     assert second.startswith("✓  Middleware")
     assert last == "Courses can be built and graded here."
+
+
+def test_in_a_handout_it_speaks_to_students(tmp_path: Path) -> None:
+    (tmp_path / ".spinbook" / "base").mkdir(parents=True)
+
+    assert doctor("folder", folder=tmp_path).stdout.splitlines()[-1] == "Notebooks and checks work here."
+    missing = finding_of("ros", folder=tmp_path, PYTHONPATH=os.fspath(tmp_path), ROS_DISTRO="foxy")
+    assert "make" not in missing["fix"]
 
 
 def test_help_names_every_check_and_the_exit_code() -> None:

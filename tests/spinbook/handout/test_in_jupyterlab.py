@@ -118,7 +118,8 @@ def test_the_readme_followed_word_by_word_on_a_fresh_machine(browser: Browser, t
 
     for line in lines_of(readme, "Step 1"):
         subprocess.run(line, shell=True, cwd=folder, env=fresh, check=True, timeout=900)
-    [open_lab] = lines_of(readme, "Step 2")
+    install_lab, open_lab = lines_of(readme, "Step 2")
+    subprocess.run(install_lab, shell=True, cwd=folder, env=fresh, check=True, timeout=900)
     pictures = Path(os.environ.get("SPINBOOK_PICTURES", tmp_path / "pictures"))
     pictures.mkdir(exist_ok=True)
     notebook = CHAPTER.replace(".md", ".ipynb")

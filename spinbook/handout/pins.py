@@ -1,0 +1,35 @@
+"""The versions that a handout installs: from a checkout's pins exactly what students need, and no more."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import spinbook
+from grader.gradescope.pins import needed
+
+#: A checkout's pins, which hold for every Python.
+_LOCKS = ("constraints.txt", "constraints-ros.txt")
+#: Required by IPython and ipykernel, which do without: guesses at code that has not run, and a debugger (55 MB).
+_LEFT_OUT = {"jedi", "parso", "debugpy"}
+
+
+def students_pins() -> list[str]:
+    """Return the lines for what notebooks and checks need; none if Spinbook is not installed from a checkout."""
+    return list(_pins(needed("spinbook", "student") | needed("spinbook", "colcon")))
+
+
+def jupyterlab_pins() -> list[str]:
+    """Return the lines for what JupyterLab needs besides; without pins, its name."""
+    known = needed("spinbook", "student") | needed("spinbook", "colcon")
+    return list(_pins(needed("jupyterlab", "") - known)) or ["jupyterlab>=4.2"]
+
+
+def _pins(names: set[str]) -> Iterator[str]:
+    root = Path(spinbook.__file__).parents[1]
+    for lock in _LOCKS:
+        text = (root / lock).read_text(encoding="utf-8") if (root / lock).is_file() else ""
+        for line in re.findall(r"^[A-Za-z0-9][^\\\n]*", text, re.MULTILINE):
+            if re.split("[=; ]", line, maxsplit=1)[0] in names - _LEFT_OUT:
+                yield line.strip()
