@@ -9,7 +9,8 @@ from pathlib import Path
 
 from spinbook.chapter.chapter import ChapterCell
 from spinbook.chapter.labels import Label
-from spinbook.chapter.read import ReadResult, Surroundings, labels_of, modules_of, read_chapter, text_of, title_of
+from spinbook.chapter.read import ReadResult, labels_of, modules_of, read_chapter, text_of, title_of
+from spinbook.chapter.surroundings import Surroundings
 from spinbook.course.course import Course
 from spinbook.interfaces.definitions import collect
 

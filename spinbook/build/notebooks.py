@@ -15,7 +15,8 @@ from spinbook.build.digest import code_digest, digest, files_digest
 from spinbook.build.notebook import notebook_json
 from spinbook.chapter.files import locate
 from spinbook.chapter.labels import may_refer
-from spinbook.chapter.read import Surroundings, read_chapter
+from spinbook.chapter.read import read_chapter
+from spinbook.chapter.surroundings import Surroundings
 from spinbook.chapters import surroundings
 from spinbook.course.course import Course
 from spinbook.course.obstacles import strict

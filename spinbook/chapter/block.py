@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -148,3 +148,42 @@ def _pair(opened: Block, inner: list[Block], closing: Block | None) -> Block:
     if opened.title == "details" and summary is None and "title" not in properties:
         title = "Details"
     return Block(BlockKind(kind), lines, tuple(inner), title, style)
+
+
+def offset_of(text: str, marker: int) -> int:
+    """Return how far an item's text is indented, by CommonMark's rule: up to four spaces may follow the marker."""
+    start = len(text) - len(text.lstrip()) + marker
+    spaces = len(text[start:]) - len(text[start:].lstrip(" "))
+    return start + (spaces if 1 <= spaces <= 4 else 1)
+
+
+def dedented(lines: Sequence[SourceLine], indent: int) -> list[SourceLine]:
+    """Return lines without their first columns of indentation."""
+    out = []
+    for line in lines:
+        text = line.text.expandtabs(4) if line.text[:indent].count("\t") else line.text
+        strip = min(indent, len(text) - len(text.lstrip(" ")))
+        out.append(SourceLine(text[strip:], line.number))
+    return out
+
+
+@dataclass(frozen=True)
+class Directive:
+    """A directive of MyST: all its `lines`, and its `body` after the options, which take `skipped` lines."""
+
+    name: str
+    argument: str
+    options: dict[str, str]
+    lines: tuple[SourceLine, ...]
+    body: list[SourceLine]
+    skipped: int
+    closed: bool
+
+    @property
+    def code(self) -> str:
+        """The body as a fence's code."""
+        return "".join(f"{line.text}\n" for line in self.body)
+
+    def between(self, opening: str, closing: str) -> tuple[SourceLine, ...]:
+        """Return the body between two other lines."""
+        return (SourceLine(opening, self.lines[0].number), *self.body, SourceLine(closing, self.lines[-1].number))

@@ -12,7 +12,18 @@ from dataclasses import dataclass, field, replace
 from markdown_it.token import Token
 
 from spinbook.chapter import attributes
-from spinbook.chapter.block import Block, BlockKind, SourceLine, as_fence, merged_callouts, paired, unquoted
+from spinbook.chapter.block import (
+    Block,
+    BlockKind,
+    Directive,
+    SourceLine,
+    as_fence,
+    dedented,
+    merged_callouts,
+    offset_of,
+    paired,
+    unquoted,
+)
 from spinbook.chapter.components import unindented
 from spinbook.chapter.fence import Fence, directive, make_fence
 from spinbook.chapter.flavours import parser
@@ -24,28 +35,6 @@ _DEEPEST = 12
 #: Containers of plain Markdown. They stay as they are unless a block inside is not plain Markdown.
 _HOLDERS = frozenset({"blockquote_open", "bullet_list_open", "ordered_list_open"})
 _MARKDOWN = _HOLDERS | {"heading_open", "paragraph_open"}
-
-
-@dataclass(frozen=True)
-class _Directive:
-    """A directive of MyST: all its `lines`, and its `body` after the options, which take `skipped` lines."""
-
-    name: str
-    argument: str
-    options: dict[str, str]
-    lines: tuple[SourceLine, ...]
-    body: list[SourceLine]
-    skipped: int
-    closed: bool
-
-    @property
-    def code(self) -> str:
-        """The body as a fence's code."""
-        return "".join(f"{line.text}\n" for line in self.body)
-
-    def between(self, opening: str, closing: str) -> tuple[SourceLine, ...]:
-        """Return the body between two other lines."""
-        return (SourceLine(opening, self.lines[0].number), *self.body, SourceLine(closing, self.lines[-1].number))
 
 
 @dataclass
@@ -135,19 +124,19 @@ class _Reader:
         options, skipped = attributes.options([line.text for line in body])
         while skipped < len(body) and not body[skipped].text.strip():
             skipped += 1
-        directive = _Directive(name, argument, options, lines, body[skipped:], skipped, closed)
+        directive = Directive(name, argument, options, lines, body[skipped:], skipped, closed)
         blocks = _DIRECTIVES.get(name, _Reader._holding)(self, directive)
         label = options.get("name") or options.get("label") or ""
         return [replace(blocks[0], label=label), *blocks[1:]] if label and blocks else blocks
 
-    def _code(self, directive: _Directive) -> list[Block]:
+    def _code(self, directive: Directive) -> list[Block]:
         info = f"{directive.argument} " + " ".join(f'{key}="{value}"' for key, value in directive.options.items())
         fence = make_fence(f"{{code-cell}} {info}", directive.code, directive.lines[0].number)
         fence = self._included(replace(fence, skipped=directive.skipped))
         new = as_fence(fence, directive.lines)
         return [Block(BlockKind.FENCE, directive.lines, fence=fence, closed=directive.closed, new=new)]
 
-    def _literal(self, directive: _Directive) -> list[Block]:
+    def _literal(self, directive: Directive) -> list[Block]:
         file, lines = directive.argument, directive.lines
         text = self.include(file)
         if text is None:
@@ -157,13 +146,13 @@ class _Reader:
         fence = make_fence(language + title, text.rstrip("\n") + "\n", lines[0].number)
         return [Block(BlockKind.FENCE, lines, fence=fence, new=as_fence(fence, lines))]
 
-    def _include(self, directive: _Directive) -> list[Block]:
+    def _include(self, directive: Directive) -> list[Block]:
         text, number = self.include(directive.argument), directive.lines[0].number
         if not text:
             return [Block(BlockKind.DROPPED, directive.lines)]
         return list(self.inside([SourceLine(line, number) for line in text.split("\n")]))
 
-    def _image(self, directive: _Directive) -> list[Block]:
+    def _image(self, directive: Directive) -> list[Block]:
         number = directive.lines[0].number
         new = (
             SourceLine(attributes.image(directive.argument, directive.options), number),
@@ -173,17 +162,17 @@ class _Reader:
         caption = next((line.text.strip() for line in directive.body if line.text.strip()), "")
         return [Block(BlockKind.TEXT, directive.lines, title=caption, new=new)]
 
-    def _unseen(self, directive: _Directive) -> list[Block]:
+    def _unseen(self, directive: Directive) -> list[Block]:
         return [Block(BlockKind.DROPPED, directive.lines)]
 
-    def _mermaid(self, directive: _Directive) -> list[Block]:
+    def _mermaid(self, directive: Directive) -> list[Block]:
         fence, new = make_fence("mermaid", directive.code, 1), directive.between("```mermaid", "```")
         return [Block(BlockKind.FENCE, directive.lines, fence=fence, closed=directive.closed, new=new)]
 
-    def _math(self, directive: _Directive) -> list[Block]:
+    def _math(self, directive: Directive) -> list[Block]:
         return [Block(BlockKind.TEXT, directive.lines, new=directive.between("$$", "$$"))]
 
-    def _holding(self, directive: _Directive) -> list[Block]:
+    def _holding(self, directive: Directive) -> list[Block]:
         """Return an admonition, a tab or another container; an unknown directive becomes a fence."""
         kind, style, title = attributes.container(directive.name, directive.argument)
         if kind is None:
@@ -221,10 +210,10 @@ class _Reader:
         style, title = attributes.admonition(token.info)
         indent = len(lines[0].text) - len(lines[0].text.lstrip()) + 4
         kind = BlockKind.DETAILS if lines[0].text.lstrip().startswith("?") else BlockKind.ADMONITION
-        return [Block(kind, lines, self.inside(_dedented(lines[1:], indent)), title, style)]
+        return [Block(kind, lines, self.inside(dedented(lines[1:], indent)), title, style)]
 
     def _tab(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
-        return [Block(BlockKind.TAB, lines, self.inside(_dedented(lines[1:], 4)), token.info)]
+        return [Block(BlockKind.TAB, lines, self.inside(dedented(lines[1:], 4)), token.info)]
 
     def _callout(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         inner = (SourceLine(token.info, lines[0].number),)
@@ -319,9 +308,9 @@ class _Reader:
         result = []
         for (token, start), end in zip(items, ends, strict=False):
             own = lines[start:end]
-            offset = _offset(own[0].text, len(token.info) + len(token.markup))
+            offset = offset_of(own[0].text, len(token.info) + len(token.markup))
             first = SourceLine(own[0].text[offset:], own[0].number)
-            inner = self.inside([first, *_dedented(own[1:], offset)])
+            inner = self.inside([first, *dedented(own[1:], offset)])
             result.append(Block(BlockKind.ITEM, own, inner, title=token.info, style=token.markup, offset=offset))
         return tuple(result)
 
@@ -334,7 +323,7 @@ def read_blocks(text: str, include: Include) -> tuple[Block, ...]:
 
 
 #: MyST's directives, except those that hold blocks.
-_DIRECTIVES: dict[str, Callable[[_Reader, _Directive], list[Block]]] = {
+_DIRECTIVES: dict[str, Callable[[_Reader, Directive], list[Block]]] = {
     **dict.fromkeys(attributes.CODE, _Reader._code),
     **dict.fromkeys(attributes.UNSEEN, _Reader._unseen),
     "literalinclude": _Reader._literal,
@@ -350,22 +339,6 @@ def _inside(tokens: Sequence[Token], index: int) -> Iterator[Token]:
     """Return the tokens between an opening token and its closing token."""
     level = tokens[index].level
     return itertools.takewhile(lambda token: token.level > level, itertools.islice(tokens, index + 1, None))
-
-
-def _offset(text: str, marker: int) -> int:
-    """Return how far an item's text is indented, by CommonMark's rule: up to four spaces may follow the marker."""
-    start = len(text) - len(text.lstrip()) + marker
-    spaces = len(text[start:]) - len(text[start:].lstrip(" "))
-    return start + (spaces if 1 <= spaces <= 4 else 1)
-
-
-def _dedented(lines: Sequence[SourceLine], indent: int) -> list[SourceLine]:
-    out = []
-    for line in lines:
-        text = line.text.expandtabs(4) if line.text[:indent].count("\t") else line.text
-        strip = min(indent, len(text) - len(text.lstrip(" ")))
-        out.append(SourceLine(text[strip:], line.number))
-    return out
 
 
 def _is_closed(token: Token, lines: tuple[SourceLine, ...]) -> bool:

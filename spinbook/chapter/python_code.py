@@ -9,9 +9,9 @@ import re
 import symtable
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 from spinbook.chapter.class_pieces import methods_alone, names_begun, uses_super_outside
+from spinbook.chapter.imported_names import imported, imports_launch, imports_setuptools
 from spinbook.chapter.node_classes import (
     NODE_CLASSES,
     attributes_lacking,
@@ -230,14 +230,14 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
     lacking = attributes_lacking(everything, node_classes, classes)
     alone = tuple(name for name in node_classes if can_stand_alone(name, classes, everything))
     return PythonCode(
-        **_imports(everything),
+        **imported(everything),
         node_classes=tuple(node_classes),
         ros_name=ros_name(everything, classes),
         spins=spins(tree),
         has_main=any(map(_is_main, tree.body)),
         has_main_guard=any(map(_is_main_guard, tree.body)),
-        is_setup_script=("setup" in called and _imports_setuptools(tree)) or any(map(_is_entry_point, everything)),
-        is_launch_file=any(map(_is_launch_function, everything)) or _imports_launch(tree),
+        is_setup_script=("setup" in called and imports_setuptools(tree)) or any(map(_is_entry_point, everything)),
+        is_launch_file=any(map(_is_launch_function, everything)) or imports_launch(tree),
         defines=defines,
         needs=needs,
         calls_main=any(map(calls_main, tree.body)),
@@ -260,25 +260,6 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
     )
 
 
-def _imports(everything: Sequence[ast.AST]) -> dict[str, Any]:
-    """Return what the code imports, each with its first line: modules, names of modules, relative modules."""
-    optional = _optional_imports(everything)
-    imports: dict[str, int] = {}
-    interfaces: dict[tuple[str, str], int] = {}
-    relative: dict[str, int] = {}
-    for item in everything:
-        if isinstance(item, ast.ImportFrom) and item.level:
-            relative["." * item.level + (item.module or "")] = item.lineno
-        elif isinstance(item, ast.ImportFrom) and item.module and item not in optional:
-            imports.setdefault(item.module, item.lineno)
-            for alias in item.names:
-                interfaces.setdefault((item.module, alias.name), item.lineno)
-        elif isinstance(item, ast.Import) and item not in optional:
-            for alias in item.names:
-                imports.setdefault(alias.name, item.lineno)
-    return {"imports": imports, "interfaces": interfaces, "relative_imports": relative}
-
-
 def _node_classes(everything: Sequence[ast.AST]) -> list[str]:
     classes = (item for item in everything if isinstance(item, ast.ClassDef))
     return [item.name for item in classes if any(last_name(base) in NODE_CLASSES for base in item.bases)]
@@ -299,36 +280,6 @@ def _is_entry_point(item: ast.AST) -> bool:
 
 def _is_launch_function(item: ast.AST) -> bool:
     return isinstance(item, ast.FunctionDef) and item.name == "generate_launch_description"
-
-
-def _imports_launch(tree: ast.Module) -> bool:
-    """Return whether it is a piece of a launch file: it imports from ROS 2's launch, and not rclpy."""
-    modules = {item.module for item in tree.body if isinstance(item, ast.ImportFrom) and item.module}
-    modules |= {alias.name for item in tree.body if isinstance(item, ast.Import) for alias in item.names}
-    tops = {module.partition(".")[0] for module in modules}
-    return bool(tops & {"launch", "launch_ros"}) and "rclpy" not in tops
-
-
-def _optional_imports(everything: Sequence[ast.AST]) -> set[ast.AST]:
-    """Return imports whose absence the code itself deals with, or that only a type checker reads."""
-    optional: set[ast.AST] = set()
-    for item in everything:
-        caught = isinstance(item, ast.Try) and any(
-            handler.type is None or "Error" in ast.dump(handler.type) or "Exception" in ast.dump(handler.type)
-            for handler in item.handlers
-        )
-        if caught or (isinstance(item, ast.If) and "TYPE_CHECKING" in ast.dump(item.test)):
-            assert isinstance(item, ast.Try | ast.If)
-            optional |= {i for i in item.body if isinstance(i, ast.Import | ast.ImportFrom)}
-    return optional
-
-
-def _imports_setuptools(tree: ast.Module) -> bool:
-    return any(
-        (isinstance(s, ast.ImportFrom) and s.module in {"setuptools", "distutils.core"})
-        or (isinstance(s, ast.Import) and any(a.name == "setuptools" for a in s.names))
-        for s in tree.body
-    )
 
 
 def _names(everything: Sequence[ast.AST], code: str) -> tuple[frozenset[str], dict[str, int]]:

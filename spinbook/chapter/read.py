@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from groundwork.problem import Problem, Severity
@@ -25,43 +25,12 @@ from spinbook.chapter.programs import Programs
 from spinbook.chapter.shells import Shells
 from spinbook.chapter.shown_interfaces import one_each, shown_interfaces
 from spinbook.chapter.source import Source, read_source
+from spinbook.chapter.surroundings import Surroundings
 
 _OTHER_SYSTEM = re.compile(r"\b(windows|mac ?os|os ?x|powershell)\b", re.IGNORECASE)
 _LINUX = re.compile(r"linux|ubuntu|wsl", re.IGNORECASE)
-#: (chapter, package, executable) -> the cell of an earlier chapter that shows this program; None if there is none.
-EarlierPrograms = Callable[[Path, str, str], ChapterCell | None]
-
-
-def no_earlier_program(chapter: Path, package: str, executable: str) -> ChapterCell | None:
-    """Return None: for a chapter that is read by itself."""
-    return None
-
-
 #: The tag of cells that a notebook has but that a build does not run: nbclient's own.
 SKIPPED = "skip-execution"
-
-
-@dataclass(frozen=True)
-class Surroundings:
-    """What a chapter may refer to outside itself.
-
-    `package` is the course's ROS package, `modules` the node modules of the course's other chapters, `exercises` the
-    exercises that exist, `names` the chapters' names, by their file, `interfaces` the messages, services and actions
-    that the course defines, such as `my_robot_interfaces/msg/JointLimits`, with their definitions, `labels` what MyST's
-    labels name, `titles` the chapters' titles, by their file, `not_compiled` why definitions in chapters are only
-    shown, by the file and line on which each begins.
-    """
-
-    package: str
-    modules: frozenset[str] = frozenset()
-    exercises: frozenset[str] = frozenset()
-    names: Mapping[Path, str] = field(default_factory=dict)
-    interfaces: Mapping[str, str] = field(default_factory=dict)
-    labels: Mapping[str, Label] = field(default_factory=dict)
-    titles: Mapping[Path, str] = field(default_factory=dict)
-    not_compiled: Mapping[tuple[Path, int], Problem] = field(default_factory=dict)
-    earlier_programs: EarlierPrograms = no_earlier_program
-    """Finds the program that an earlier chapter shows under the names of `ros2 run`."""
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import itertools
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -11,11 +10,11 @@ from pathlib import Path
 
 from grader.recording.types import OWN_SERVICES
 from groundwork.problem import Problem, Severity
-from interface_compiler import prefixes
 from ros_in_python.ros2 import executables
 from spinbook.chapter.chapter import ChapterCell
 from spinbook.chapter.classify import CellKind, ClassifiedFence
-from spinbook.chapter.imports import IN_ROS, interfaces_of, own_names, remedy, ros_packages
+from spinbook.chapter.foreign_commands import READ_KEYS, TO_FILL_IN, Reason, foreign_program, missing_type
+from spinbook.chapter.imports import IN_ROS, ros_packages
 from spinbook.chapter.launch_files import NotSupportedError
 from spinbook.chapter.launches import Launches, launch_words
 from spinbook.chapter.own_packages import OwnPackages, created_node, created_package
@@ -32,25 +31,6 @@ _ASKING = {
     "lifecycle": {"get", "set", "list"},
     "param": {"list", "get", "set", "describe", "dump", "load", "delete"},
 }
-#: Programs that need a keyboard.
-_READ_KEYS = {("turtlesim", "turtle_teleop_key")}
-_TYPE = re.compile(r"(\w+)/(msg|srv|action)/(\w+)")
-
-
-@dataclass(frozen=True)
-class _Reason:
-    """Why a command can't run here. `group` is what is missing."""
-
-    why: str
-    fix: str
-    group: str
-
-
-_TO_FILL_IN = _Reason(
-    "it holds placeholders for what a reader fills in",
-    "Write `static` after the language to say that this is meant.",
-    "",
-)
 
 
 class _CodeSoFar:
@@ -145,7 +125,7 @@ class Shells:
 
     def _without_keys(self, item: ClassifiedFence) -> ClassifiedFence:
         """Make comments of programs that read keys, so that the other commands of their fence run."""
-        needs_keys = [command.runs in _READ_KEYS for command in item.commands]
+        needs_keys = [command.runs in READ_KEYS for command in item.commands]
         if all(
             needs or command.kind is CommandKind.NOTE for needs, command in zip(needs_keys, item.commands, strict=True)
         ):
@@ -158,14 +138,14 @@ class Shells:
         ]
         return replace(item, commands=tuple(commands))
 
-    def _refused(self, command: Command, out: list[ClassifiedFence], line: int) -> _Reason | None:
+    def _refused(self, command: Command, out: list[ClassifiedFence], line: int) -> Reason | None:
         if command.kind is CommandKind.COLCON:
             return self._colcon(command)
         if command.kind is not CommandKind.ROS2:
             return None
         if self._lacks_file(command):
             fix = "Give the parameters with -p NAME:=VALUE."
-            return _Reason("it reads a parameter file, which is missing", fix, "files of parameters")
+            return Reason("it reads a parameter file, which is missing", fix, "files of parameters")
         if command.runs is not None:
             return self._run(command, out, line) or self._lacks_words(command, out)
         if command.words[1:2] == ("launch",):
@@ -173,9 +153,9 @@ class Shells:
         if command.words[1:3] == ("pkg", "create"):
             return self._create(command)
         self._check_values(command, line)
-        return self._types(command) or self._named(command)
+        return missing_type(command, self.interfaces) or self._named(command)
 
-    def _run(self, command: Command, out: list[ClassifiedFence], line: int) -> _Reason | None:
+    def _run(self, command: Command, out: list[ClassifiedFence], line: int) -> Reason | None:
         package, executable = command.runs or ("", "")
         if package == self.package and executable in self._nodes:
             return None
@@ -194,14 +174,14 @@ class Shells:
             if package in self.own.names and (close := names.close(executable)):
                 fix = f"Did you mean `{close}`? Otherwise show its program in a fence above."
                 why = f"no fence above shows `{executable}` of `{package}`"
-                return _Reason(why, fix, "programs that no fence shows")
+                return Reason(why, fix, "programs that no fence shows")
         if package == self.package and executable in self.modules:
             return None
         if package == self.package:
             problem = f"the course's package `{package}` has no executable `{executable}`"
             fix = f"Its node cells make these: {', '.join(sorted(self.modules)) or 'none'}."
-            return _Reason(problem, fix, "")
-        return self._foreign(package, executable)
+            return Reason(problem, fix, "")
+        return foreign_program(package, executable, self.package, self.own.names)
 
     def _borrow(self, package: str, executable: str) -> bool:
         """Let a command run a program that an earlier chapter shows. Return whether there is one."""
@@ -232,7 +212,7 @@ class Shells:
         defined_here = any(name.startswith(f"{package}/") for name in self.interfaces)
         return comes_with_us or (package in ros_packages() and not defined_here)
 
-    def _lacks_words(self, command: Command, out: Sequence[ClassifiedFence]) -> _Reason | None:
+    def _lacks_words(self, command: Command, out: Sequence[ClassifiedFence]) -> Reason | None:
         """Return a reason if a program of the chapter reads more arguments than the command gives it."""
         arguments = _arguments(command)
         for number in self._nodes.values():
@@ -240,10 +220,10 @@ class Shells:
             if command.runs in out[number].executables and code and code.words_read > len(arguments):
                 words = "an argument" if code.words_read == 1 else f"{code.words_read} arguments"
                 why = f"`{command.words[3]}` reads {words} from its command line"
-                return _Reason(why, "Add them to the command, as a reader would.", "")
+                return Reason(why, "Add them to the command, as a reader would.", "")
         return None
 
-    def _launch(self, command: Command) -> _Reason | None:
+    def _launch(self, command: Command) -> Reason | None:
         names = launch_words(command)
         if self._launches.runs_whole(command):
             return None
@@ -251,44 +231,17 @@ class Shells:
             self._launches.nodes(command)
         except NotSupportedError as error:
             fix = "It starts nothing here, because a part of it would be missing. Start its nodes with `ros2 run`."
-            return _Reason(f"its launch file can't run here: {error}", fix, "")
+            return Reason(f"its launch file can't run here: {error}", fix, "")
         package = names[0] if len(names) > 1 else ""
         if not package or package in {self.package, *self.own.names, *ros_packages()}:
             file = _file_name(names[-1]) if names else ""
             close = self._launches.close(file)
             fix = f"Did you mean `{close}`?" if close else "Show it in a fence above."
-            return _Reason("no fence above is its launch file", fix, "" if close else "launch files")
+            return Reason("no fence above is its launch file", fix, "" if close else "launch files")
         if is_placeholder(package):
-            return _TO_FILL_IN
+            return TO_FILL_IN
         fix = f"Show its launch file and its programs in fences of the chapter, or {IN_ROS}."
-        return _Reason(f"there is no package `{package}` here", fix, package)
-
-    def _foreign(self, package: str, executable: str) -> _Reason | None:
-        if (package, executable) in _READ_KEYS:
-            fix = "Run it in a terminal; write `static` after the language to say that this is meant."
-            return _Reason(f"`{executable}` reads keys from a terminal", fix, "keys from a terminal")
-        there = set(executables.BUILT_IN.get(package, ()))
-        if package in ros_packages():
-            prefix = prefixes.prefix_of(package, prefixes.installed())
-            there |= {path.name for path in executables.in_prefix(prefix, package)} if prefix else set()
-        if executable in there:
-            needed = executables.interfaces_used(package, executable)
-            lacks = bool(needed) and needed not in ros_packages()
-            return _lacking(needed) if lacks else None
-        if there:
-            fix = f"It has these: {', '.join(sorted(there))}."
-            return _Reason(f"`{package}` has no program `{executable}` here", fix, f"programs of {package}")
-        close = difflib.get_close_matches(
-            package, [self.package, *executables.BUILT_IN, *self.own.names], n=1, cutoff=0.85
-        )
-        if package in self.own.names:
-            fix = f'Show its program in a fence above: ```python title="{executable}.py"'
-            return _Reason(f"no fence above shows `{executable}` of `{package}`", fix, "programs that no fence shows")
-        if is_placeholder(package):
-            return _TO_FILL_IN
-        show = f"Show its program in a fence of the chapter, or {IN_ROS}."
-        fix = f"Did you mean `{close[0]}`?" if close else show
-        return _Reason(f"there is no package `{package}` here", fix, package)
+        return Reason(f"there is no package `{package}` here", fix, package)
 
     def _lacks_file(self, command: Command) -> bool:
         """Return whether a command reads a parameter file that no cell above has put into the package."""
@@ -305,19 +258,19 @@ class Shells:
             return Command(CommandKind.NOTE, f"# {command.text}", (), command.line)
         return command
 
-    def _create(self, command: Command) -> _Reason | None:
+    def _create(self, command: Command) -> Reason | None:
         name, build_type = created_package(command.words)
         if build_type != "ament_python":
-            return _Reason(
+            return Reason(
                 "it makes a package for C++", "Python packages have --build-type ament_python.", "C++ packages"
             )
         if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
-            return _Reason("it does not name a package", "Write: ros2 pkg create --build-type ament_python NAME", "")
+            return Reason("it does not name a package", "Write: ros2 pkg create --build-type ament_python NAME", "")
         self._created.add(name)
         self._hello.add((name, created_node(command.words)))
         return None
 
-    def _colcon(self, command: Command) -> _Reason | None:
+    def _colcon(self, command: Command) -> Reason | None:
         words = command.words
         makes = bool(self._nodes) or self.has_exercise
         there = self._created | ({self.package} if makes else set())
@@ -327,47 +280,28 @@ class Shells:
         if not there or (chosen and unknown and not (self._nodes and set(chosen) & self.own.names)):
             what = f"`{unknown[0]}`" if unknown else "anything"
             fix = "Node cells above it make what it builds."
-            return _Reason(f"no cell above makes {what} to build", fix, "packages that no fence shows")
+            return Reason(f"no cell above makes {what} to build", fix, "packages that no fence shows")
         return None
 
-    def _named(self, command: Command) -> _Reason | None:
+    def _named(self, command: Command) -> Reason | None:
         """Return a reason if a command names a topic, service or node that no program above contains."""
         words = [word for word in command.words[3:] if not word.startswith("-")]
         if command.words[1] not in _ASKING or command.words[2] not in _ASKING[command.words[1]] or self.has_exercise:
             return None
         name = _last_name(words[0]) if words else ""
         if command.words[1] == "lifecycle" and "lifecyclenode" not in self._said:
-            return _Reason("nothing above makes a node with a life cycle", "Show it in a fence above.", "")
+            return Reason("nothing above makes a node with a life cycle", "Show it in a fence above.", "")
         typed = command.words[1:3] == ("topic", "echo") and len(words) > 1
         if not name or typed or name in {"rosout", "parameter_events"} or name in self._said:
             return None
         fix = "Show what makes it in a fence above."
-        return _Reason(f"nothing above makes `{words[0]}`", fix, "names that nothing makes")
+        return Reason(f"nothing above makes `{words[0]}`", fix, "names that nothing makes")
 
     def _check_values(self, command: Command, line: int) -> None:
         """Report fields that the type of a message, request or goal on a command line does not have."""
         for wrong in wrong_values(command):
             problem = f"{wrong.problem[:-1]} (`{command.text}`)."
             self.problems.append(Problem(self.file, line, problem, wrong.fix, Severity.WARNING))
-
-    def _types(self, command: Command) -> _Reason | None:
-        """Return a reason if a command names an interface type that does not exist."""
-        for package, kind, name in _TYPE.findall(command.text):
-            own = own_names(f"{package}.{kind}", self.interfaces)
-            known = own or interfaces_of(f"{package}.{kind}")
-            if not own and package not in ros_packages():
-                return _lacking(package)
-            if known and name not in known:
-                close = difflib.get_close_matches(name, known, n=1)
-                fix = f"Did you mean `{close[0]}`?" if close else "See `ros2 interface list`."
-                return _Reason(f"`{package}/{kind}` has no `{name}`", fix, "")
-        return None
-
-
-def _lacking(package: str) -> _Reason:
-    if is_placeholder(package):
-        return _TO_FILL_IN
-    return _Reason(f"it needs `{package}`, not installed here", remedy(package), package)
 
 
 def _arguments(command: Command) -> list[str]:

@@ -227,8 +227,11 @@ class Session:
 
         `known_as` differs from the executable's name if another instance has that name.
         """
+        is_built = (self.workspace / "install" / self.package.name).is_dir()
         for name, (file, start) in self.starts.items():
-            if f"{package}/{executable}" in start.known_as:
+            # What `colcon build` has installed is run by the real command.
+            own = () if is_built else (f"{self.package.name}/{name}",)
+            if f"{package}/{executable}" in (*start.known_as, *own):
                 instance = name if known_as == executable else known_as
                 self.run_background(instance, start.argv(file, words), self._import_path(file), Path.cwd(), bound)
                 return True

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.classify import CellKind
-from spinbook.chapter.read import ReadResult, Surroundings, read_chapter
+from spinbook.chapter.read import ReadResult, read_chapter
+from spinbook.chapter.surroundings import Surroundings
 
 IMPORTS = "import rclpy\nfrom rclpy.node import Node\nfrom std_msgs.msg import String\n"
 TALKER = "class Talker(Node):\n    def __init__(self):\n        super().__init__('talker')\n"

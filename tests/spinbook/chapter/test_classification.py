@@ -9,7 +9,8 @@ import pytest
 from groundwork.problem import Severity
 from spinbook.chapter.chapter import Chapter
 from spinbook.chapter.classify import CellKind
-from spinbook.chapter.read import Surroundings, read_chapter
+from spinbook.chapter.read import read_chapter
+from spinbook.chapter.surroundings import Surroundings
 
 NODE = "import rclpy\nfrom rclpy.node import Node\nrclpy.init()\nnode = Node('talker')\nrclpy.spin(node)\n"
 

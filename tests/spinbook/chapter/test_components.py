@@ -8,7 +8,8 @@ import pytest
 from fences import cells
 
 from spinbook.chapter.classify import CellKind
-from spinbook.chapter.read import Surroundings, read_chapter
+from spinbook.chapter.read import read_chapter
+from spinbook.chapter.surroundings import Surroundings
 
 TABS = """\
 <Tabs

@@ -9,7 +9,8 @@ from fences import GUARD, IMPORTS, MAIN, TALKER, cells, read
 
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.python_code import inspect
-from spinbook.chapter.read import Surroundings, read_chapter
+from spinbook.chapter.read import read_chapter
+from spinbook.chapter.surroundings import Surroundings
 
 
 def test_a_main_continues_the_class_above_which_does_not_run_by_itself(tmp_path: Path) -> None:

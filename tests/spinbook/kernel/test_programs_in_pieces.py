@@ -115,3 +115,9 @@ def test_a_program_of_an_earlier_chapter_is_saved_for_ros2_run(kernel: Kernel) -
 
     assert saved.text == "— saved: `ros2 run` starts this program of the chapter one —\n"
     assert "from chapter one" in kernel.run("%ros2 run robot greeter").text
+
+
+def test_a_node_of_the_course_s_package_runs_by_name_before_it_is_built(kernel: Kernel) -> None:
+    kernel.run("%%node greeting\nprint('hello')\n")
+
+    assert "hello" in kernel.run("%ros2 run robot greeting").text
