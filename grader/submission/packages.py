@@ -173,7 +173,9 @@ _LAUNCHER = """\
 import importlib, operator, os, runpy, sys
 
 _here = os.path.dirname(os.path.abspath(__file__))
-sys.path[:1] = [_here, os.path.join(_here, {folder!r})]
+sys.path[0] = _here
+# For `import helper` next to the module; last, so that a logging.py there does not replace Python's own.
+sys.path.append(os.path.join(_here, {folder!r}))
 if {function!r}:
     sys.exit(operator.attrgetter({function!r})(importlib.import_module({module!r}))())
 runpy.run_module({module!r}, run_name="__main__", alter_sys=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -237,6 +239,19 @@ class Counter(Node):
         super().__init__('counter')
 """
 DOUBLER = COUNTER.replace("Counter", "Doubler").replace("counter", "doubler")
+
+
+def test_a_module_of_the_package_never_replaces_pythons_own(tmp_path: Path, exercise: Exercise) -> None:
+    files = {
+        **inside("p"),
+        "p/my_robot/beat_node.py": "import logging, rates\n\ndef main():\n    print(logging.INFO, rates.RATE)\n",
+        "p/my_robot/logging.py": "INFO = 'mine'\n",
+        "p/setup.py": SETUP.replace("'other = my_robot.other:main',", ""),
+    }
+    program = of_content("p.zip", zipped(files), exercise).program
+    assert program
+    main = written(tmp_path, program.files) / program.main
+    assert subprocess.run([sys.executable, main], capture_output=True, text=True, check=True).stdout == "20 0.25\n"
 
 
 def test_several_programs_are_found_in_a_package_by_what_they_define(pair: Exercise) -> None:
