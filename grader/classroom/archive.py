@@ -72,7 +72,7 @@ def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
         entries = [entry for entry in opened.infolist() if not entry.is_dir()]
         if len(entries) > MOST_FILES:
             raise SubmissionsError(f"{archive}: it holds {len(entries):,} files, more than {MOST_FILES:,}.")
-        left = MOST_BYTES_IN_ALL
+        left, names = MOST_BYTES_IN_ALL, [_name(entry) for entry in entries]
         for number, entry in enumerate(sorted(entries, key=_name)):
             name = _name(entry)
             if any(is_noise(part) for part in name.split("/")):
@@ -89,6 +89,9 @@ def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
             except BROKEN as error:
                 fault = "it is encrypted" if entry.flag_bits & 1 else f"it can't be read: {error}"
                 yield File(name, path, fault=f"{fault}. Was the download cut off?")
+                continue
+            if names.count(name) > 1:
+                yield File(name, path, fault="the zip holds several files of this name")
                 continue
             left -= len(content)
             if left < 0:

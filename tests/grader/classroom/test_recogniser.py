@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -140,3 +141,12 @@ def test_brightspace_may_write_files_without_folders_and_groups(tmp_path: Path) 
     assert files(found) == {"Anna_M_0": flat[0], "Bert-Ole_B_1": flat[1]}
     groups = [f"Group {n} - Nov 20, 2026 100{n} PM/node.py" for n in (1, 2)]
     assert list(files(collected(archive(tmp_path / "b.zip", groups)))) == ["Group_1", "Group_2"]
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+def test_of_two_files_of_one_name_in_a_zip_none_replaces_the_other(tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "class.zip", "w") as out:
+        for name in ("anna.py", "anna.py", "bert.py"):
+            out.writestr(name, "")
+    (question,) = collected(tmp_path / "class.zip").questions
+    assert str(question) == "anna handed in anna.py: the zip holds several files of this name"
