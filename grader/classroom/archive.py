@@ -6,6 +6,7 @@ import os
 import stat
 import zipfile
 import zlib
+from collections import Counter
 from collections.abc import Iterator
 from datetime import datetime, timezone
 from pathlib import Path, PurePosixPath
@@ -72,7 +73,7 @@ def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
         entries = [entry for entry in opened.infolist() if not entry.is_dir()]
         if len(entries) > MOST_FILES:
             raise SubmissionsError(f"{archive}: it holds {len(entries):,} files, more than {MOST_FILES:,}.")
-        left, names = MOST_BYTES_IN_ALL, [_name(entry) for entry in entries]
+        left, names = MOST_BYTES_IN_ALL, Counter(map(_name, entries))
         for number, entry in enumerate(sorted(entries, key=_name)):
             name = _name(entry)
             if any(is_noise(part) for part in name.split("/")):
@@ -90,7 +91,7 @@ def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
                 fault = "it is encrypted" if entry.flag_bits & 1 else f"it can't be read: {error}"
                 yield File(name, path, fault=f"{fault}. Was the download cut off?")
                 continue
-            if names.count(name) > 1:
+            if names[name] > 1:
                 yield File(name, path, fault="the zip holds several files of this name")
                 continue
             left -= len(content)
