@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Literal
 
 import groundwork
+import interface_compiler
 import rmw_lockstep
 import ros_in_python
 from grader.sandbox.middleware import library_folder
@@ -167,10 +168,10 @@ def interpreter() -> tuple[Path, ...]:
     prefixes[Path(sys.executable).resolve().parents[1]] = None
     found = [prefix / part for prefix in prefixes for part in _PARTS if prefix != Path("/usr")]
     library = filter(None, (library_folder(),))
-    # tf2 and its kin: in a checkout, they are not among the environment's libraries.
-    importable = Path(ros_in_python.__file__).with_name("importable")
+    # tf2 and its kin, and what they import: in a checkout, they are not among the environment's libraries.
+    in_python = [Path(module.__file__).parent for module in (ros_in_python, interface_compiler) if module.__file__]
     return tuple(
-        path for path in (*found, *ros_prefixes(), *library, importable, *activation.active()) if path.exists()
+        path for path in (*found, *ros_prefixes(), *library, *in_python, *activation.active()) if path.exists()
     )
 
 

@@ -290,5 +290,9 @@ def test_what_is_hidden_in_the_python_installation_is_not_seen(confined_runner: 
 
 
 def test_what_pypi_lacks_of_ros_2_can_be_imported(confined_runner: Runner) -> None:
-    code = "import message_filters, tf2_geometry_msgs, tf2_ros\nprint(json.dumps(tf2_ros.Buffer.__name__))"
-    assert answer(confined_runner, code) == "Buffer"
+    code = (
+        "import cv_bridge, message_filters, rosbag2_py, tf2_geometry_msgs, tf2_ros\n"
+        "from rosidl_runtime_py.utilities import get_message\n"
+        "print(json.dumps(get_message('std_msgs/msg/String').__name__))"
+    )
+    assert answer(confined_runner, code) == "String"
