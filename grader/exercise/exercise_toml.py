@@ -8,8 +8,6 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any, NoReturn, get_args
 
-from packaging.requirements import InvalidRequirement, Requirement
-
 from grader.exercise.exercise import (
     PUBLIC_FILE,
     Durability,
@@ -267,6 +265,8 @@ def packages(top: TomlTable) -> tuple[str, ...]:
 
 
 def _pinned(top: TomlTable, text: str) -> str:
+    from packaging.requirements import InvalidRequirement, Requirement  # a web page does not have it
+
     try:
         wanted = Requirement(text)
     except InvalidRequirement:

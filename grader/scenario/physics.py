@@ -33,8 +33,10 @@ class MuJoCo:
         a Float64, several for a Float64MultiArray. `joint_states` is a topic for all hinges and slides. `model` is the
         XML; in a `World` it is the name of a file next to scenarios.py.
         """
-        import mujoco  # only here: few exercises need it
-
+        try:
+            import mujoco  # only here: few exercises need it
+        except ImportError:
+            raise ImportError("MuJoCo is not installed: pip install 'spinbook[physics]'") from None
         self._mujoco: Any = mujoco
         self._model = mujoco.MjModel.from_xml_string(model)
         self._data = mujoco.MjData(self._model)
@@ -85,6 +87,7 @@ class MuJoCo:
             self._pushes = [push for push in self._pushes if self._data.time < push[0]]
             left = round((end - self._data.time) / self._model.opt.timestep + 0.5)
             self._mujoco.mj_step(self._model, self._data, 1 if self._pushes else max(left, 1))
+        self._mujoco.mj_forward(self._model, self._data)  # after a step, sensors show the moment before it
 
     def state(self) -> dict[str, Fields]:
         """Return what the sensors show."""
