@@ -66,7 +66,8 @@ def try_out(session: Session, shell: Any, name: str, scenario_name: str, course:
     if ended.exit:
         raise CellFailed("It could not be played: see above.")
     print(f"— what {node} printed:\n{session.log(node, False).rstrip()}")
-    print(f"— {node} continues in the background: %stop {node} ends it —")
+    if session.nodes.status(node).running:
+        print(f"— {node} continues in the background: %stop {node} ends it —")
 
 
 def _scenario(exercise: Exercise, name: str) -> Scenario:
