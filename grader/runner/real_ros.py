@@ -86,10 +86,10 @@ class RealRos:
         if real is not None:
             destroy[type(end)](real)
 
-    @property
-    def servers_are_there(self) -> bool:
-        """Whether every service that the grader's side calls has a server."""
-        return all(client.service_is_ready() for client in self._clients.values())
+    def missing_servers(self) -> list[str]:
+        """Return the services and actions that the grader's side calls and that nobody serves."""
+        missing = (client.srv_name for client in self._clients.values() if not client.service_is_ready())
+        return sorted({name.partition("/_action/")[0] for name in missing})
 
     def _moment(self) -> Moment:
         return Moment(time.monotonic_ns(), self._stage, 0, True)

@@ -53,7 +53,10 @@ class RealTimeRun:
         """Wait until the program is there and connected. Return what is missing after a while, in words."""
         there = self._until(lambda: self._exercise.node_name in self._node.get_node_names(), APPEAR_S)
         if not there:
-            return f"No node called {self._exercise.node_name} has appeared within {APPEAR_S:g} s."
+            own = self._node.get_name()
+            others = ", ".join(sorted(name for name in self._node.get_node_names() if name != own)) or "none"
+            name = self._exercise.node_name
+            return f"No node called {name} has appeared within {APPEAR_S:g} s. Nodes that are there: {others}."
         self._until(lambda: not any(self._missing()), CONNECT_S)
         return " ".join(self._missing())
 
@@ -61,8 +64,7 @@ class RealTimeRun:
         for topic in sorted({message.topic for message in self._scenario.messages}):
             if not self._node.count_subscribers(topic):
                 yield f"Your node does not subscribe to {topic}."
-        if not self._ros.servers_are_there:
-            yield "A service or action of your node is missing."
+        yield from (f"Your node does not serve {name}." for name in self._ros.missing_servers())
 
     def _until(self, condition: Callable[[], bool], seconds: float) -> bool:
         deadline = time.monotonic() + seconds

@@ -94,8 +94,11 @@ def _play(exercise: Exercise, scenario: Scenario, record: Path | None) -> None:
         try:
             run.play(report)
         finally:
-            report(run.recording())
+            report(recording := run.recording())
             click.echo(said.summary())
+            for topic in exercise.outputs:
+                if not any(message.topic.endswith(topic.name) for message in recording.received):
+                    click.echo(f"Your node has published nothing on {topic.name}.")
     finally:
         node.destroy_node()
         rclpy.try_shutdown()

@@ -122,3 +122,18 @@ def test_goals_run_to_their_ends_on_both_sides(recording: Recording) -> None:
         ("/count", "grader", "succeeded", "{'sequence': [0, 1]}"),
         ("/go", "node", "succeeded", "{'sequence': [7]}"),
     }
+
+
+def test_what_a_program_lacks_is_named() -> None:
+    with reserved() as domain:
+        context = rclpy.Context()
+        rclpy.init(context=context, domain_id=domain)
+        student = rclpy.create_node("student", context=context)
+        run = RealTimeRun(rclpy.create_node("reference", context=context), EXERCISE, SCENARIO)
+        lacks = run.wait_for_program()
+        rclpy.try_shutdown(context=context)
+    assert student.get_name() == EXERCISE.node_name
+    assert (
+        lacks
+        == "Your node does not subscribe to /in. Your node does not serve /count. Your node does not serve /switch."
+    )
