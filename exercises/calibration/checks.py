@@ -23,7 +23,7 @@ def must_count(run: Run) -> None:
     ends = [min(call.answered or call.at + GIVE_UP, call.at + GIVE_UP) for call in run.calls(by="node")]
 
     def waiting(at: int) -> int:
-        return sum(begin <= at for begin in begins) - sum(end <= at for end in ends)
+        return max(0, sum(begin <= at for begin in begins) - sum(end <= at for end in ends))
 
     def judge(message: ReceivedMessage) -> None:
         first, last = message.at - TOLERANCE, message.at + TOLERANCE

@@ -20,7 +20,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     up = goal(0.43, 0.5)
     scripts = {
         "up": ("a goal of 0.43 rad", 2.5, up),
-        "down": ("up to 0.43 rad, then down to 0.11 rad", 3.5, (up, goal(0.11, 2.0))),
+        "down": ("up to 0.43 rad, then down to 0.1297 rad", 3.5, (up, goal(0.1297, 2.0))),
         "there": ("a goal where the joint is already", 1.5, (goal(0.0, 0.5),)),
         "limits": ("goals at both limits", 7.5, (goal(2.356, 0.5), goal(0.0, 6.0), at(6.8).cancel(2))),
         "out_of_reach": ("goals beyond the limits", 2.0, (goal(-0.01, 0.5), goal(2.36, 0.7), goal(0.11, 0.9))),

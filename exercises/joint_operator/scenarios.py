@@ -24,22 +24,28 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
     """Every scenario. The first one must be passed by any node that works at all."""
     one = target(0.8, 0.53)
     three = (one, target(0.3, 0.83), target(1.2, 1.13))
-    good = moves(1.0, 0.2, 0.5)
+    good, endless = moves(1.0, 0.2, 0.5), never_ends(cancel_takes=0.5)
     scripts = {
         "succeeds": ("one target, and a server that moves for 1.2 s", 2.5, one, (moves(1.2, 0.217, 0.43, 0.618),), {}),
         "several": ("three targets, one soon after the other", 6.0, three, (good, moves(1.5, 0.7, 0.4), good), {}),
         "again": (
-            "the same target twice, and 0.0",
+            "the same target twice, 0.0, and one below zero",
             6.0,
-            (target(0.8, 0.53, 0.83), target(0.0, 1.13)),
+            (target(0.8, 0.53, 0.83), target(0.0, 1.13), target(-0.4, 1.33)),
             (good,),
             {},
         ),
         "rejects": ("the first goal is rejected after 1 s", 5.5, three, (rejects(answers_after=1.0), good), {}),
         "aborts": ("the first goal is aborted", 5.0, three, (aborts(after=0.7), good), {}),
         "answers_late": ("the server takes 1.5 s to accept", 4.0, one, (moves(1.0, 0.5, answers_after=1.5),), {}),
-        "appears": ("the server appears after 2 s", 7.0, three, (good,), {"appears": 2.02}),
-        "never_ends": ("the first goal never ends", 9.0, three, (never_ends(cancel_takes=0.5), good), {}),
+        "appears": (
+            "five targets, and a server that appears after 2 s",
+            8.5,
+            (three, target(0.6, 1.33), target(0.1, 1.53)),
+            (good,),
+            {"appears": 2.02},
+        ),
+        "never_ends": ("the first and the third goal never end", 14.0, three, (endless, good, endless), {}),
         "slow": ("a goal that takes 4.5 s", 6.0, one, (moves(4.5, 0.2, 0.5),), {}),
         "late_and_slow": (
             "accepted after 2 s, and 4 s on its way",
@@ -52,7 +58,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             "7 s on its way, and no way to cancel",
             10.0,
             three[:2],
-            (moves(7.0, 0.2, cancel="refuse"), good),
+            (moves(7.0, 0.2, 0.4, 0.6, cancel="refuse"), good),
             {},
         ),
         "ignores_the_cancel": (

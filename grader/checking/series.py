@@ -115,12 +115,15 @@ def must_have_no_gap(
 ) -> None:
     """Check that no two messages are more than `longest` s of simulated time apart, between `start` and `end` (s).
 
-    The time from `start` to the first message counts too, and the time from the last one to `end` if it is given.
+    The time from `start` to the first message counts too, and the time from the last one to `end`. Without an `end`,
+    the messages must continue for as long as the solution's.
 
     Example: `run.must_have_no_gap(0.15, "/out")`
     """
     name = topic or run.output.name
     times = [seconds(message.at) for message in run.published_on(name)]
+    if end is None:
+        end = max((seconds(message.at) for message in run.published_on(name, reference=True)), default=None)
     inside = [at for at in times if at >= start and (end is None or at <= end)]
     moments = [start, *inside, *([end] if end is not None else [])]
     for before, after in itertools.pairwise(moments):
