@@ -58,7 +58,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             "7 s on its way, and no way to cancel",
             10.0,
             three[:2],
-            (moves(7.0, 0.2, 0.4, 0.6, cancel="refuse"), good),
+            (moves(7.0, 0.2, 0.2, 0.6, cancel="refuse"), good),
             {},
         ),
         "ignores_the_cancel": (
