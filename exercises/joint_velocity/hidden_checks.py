@@ -58,9 +58,10 @@ def test_speed_that_never_changes(steady: Run) -> None:
     for exchange in list(steady)[1:]:
         for answer in exchange.answers:
             for joint, velocity in answer.by("name", "velocity").items():
-                if abs(velocity - speeds.get(joint, 0.0)) > 1e-6:
-                    text = f"expected velocity {speeds.get(joint, 0.0):g} rad/s, got {velocity:.6g} rad/s."
-                    steady.wrong(exchange, text, joint, f"{speeds.get(joint, 0.0):g}", f"{velocity:.6g}")
+                speed = speeds.get(joint, 0.0)
+                if abs(velocity - speed) > 1e-6 * max(1.0, abs(speed)):
+                    text = f"expected velocity {speed:g} rad/s, got {velocity:.9g} rad/s."
+                    steady.wrong(exchange, text, joint, f"{speed:g}", f"{velocity:.9g}")
     steady.must_match("velocity", per="name", missing_ok=True)
 
 
@@ -224,6 +225,9 @@ def test_remembers_what_it_does_not_answer(repeated_stamp: Run, backward_stamp: 
     """A message to which it publishes nothing counts for the next one."""
     for run in (repeated_stamp, backward_stamp):
         run.must_match("velocity", per="name", missing_ok=True)
+        for before, now in itertools.pairwise(list(run)[1:]):
+            if not before.answers and not before.expected and now.expected and not now.answers:
+                run.wrong(now, "an answer was expected, got none.", "", "a message", "nothing")
 
 
 @check(

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 from grader.checking.cause import Cause
-from grader.checking.comparator import TOLERANCE, difference, equal, shown
+from grader.checking.comparator import TOLERANCE, difference, equal, shown, shown_apart
 from grader.checking.doubts import note
 from grader.checking.hint_texts import hints
 from grader.checking.late_answers import AT_ONCE, delay, how_late, in_general, is_late, is_one_late
@@ -179,7 +179,7 @@ def _compare(run: RecordedRun, exchange: Exchange, answer: Message, field: str, 
     if differing.path and (isinstance(expected, LongArray) or len(shown(expected)) > LONGEST):
         place += differing.path if differing.path.startswith("[") else f".{differing.path}"
         got, expected = differing.got, differing.expected
-    expected_text, got_text = shown(expected, unit), shown(got, unit)
+    expected_text, got_text = shown_apart(expected, got, unit)
     text = f"expected {place} {expected_text}, got {got_text}."
     run.wrong(exchange, text, "", expected_text, got_text, pattern(run, field, unit=unit))
 
@@ -198,9 +198,10 @@ def _compare_each(
         if name not in got:
             run.wrong(exchange, f"a {field} was expected, but your message does not name it.", name, shown(value), "")
         if not equal(got[name], value, tolerance):
-            text = f"expected {field} {shown(value, unit)}, got {shown(got[name], unit)}."
+            expected_text, got_text = shown_apart(value, got[name], unit)
+            text = f"expected {field} {expected_text}, got {got_text}."
             cause = pattern(run, field, per, unit)
-            run.wrong(exchange, text, name, shown(value, unit), shown(got[name], unit), cause)
+            run.wrong(exchange, text, name, expected_text, got_text, cause)
     for name, value in got.items():
         if name not in expected:
             text = f"no {field} was expected, got {shown(value, unit)}."

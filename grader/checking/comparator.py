@@ -89,10 +89,18 @@ def _is_number(value: Any) -> bool:
 MOST_ELEMENTS, MOST_CHARACTERS = 8, 200
 
 
-def shown(value: Any, unit: str = "") -> str:
+def shown_apart(expected: Any, got: Any, unit: str = "") -> tuple[str, str]:
+    """Return two values for people, with more digits if these are needed to tell them apart."""
+    texts = shown(expected, unit), shown(got, unit)
+    if texts[0] == texts[1] and isinstance(expected, float) and isinstance(got, float):
+        return shown(expected, unit, digits=12), shown(got, unit, digits=12)
+    return texts
+
+
+def shown(value: Any, unit: str = "", digits: int = 6) -> str:
     """Return a value for people: `0.25 rad/s`, `[1, 2, 3 …]`, a stamp as `100.250000000`."""
     if isinstance(value, float):
-        return f"{value:.6g}{f' {unit}' if unit else ''}"
+        return f"{value:.{digits}g}{f' {unit}' if unit else ''}"
     if isinstance(value, dict) and set(value) == {"sec", "nanosec"}:
         return f"{value['sec']}.{value['nanosec']:09d}"
     if isinstance(value, dict):

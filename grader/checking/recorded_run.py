@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Any, NoReturn
 
 from grader.checking.cause import UNKNOWN, Cause, as_cause
-from grader.checking.comparator import difference, shown
+from grader.checking.comparator import difference, shown_apart
 from grader.checking.hint_texts import hints
 from grader.checking.message import Exchange, Message, WorldState, exchanges
 from grader.checking.observed import observed
@@ -184,7 +184,7 @@ class RecordedRun:
         if not differing:
             return
         unit = self.unit_of(str(next(iter(steps_of(differing.path)), "")), name)
-        expected_text, got_text = shown(differing.expected, unit), shown(differing.got, unit)
+        expected_text, got_text = shown_apart(differing.expected, differing.got, unit)
         numbers = [(_number(e, differing.path), _number(g, differing.path)) for e, g in pairs]
         known = [(e, g) for e, g in numbers if e is not None and g is not None]
         general = common(known, differing.path, unit) or other_text(

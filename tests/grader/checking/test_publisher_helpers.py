@@ -121,6 +121,7 @@ def test_stamps(stamps: tuple[float, ...], message: str) -> None:
     ("change", "message"),
     [
         (lambda v: v + (5.0 if v == 9.0 else 0.0), "message 3 on /out: expected data 9 m, got 14 m."),
+        (lambda v: v + (4.4e-6 if v == 4.0 else 0.0), "expected data 4 m, got 4.0000044 m."),
         (lambda v: -v, "expected data 1 m, got -1 m. Every value has the wrong sign."),
         (lambda v: 1000 * v, "Every data is in millimetres."),
         (lambda v: 3 * v, "Every data is 3 times what it should be."),
