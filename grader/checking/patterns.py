@@ -67,6 +67,8 @@ def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "") -> 
         return UNKNOWN
     if len({got for _, got in telling}) == 1:
         return _constant(field, telling[0][1])
+    if any(e < 0 for e, _ in telling) and all(math.isclose(g, abs(e), rel_tol=1e-6) for e, g in telling):
+        return Cause(f"No {field} is negative: the sign is lost.", *hints("wrong_sign"))
     ratio = telling[0][1] / telling[0][0]
     if all(math.isclose(g, ratio * e, rel_tol=1e-3, abs_tol=1e-9) for e, g in telling):
         return _ratio(ratio, field, unit)

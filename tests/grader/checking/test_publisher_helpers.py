@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 from made_up import EMPTY, ENDS, STAMPED, finding, ns, published, run, says
 
+from grader.checking.patterns import common
 from grader.recording import ReceivedMessage, Recording
 from grader.scenario.scenario import SECOND
 
@@ -132,6 +133,12 @@ def test_stamps(stamps: tuple[float, ...], message: str) -> None:
 def test_a_series_with_other_values(change: Callable[[float], float], message: str) -> None:
     mine = published(TIMES, [change(value) for value in VALUES])
     assert message in says(lambda: run(mine, RIGHT).must_match_series("data"))
+
+
+def test_a_sign_that_is_lost_is_named() -> None:
+    right, wrong = ([(-1.0, 1.0), (2.0, 2.0), (-3.0, last)] for last in (3.0, -3.0))
+    assert common(right, "speed").seen == "No speed is negative: the sign is lost."
+    assert not common(wrong, "speed")
 
 
 def test_a_series_that_is_one_message_late_or_early() -> None:
