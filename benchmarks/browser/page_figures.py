@@ -40,12 +40,12 @@ rclpy.init()
 rclpy.spin(Talker())
 """
 START = """async ([number, source]) => {
-  const { Process } = await import(new URL("../run/processes.js", location.href));
+  const { take } = await import(new URL("../run/processes.js", location.href));
   const { download } = await import(new URL("../run/download.js", location.href));
   const began = performance.now();
   await download(() => {});
   await new Promise((resolve, reject) => {
-    const node = new Process(`talker_${number}`, { output: (text) => text.includes("ready") && resolve() });
+    const node = take(`talker_${number}`, { output: (text) => text.includes("ready") && resolve() });
     const ended = (status) => reject(new Error(`talker_${number} ended with ${status}`));
     node.program(source, `talker_${number}.py`).then(ended, reject);
   });

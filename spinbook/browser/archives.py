@@ -40,7 +40,12 @@ _SPINBOOK = (
     "browser",
     "graph",
     "chapter/__init__.py",
+    "chapter/interface_fields.py",
+    "chapter/node_classes.py",
+    "chapter/syntax.py",
     "chapter/terminal.py",
+    "chapter/variable_types.py",
+    "chapter/wrong_fields.py",
 )
 #: The parts of the grader that run scenarios and judge recordings. The rest starts programs and sandboxes them.
 _GRADER = ("__init__.py", "checking", "exercise", "recording", "runner", "scenario", "submission", "report")

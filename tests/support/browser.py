@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Browser, ConsoleMessage, Page, Request, expect, sync_playwright
+from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, Request, expect, sync_playwright
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 LOCAL = ("file:", "data:", "blob:", "about:")
@@ -66,6 +66,29 @@ class Opened:
         """Return whether the page is wider than its window."""
         root = "document.documentElement"
         return bool(self.page.evaluate(f"{root}.scrollWidth > {root}.clientWidth"))
+
+
+def code_in(place: Locator) -> str:
+    """Return the code that a block or an exercise's starter shows, without line breaks at its end."""
+    lines = place.locator(".cm-line")
+    shown = "\n".join(lines.all_text_contents()) if lines.count() else place.locator("pre").first.text_content()
+    return (shown or "").rstrip("\n")
+
+
+def open_editor(place: Locator) -> Locator:
+    """Click into the code of a block or of an exercise's starter; return its editor."""
+    editor = place.locator(".cm-content")
+    if editor.count() == 0:
+        place.locator("pre").first.click(position={"x": 40, "y": 20})
+    return editor
+
+
+def write_code(place: Locator, text: str) -> None:
+    """Replace the code in a block, or in an exercise's starter, as a reader does."""
+    editor = open_editor(place)
+    for key in ("Control+a", "Delete"):
+        editor.press(key)
+    place.page.keyboard.insert_text(text)
 
 
 def _url(where: Path | str) -> str:

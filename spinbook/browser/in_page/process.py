@@ -6,6 +6,7 @@ import builtins
 import errno
 import linecache
 import os
+import random
 import sys
 import threading
 import time
@@ -31,23 +32,34 @@ _NO_INPUT = "This program asks for input, and a web page has no terminal to type
 _ABSENT = ("numpy", "matplotlib", "scipy", "cv2", "pandas")
 
 
-def open_process(page: Any, identity: str) -> None:
-    """Prepare the process: join the graph, and replace everything that waits in a way a page can't."""
-    threads.use(page, lambda: link.deliver_signals())
-    link = PageLink(page)
-    participant.use(link, identity)
-    time.sleep = link.sleep  # type: ignore[assignment]
+def prepare() -> None:
+    """Replace what waits in a way a page can't, and import rclpy.
+
+    Each process of a page starts with a copy of the memory that the first one has after this call.
+    """
+    threads.replace_threading()
     logs.write = lambda line: print(line, file=sys.stderr)
     abort.end = _abort
-    # The names of the `ros2` command's nodes tell its processes apart, and Pyodide gives all the same number.
-    number = int(identity.lstrip("w"))
-    os.getpid = lambda: number
     # Browsers do not reveal the number reliably, and Pyodide's is 1: pools would have a single thread.
     os.cpu_count = lambda: _PROCESSORS
     rcl_python.install()
     program_imports.watch()
     builtins.input = _refuse_input
     threading.excepthook = _show_error_of_thread
+    import_rclpy()
+
+
+def open_process(page: Any, identity: str) -> None:
+    """Make this a process of its own, which joins the graph."""
+    threads.use(page, lambda: link.deliver_signals())
+    link = PageLink(page)
+    participant.use(link, identity)
+    time.sleep = link.sleep  # type: ignore[assignment]
+    # The names of the `ros2` command's nodes tell its processes apart, and Pyodide gives all the same number.
+    number = int(identity.lstrip("w"))
+    os.getpid = lambda: number
+    # With the copied state, all processes would draw the same numbers.
+    random.seed()
 
 
 def _abort(text: str) -> None:

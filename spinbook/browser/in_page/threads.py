@@ -246,19 +246,18 @@ def _start_new(function: Callable[..., None], args: tuple[Any, ...]) -> int:
 
 
 def use(page: Any, deliver_signals: Callable[[], None]) -> None:
-    """Replace Python's threads. After each wait, `deliver_signals` is called in the main thread.
-
-    Call this before anything is imported that keeps a lock.
-    """
+    """Let threads wait in this page. After each wait, `deliver_signals` is called in the main thread."""
     global _page, _await, _deliver_signals
     from pyodide.ffi import run_sync
 
     _page, _await, _deliver_signals = page, run_sync, deliver_signals
-    replace_threading()
 
 
 def replace_threading() -> None:
-    """Make `threading` and everything built on it use these threads. Without a page, they need a scheduler."""
+    """Make `threading` and everything built on it use these threads, which wait in a page or in a scheduler.
+
+    Call this before anything is imported that keeps a lock.
+    """
     patched: dict[str, Any] = {
         "Lock": Lock,
         "_allocate_lock": Lock,

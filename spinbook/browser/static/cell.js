@@ -26,7 +26,7 @@ class Cell {
     const code = node.querySelector(".cell_input pre, .highlight pre");
     this.recorded = node.querySelector(".cell_output");
     const language = this.kind === "node" || this.kind === "snippet" ? "python" : "";
-    this.editor = createEditor(code, this.file || "this cell", language);
+    this.editor = createEditor(code, this.file || "this cell", language, this.about.before);
     this.written = this.editor.written;
     // A chapter may show a changed version of a program again: each keeps its own edits.
     const before = [...cells.values()].filter((cell) => cell.name === this.name).length;

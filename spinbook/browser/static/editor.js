@@ -1,49 +1,84 @@
-// Code that can be edited in place.
-import { colours } from "./highlight.js";
+// Code that can be edited in place. CodeMirror is loaded when a reader first edits something; without it, a plain text
+// area does.
+import { addressOf } from "./address.js";
+import { element } from "./elements.js";
 
-const STEP = "    ";
-
-// Make the code in `place`, a <pre>, editable. Tab indents; Escape, then Tab, leaves it. Python code is highlighted.
-export function createEditor(place, name, language = "") {
+// Make the code in `place`, a <pre>, editable: by a click, by Enter, and at once if its text is another one than the
+// page's. `language` is "python" or "". `before` is what precedes the code in its program.
+export function createEditor(place, name, language = "", before = "") {
   // A field of its own: the page gives the <pre> another role if it scrolls.
-  const code = document.createElement("span");
-  code.className = "editor";
-  code.append(...place.childNodes);
-  place.append(code);
-  const original = code.innerHTML;
-  const written = code.textContent;
-  const colour = language === "python" ? colours(code) : () => {};
-  let leaving = false;
+  const still = element("span", { className: "editor", tabIndex: 0 });
+  still.append(...place.childNodes);
+  place.append(still);
+  const written = still.textContent;
+  const label = `Code of ${name}. Escape, then Tab, leaves it.`;
+  let text = written;
+  let opening = null;
+  let view = null;
+  const heard = (now) => {
+    // What the Copy button copies.
+    still.textContent = text = now;
+    field.onchange();
+  };
+  // A text ends in a line break, after which the editor would show an empty line.
+  const shown = () => text.replace(/\n$/, "");
+  const end = written.endsWith("\n") ? "\n" : "";
+
+  async function show() {
+    const { codeView } = await import(addressOf("code_view.js")).catch(() => ({ codeView: plainView }));
+    const frame = element("div", { className: "code-editor" });
+    frame.addEventListener("keydown", run, true);
+    place.after(frame);
+    view = codeView({ parent: frame, text: shown(), label, language, before, onchange: (now) => heard(now + end) });
+    place.hidden = true;
+  }
+
+  function run(event) {
+    if (event.key !== "Enter" || !(event.shiftKey || event.ctrlKey || event.metaKey)) return;
+    event.preventDefault();
+    event.stopPropagation();
+    field.onrun();
+  }
+
   const field = {
     written,
     onchange: () => {},
-    focus: () => code.focus(),
+    // Shift+Enter was pressed.
+    onrun: () => {},
     get text() {
-      return code.textContent;
+      return text;
+    },
+    // Show the code in an editor; its caret is where the reader has clicked.
+    async open(point) {
+      opening ??= show();
+      await opening;
+      view.focus(point);
     },
     // Show another text; `onchange` is not called.
-    fill(text) {
-      if (language === "python" || text !== written) code.textContent = text;
-      else code.innerHTML = original;
-      colour();
+    fill(now) {
+      if (now === text) return;
+      still.textContent = text = now;
+      if (view) view.fill(shown());
+      else opening ??= show();
     },
   };
-  code.contentEditable = "plaintext-only";
-  code.tabIndex = 0; // Editable elements can always be focused, but accessibility checkers look for a tabindex.
-  code.spellcheck = false;
-  code.setAttribute("role", "textbox");
-  code.setAttribute("aria-multiline", "true");
-  code.setAttribute("aria-label", `Code of ${name}. Escape, then Tab, leaves it.`);
-  code.addEventListener("input", () => {
-    colour();
-    field.onchange();
-  });
-  code.addEventListener("keydown", (event) => {
-    if (event.key === "Escape") leaving = true;
-    else if (event.key === "Tab" && !event.shiftKey && !leaving) {
-      event.preventDefault();
-      document.execCommand("insertText", false, STEP);
-    } else if (event.key !== "Tab" && event.key !== "Shift") leaving = false;
+  still.setAttribute("role", "textbox");
+  still.setAttribute("aria-multiline", "true");
+  still.setAttribute("aria-readonly", "true");
+  still.setAttribute("aria-label", `Code of ${name}. Enter edits it.`);
+  still.addEventListener("keydown", (event) => {
+    if (event.key !== "Enter" || event.shiftKey) return run(event);
+    event.preventDefault();
+    field.open();
   });
   return field;
+}
+
+// The editor if CodeMirror can't be loaded.
+function plainView({ parent, text, label, onchange }) {
+  const area = element("textarea", { value: text, spellcheck: false, rows: text.split("\n").length + 1 });
+  area.setAttribute("aria-label", label);
+  area.addEventListener("input", () => onchange(area.value));
+  parent.append(area);
+  return { focus: () => area.focus(), fill: (now) => (area.value = now) };
 }

@@ -29,6 +29,7 @@ export class Edits {
 
   // Keep the current code as a version: it runs, or is about to be replaced.
   note(why) {
+    this.stays = false;
     this.draft.note(why);
     this.#show();
   }
@@ -62,7 +63,7 @@ export class Edits {
   }
 
   #changed() {
-    this.notes.replaceChildren();
+    if (!this.stays) this.notes.replaceChildren();
     this.draft.keep(this.editor.text);
     this.#show();
     this.onchange?.();
@@ -71,6 +72,7 @@ export class Edits {
   #heard(text, changed) {
     if (changed) this.editor.fill(this.draft.current);
     this.#say(text);
+    this.stays = true; // until it is run, whatever is typed meanwhile
     this.#show();
   }
 

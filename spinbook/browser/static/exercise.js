@@ -4,7 +4,7 @@ import { Edits } from "./edits.js";
 import { createEditor } from "./editor.js";
 import { announce, button, element, failure, hindrance, save, style } from "./elements.js";
 import { fill } from "./picture.js";
-import { Process } from "./processes.js";
+import { take } from "./processes.js";
 import { tellUpdate } from "./update.js";
 
 const LIMIT_S = 120;
@@ -41,7 +41,7 @@ function withCounts(text, exercise) {
 
 // Return the process that checks. There is one per page, until it has to be ended.
 function checker(hears) {
-  process ??= new Process("check", {});
+  process ??= take("check", {});
   Object.assign(process.hears, hears, { end: () => (process = null) });
   return process;
 }
@@ -131,6 +131,7 @@ function opening(section) {
   const file = document.querySelector(".facts code").textContent;
   const code = section.querySelector("pre");
   const editor = createEditor(code, file, "python");
+  code.addEventListener("click", ({ clientX: x, clientY: y }) => getSelection().isCollapsed && editor.open({ x, y }));
   const buttons = element("span", { className: "draft-tools" });
   const edits = new Edits(editor, location.pathname, file, buttons, code.closest('[class*="highlight-"]') ?? code);
   const state = element("p", { className: "run-state" });
@@ -163,6 +164,7 @@ function opening(section) {
     }
   };
   const checking = button("Check", `Check ${file}`, act);
+  editor.onrun = () => checking.click();
   const upload = element("input", { type: "file", className: "hidden-text", tabIndex: -1 });
   upload.setAttribute("aria-label", "A file to continue with");
   const take = async () => {

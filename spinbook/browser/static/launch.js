@@ -1,7 +1,7 @@
 // `ros2 launch`: several nodes under one name. Each line of output begins with its node; one Stop ends them all.
 import { logs } from "./cell.js";
 import { programOf, started } from "./nodes.js";
-import { Process } from "./processes.js";
+import { take } from "./processes.js";
 import { files } from "./workspace.js";
 
 const SHOWN_S = 3;
@@ -57,7 +57,7 @@ class Launch {
     const number = this.parts.length + 1;
     const name = `${executable}-${number}`;
     const { source, file } = programOf(this.cell, pack, executable);
-    const part = new Process(name, { ...this.hears, output: (text) => this.print(`[${name}] ${text}`) });
+    const part = take(name, { ...this.hears, output: (text) => this.print(`[${name}] ${text}`) });
     part.launch = this;
     this.parts.push(part);
     this.print(`[INFO] [${name}]: process started with pid [${number}]`);

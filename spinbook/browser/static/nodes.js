@@ -2,7 +2,7 @@
 import { cellOf, logs } from "./cell.js";
 import { failure } from "./elements.js";
 import { files } from "./workspace.js";
-import { Process, named } from "./processes.js";
+import { named, take } from "./processes.js";
 import { turtle } from "./turtle.js";
 
 const TURTLESIM =
@@ -23,7 +23,7 @@ async function start(name, into, program, file, args) {
   await (started.get(name)?.running ? started.get(name) : named(name))?.stop();
   logs.delete(name);
   started.delete(name);
-  const process = new Process(name, into.hears(name));
+  const process = take(name, into.hears(name));
   started.set(name, process);
   const turn = (into.started = ++starts);
   // The cell may show another program by then.

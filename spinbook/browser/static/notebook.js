@@ -2,7 +2,7 @@
 import { runExecutable, showLog, showNodes, showTurtle, stop } from "./nodes.js";
 import { launch } from "./launch.js";
 import { graph, show } from "./picture.js";
-import { Process, environment } from "./processes.js";
+import { environment, take } from "./processes.js";
 import { timeline } from "./timeline.js";
 import { files, keep, notWritten } from "./workspace.js";
 
@@ -23,7 +23,7 @@ const idle = [];
 
 // Return the process of plain cells.
 export async function observer() {
-  if (!shared?.alive) shared = new Process("notebook", {});
+  if (!shared?.alive) shared = take("notebook", {});
   await shared.ready;
   return shared;
 }
@@ -49,7 +49,7 @@ async function workFor(cell, process, act) {
 
 // Let a process that no other cell uses work for this one.
 async function inTerminal(cell, act) {
-  const process = idle.pop() ?? new Process("terminal", {});
+  const process = idle.pop() ?? take("terminal", {});
   try {
     return await workFor(cell, process, act);
   } finally {
@@ -113,7 +113,15 @@ function parts(source) {
 // The words of a line, quoted as in a shell.
 const wordsOf = (line) => (line.match(/"[^"]*"|'[^']*'|\S+/g) ?? []).map((word) => word.replace(/^(["'])(.*)\1$/, "$2"));
 
-async function magic(cell, [word, ...args]) {
+// The options that a page's magics take, as in the notebook.
+const OPTIONS = { plot: ["--seconds", "--title"], timeline: ["--record", "--title"], graph: ["--seconds"] };
+Object.assign(OPTIONS, { nodes: [], turtle: [], stop: ["--all"], log: ["--all", "--until", "--seconds"] });
+
+async function magic(cell, [word, ...written]) {
+  const args = written.flatMap((each) => (/^--\w+=/.test(each) ? [each.split("=", 1)[0], each.slice(each.indexOf("=") + 1)] : [each]));
+  const options = OPTIONS[word];
+  const unknown = options && args.find((each) => each.startsWith("--") && !options.includes(each));
+  if (unknown) return cell.fail(`%${word} has no option ${unknown}. It has: ${options.join(", ") || "none"}.`);
   const known = { nodes: showNodes, log: showLog, stop, turtle: showTurtle, env: setVariable };
   if (word in known) await known[word](cell, args);
   else if (word === "timeline") await inTerminal(cell, (process) => timeline(cell, process, args));

@@ -21,8 +21,17 @@ export function open() {
   bar();
   const all = nodesOf().map(cellAt);
   const homeless = settle(`${location.pathname}#`, all);
-  for (const cell of all) cell.edit();
+  for (const cell of all) {
+    cell.edit();
+    cell.editor.onrun = () => run(cell.node);
+  }
   homeless.forEach(([key, draft]) => document.querySelector("main h1").after(offer(key, draft)));
+}
+
+// Edit the code of a cell, at a point of the window.
+export function edit(node, point) {
+  open();
+  cellAt(node).editor.open(point);
 }
 
 // Return a note about a draft whose cell the course no longer has.

@@ -1,6 +1,6 @@
 // `%timeline`: records services, actions and topics while other cells run, and draws what happened.
 import { show } from "./picture.js";
-import { Process } from "./processes.js";
+import { take } from "./processes.js";
 
 // How long to wait for names to appear, and for messages that are still in transit at the end (ms).
 const APPEAR_MS = 20_000;
@@ -22,7 +22,7 @@ async function begin(cell, names) {
     if (kind === "found") found.add(name);
     if (kind === "error" || names.every((each) => found.has(each))) all();
   };
-  const process = new Process("timeline", { output: (text, stream) => stream === "stdout" && hear(text) });
+  const process = take("timeline", { output: (text, stream) => stream === "stdout" && hear(text) });
   process.overhears = true;
   recording = { process, names, lines };
   await process.ready;

@@ -1,6 +1,6 @@
 // Turtlesim's window: its picture four times per second, and the arrow keys. One process draws for all places.
 import { element } from "./elements.js";
-import { Process } from "./processes.js";
+import { take } from "./processes.js";
 
 const KEYS = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1] };
 
@@ -19,7 +19,7 @@ function paint({ svg, words }) {
 // Return the process that asks turtlesim `node` for its picture; it ends with it.
 function painterOf(node) {
   if (painter?.alive) return painter;
-  const process = new Process("turtle window", { picture: (text) => paint(JSON.parse(text)) });
+  const process = take("turtle window", { picture: (text) => paint(JSON.parse(text)) });
   painter = process;
   process.ready.then(() => process.call("turtle")).catch((error) => figures.forEach((figure) => figure.say(error.message)));
   node.ended.then(() => {

@@ -35,12 +35,12 @@ function arrived() {
 
 const print = (stream) => (text) => self.postMessage({ op: "output", stream, text });
 
-async function archive(py, name, part) {
+const progress = (part) => self.postMessage({ op: "progress", part });
+
+async function bytes(name) {
   const response = await fetch(addressOf(name));
   if (!response.ok) throw new Error(`${name}: ${response.status}`);
-  py.FS.writeFile(`/${name}`, new Uint8Array(await response.arrayBuffer()));
-  py.runPython(`import sys; sys.path.insert(0, "/${name}")`);
-  self.postMessage({ op: "progress", part });
+  return new Uint8Array(await response.arrayBuffer());
 }
 
 // If there is no memory for another program, Pyodide only warns and never returns; this promise rejects then.
@@ -58,32 +58,43 @@ const lacking = new Promise((resolve, reject) => {
   }
 });
 
-// Start Python. `known` is the code that an earlier process of the page has compiled.
-async function start(identity, known) {
-  self.postMessage({ op: "progress", part: "Python" });
-  const loading = loadPyodide({
+const PREPARE = 'import sys; sys.path.insert(0, "/ros.zip"); from spinbook.browser.in_page import process; process.prepare()';
+
+// Start Python with ROS 2 from the memory of an earlier process, a Blob; without one, anew, and hand over its memory.
+async function python(memory) {
+  const archive = await bytes("ros.zip");
+  const options = {
     indexURL: new URL("./", import.meta.url).href,
     stdout: print("stdout"),
     stderr: print("stderr"),
-  });
-  const py = await Promise.race([loading, lacking]);
-  await archive(py, "ros.zip", "ROS 2");
-  const compiled = py.pyimport("spinbook.browser.in_page.code_cache");
-  if (known) compiled.use(py.toPy(known));
-  else compiled.keep();
+    fsInit: (FS) => FS.writeFile("/ros.zip", archive),
+  };
+  if (memory) {
+    const py = await loadPyodide({ ...options, _loadSnapshot: new Uint8Array(await memory.arrayBuffer()) });
+    delete py._api.config._loadSnapshot; // Pyodide would keep this copy.
+    return py;
+  }
+  progress("Python");
+  const py = await loadPyodide({ ...options, _makeSnapshot: true });
+  progress("ROS 2");
+  py.runPython(PREPARE);
+  self.postMessage({ op: "memory", memory: new Blob([py.makeMemorySnapshot()]) });
+  return py;
+}
+
+async function start(identity, memory) {
+  const py = await Promise.race([lacking, memory ? python(memory).catch(() => python(null)) : python(null)]);
   const process = py.pyimport("spinbook.browser.in_page.process");
   process.open_process(page, identity);
-  process.import_rclpy();
-  if (!known) self.postMessage({ op: "compiled", code: compiled.kept().toJs() });
   return { py, process };
 }
 
 let ready = null;
 
 const does = {
-  start: ({ version, identity, compiled }) => {
+  start: ({ version, identity, memory }) => {
     if (version !== VERSION) throw new Error("another version");
-    ready = start(identity, compiled);
+    ready = start(identity, memory);
     return ready.then(() => null);
   },
   program: async ({ source, file, args, environment, files }) => {
@@ -120,6 +131,8 @@ const does = {
     const { py } = await ready;
     return JSON.parse(py.pyimport("spinbook.browser.in_page.timeline").drawn(py.toPy(names), py.toPy(lines), title));
   },
+  problems: async ({ source }) => JSON.parse((await advice()).problems(source)),
+  completions: async ({ source, at }) => JSON.parse((await advice()).completions(source, at)),
   commands: async ({ source }) => JSON.parse((await cells()).commands(source)),
   define: async ({ name, text }) => {
     await shares((await ready).py);
@@ -148,7 +161,7 @@ const does = {
 
 async function checks() {
   const { py, process } = await ready;
-  py.checks ??= archive(py, "check.zip", "checks").then(() => process.find_grader_in("/check.zip"));
+  py.checks ??= unpackChecks(py, process);
   await Promise.all([py.checks, shares(py)]);
   return py.pyimport("spinbook.browser.in_page.check");
 }
@@ -156,6 +169,19 @@ async function checks() {
 async function cells() {
   const { py } = await ready;
   return py.pyimport("spinbook.browser.in_page.cells");
+}
+
+async function unpackChecks(py, process) {
+  progress("checks");
+  py.FS.writeFile("/check.zip", await bytes("check.zip"));
+  py.runPython('import sys; sys.path.insert(0, "/check.zip")');
+  process.find_grader_in("/check.zip");
+}
+
+async function advice() {
+  const { py } = await ready;
+  await shares(py);
+  return py.pyimport("spinbook.browser.in_page.advice");
 }
 
 async function pictures() {
@@ -179,8 +205,7 @@ function shares(py) {
 }
 
 async function unpackShares(py) {
-  const response = await fetch(addressOf("share.zip"));
-  py.unpackArchive(await response.arrayBuffer(), "zip", { extractDir: "/opt/ros" });
+  py.unpackArchive(await bytes("share.zip"), "zip", { extractDir: "/opt/ros" });
   py.runPython('import os; os.environ["AMENT_PREFIX_PATH"] = "/opt/ros"');
 }
 

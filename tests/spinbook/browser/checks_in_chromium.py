@@ -29,9 +29,9 @@ from spinbook.course.course import find_course  # noqa: E402
 from spinbook.interfaces.definitions import compile_course  # noqa: E402
 
 _START = """async () => {
-  const { Process } = await import("./run/processes.js");
+  const { take } = await import("./run/processes.js");
   window.heard = [];
-  window.worker = new Process("check", { output: (text) => window.heard.push(text) });
+  window.worker = take("check", { output: (text) => window.heard.push(text) });
   await window.worker.ready;
 }"""
 _CHECK = "given => window.worker.call('check', given)"

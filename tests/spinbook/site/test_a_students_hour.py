@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from browser import Opened, opened
+from browser import Opened, code_in, opened, write_code
 from playwright.sync_api import Browser, Page, expect
 from small_course import ROOT, served
 
@@ -47,12 +47,9 @@ def press(page: Page, name: str) -> None:
 
 def change(page: Page, file: str, old: str, new: str) -> None:
     field = page.get_by_role("textbox", name=f"Code of {file}. ")
-    assert old in field.inner_text()
-    field.evaluate(
-        "(field, [old, now]) => { field.textContent = field.textContent.replace(old, now);"
-        " field.dispatchEvent(new Event('input')); }",
-        [old, new],
-    )
+    cell = page.locator(".cell", has=field)
+    assert old in code_in(cell)
+    write_code(cell, code_in(cell).replace(old, new))
 
 
 def output(name: str) -> str:

@@ -8,13 +8,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from browser import Opened, opened
+from browser import Opened, code_in, open_editor, opened, write_code
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from spinbook.browser.files import can_run
 
 pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Pyodide from npm")
 
+#: Python, which checks edited code, need not start here.
+WITHOUT_PYTHON = "delete WebAssembly.Suspending;"
 STARTER = "Edit and check the starter here"
 #: No character fits into the storage any more, or it is forbidden: what a browser does then.
 FULL = "Storage.prototype.setItem = () => { throw new DOMException('full', 'QuotaExceededError'); }; 0"
@@ -26,6 +28,7 @@ FORBIDDEN = (
 @pytest.fixture(scope="module")
 def shown(browser: Browser, address: str) -> Iterator[Opened]:
     with opened(browser, f"{address}/chapters/01-talk.html") as window:
+        window.page.add_init_script(WITHOUT_PYTHON)
         yield window
 
 
@@ -37,32 +40,19 @@ def fresh(shown: Opened, address: str) -> None:
     shown.show(f"{address}/chapters/01-talk.html")
 
 
-def open_editors(page: Page) -> None:
-    """Load what a first Run loads, without running anything."""
-    page.evaluate(
-        "async () => (await import(new URL('../run/page.js' + document.querySelector('script[src*=\"/run.js\"]')"
-        ".src.replace(/[^?]*/, ''), location.href))).open()"
-    )
-
-
 def write(page: Page, old: str, new: str) -> Locator:
     """Change the node's code as a reader does; return its cell."""
-    field = page.locator(".cell-node").get_by_role("textbox")
-    field.evaluate(
-        "(field, [old, now]) => { field.textContent = field.textContent.replace(old, now);"
-        " field.dispatchEvent(new Event('input')); }",
-        [old, new],
-    )
-    return page.locator(".cell-node")
+    cell = page.locator(".cell-node")
+    write_code(cell, code_in(cell).replace(old, new))
+    return cell
 
 
 def code(page: Page) -> str:
-    return page.locator(".cell-node").get_by_role("textbox").inner_text()
+    return code_in(page.locator(".cell-node"))
 
 
 def test_an_edit_is_shown_after_a_reload_with_what_differs(shown: Opened) -> None:
     page = shown.page
-    open_editors(page)
     cell = write(page, "number", "edited")
     page.reload()
     expect(cell.locator(".edited")).to_have_text("edited")
@@ -91,7 +81,6 @@ def test_an_edit_is_shown_after_a_reload_with_what_differs(shown: Opened) -> Non
 
 def test_a_course_that_has_changed_under_a_draft_says_so_and_keeps_both(shown: Opened) -> None:
     page = shown.page
-    open_editors(page)
     cell = write(page, "number", "edited")
     (key,) = page.evaluate("Object.keys(localStorage).filter(key => key.startsWith('code:'))")
     draft = json.loads(page.evaluate("key => localStorage[key]", key))
@@ -115,9 +104,8 @@ def test_a_course_that_has_changed_under_a_draft_says_so_and_keeps_both(shown: O
 
 def test_a_draft_follows_its_cell_when_others_are_added_above(shown: Opened) -> None:
     page = shown.page
-    open_editors(page)
     page.evaluate("""() => {
-      const written = document.querySelector('.cell-snippet [role=textbox]').textContent;
+      const written = document.querySelector('.cell-snippet .cell_input pre').textContent;
       const draft = { original: written, text: written + '# mine', versions: [] };
       localStorage['code:' + location.pathname + '#cell 17'] = JSON.stringify(draft);
     }""")
@@ -128,11 +116,10 @@ def test_a_draft_follows_its_cell_when_others_are_added_above(shown: Opened) -> 
 
 def test_two_tabs_never_overwrite_each_other_in_silence(shown: Opened) -> None:
     page = shown.page
-    open_editors(page)
     other = page.context.new_page()
     try:
         other.goto(page.url)
-        open_editors(other)
+        expect(open_editor(other.locator(".cell-node"))).to_be_focused()
         write(page, "number", "first tab")
         expect(other.locator(".cell-node")).to_contain_text("Changed in another tab.")
         assert "first tab" in code(other)
@@ -156,11 +143,21 @@ def test_two_tabs_never_overwrite_each_other_in_silence(shown: Opened) -> None:
 )
 def test_a_browser_that_can_not_store_is_reported(shown: Opened, how: str, says: str) -> None:
     shown.page.evaluate(how)
-    open_editors(shown.page)
     cell = write(shown.page, "number", "edited")
     expect(cell).to_contain_text(says)
     write(shown.page, "edited", "number")
     expect(cell).not_to_contain_text(says)
+
+
+def test_without_codemirror_code_is_edited_in_a_plain_field(browser: Browser, address: str) -> None:
+    # A window of its own: this one's cache has CodeMirror.
+    with opened(browser, f"{address}/chapters/01-talk.html") as window:
+        window.page.route("**/run/codemirror.js*", lambda route: route.abort())
+        cell = window.page.locator(".cell-node")
+        cell.locator("pre").first.click(position={"x": 40, "y": 20})
+        cell.locator("textarea").fill("print('plain')\n")
+        expect(cell.locator(".edited")).to_have_text("edited")
+        assert window.violations() == []
 
 
 def test_a_starter_with_a_draft_opens_with_it(shown: Opened, address: str) -> None:

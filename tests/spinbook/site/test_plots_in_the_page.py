@@ -78,3 +78,5 @@ def test_what_can_not_be_plotted_is_reported_as_in_a_notebook(shown: Opened) -> 
     expect(cell).to_contain_text("there is no field `positions`. The fields are: header, name", timeout=DEADLINE_MS)
     run(cell, "%plot /joint_commands/position[ --seconds 1")
     expect(cell).to_contain_text("is not a field. Write for example position[0]", timeout=DEADLINE_MS)
+    run(cell, "%plot /joint_commands --second 1")
+    expect(cell).to_contain_text("%plot has no option --second. It has: --seconds, --title.", timeout=DEADLINE_MS)

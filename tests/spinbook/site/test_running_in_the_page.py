@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from browser import Opened, opened
+from browser import Opened, code_in, opened, write_code
 from playwright.sync_api import Browser, expect
 from small_course import SmallCourse
 
@@ -56,10 +56,9 @@ def test_a_page_runs_its_nodes(browser: Browser, address: str) -> None:
         assert shown.violations() == []
 
         code = cell.get_by_role("textbox")
-        before = code.inner_text()
-        code.evaluate("field => field.textContent = field.textContent.replace('number', 'edited')")
-        code.dispatch_event("input")
-        page.get_by_role("button", name="Run talker.py").click()
+        before = code_in(cell)
+        write_code(cell, before.replace("number", "edited"))
+        code.press("Shift+Enter")
         expect(log).to_contain_text("[talker]: edited 3", timeout=DEADLINE_MS)
         expect(bar.get_by_role("listitem")).to_have_count(1)
 
@@ -71,7 +70,7 @@ def test_a_page_runs_its_nodes(browser: Browser, address: str) -> None:
         page.get_by_role("button", name="Run talker.py").click()
         expect(log).to_contain_text("[talker]: edited 3", timeout=DEADLINE_MS)
         page.get_by_role("button", name="Reset talker").click()
-        assert code.inner_text() == before
+        assert code_in(cell) == before
         expect(cell.locator(".cell_output")).to_be_visible()
         page.get_by_role("button", name="Stop all nodes").click()
         expect(bar).to_be_hidden(timeout=DEADLINE_MS)
@@ -87,6 +86,19 @@ def test_a_page_runs_its_nodes(browser: Browser, address: str) -> None:
         page.get_by_role("button", name="Node graph").click()
         expect(page.get_by_role("region", name="Node graph")).to_contain_text("talker", timeout=DEADLINE_MS)
         assert shown.violations() == []
+
+        write_code(cell, "from geometry_msgs.msg import Twist\n\nmsg = Twist()\nmsg.linear.w = 1.0\n")
+        expect(cell.locator(".code-problem")).to_contain_text(
+            "Line 4: `Vector3` has no field `w`.", timeout=DEADLINE_MS
+        )
+        expect(cell.locator(".cm-lintRange-error")).to_have_text("msg.linear.w = 1.0")
+        code.press("Control+End")
+        code.press_sequentially("msg.")
+        expect(page.locator(".cm-tooltip-autocomplete")).to_contain_text("linear", timeout=DEADLINE_MS)
+        assert shown.violations() == []
+        for key in ("Escape", "Escape", "Tab"):
+            code.press(key)
+        expect(code).not_to_be_focused()
         assert shown.faults == []
 
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 
 import pytest
-from browser import Opened, opened
+from browser import Opened, opened, write_code
 from playwright.sync_api import Browser, Locator, Route, expect
 
 from spinbook.browser.files import can_run
@@ -68,10 +68,7 @@ def shown(browser: Browser, address: str) -> Iterator[Opened]:
 
 def run(cell: Locator, code: str) -> Locator:
     """Put the code into the cell and run it; return its output."""
-    if cell.get_by_role("textbox").count() == 0:
-        cell.get_by_role("button", name="Run").first.click()
-    field = cell.get_by_role("textbox")
-    field.evaluate("(field, code) => { field.textContent = code; field.dispatchEvent(new Event('input')); }", code)
+    write_code(cell, code)
     cell.get_by_role("button", name="Run").first.click()
     return cell.get_by_role("log")
 

@@ -45,12 +45,23 @@
       });
     }
     add(links, "page.js", "Run", `Run ${name}`, (page) => page.run(cell));
+    // A click into the code edits it. Who selects some of it wants to copy.
+    const edit = ({ clientX: x, clientY: y }) => getSelection().isCollapsed && load("page.js").then((page) => page.edit(cell, { x, y }), () => {});
+    cell.querySelector(".cell_input pre, .highlight pre")?.addEventListener("click", edit);
   }
+  // Who has run nodes of this course before gets a process while reading. Nothing has to be loaded from the website.
+  const near = new IntersectionObserver((entries) => {
+    if (!entries.some((entry) => entry.isIntersecting)) return;
+    near.disconnect();
+    load("processes.js").then((page) => page.prepared(), () => {});
+  });
+  const isKept = self.caches?.has(`run-${version.slice("?v=".length)}`);
+  isKept?.then((is) => is && places.forEach((cell) => near.observe(cell)), () => {});
   const starter = document.querySelector("body.kind-exercise main #starter");
   if (starter) {
     add(starter.querySelector("p"), "exercise.js", "Edit and check here", "Edit and check the starter here", (page, button) => {
       button.remove();
-      page.open(starter).focus();
+      page.open(starter).open();
     });
   }
 
