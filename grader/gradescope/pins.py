@@ -19,6 +19,9 @@ WITHOUT_WHEEL = {"empy"}
 #: The versions of Python that its container may have.
 PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14")
 
+#: What the versions for Python 3.10 need, and those that are installed here do not.
+OF_OTHER_VERSIONS = {"python-dateutil": ("six",), "ipython": ("decorator",)}
+
 
 def pins() -> list[str]:
     """Return the installed versions, such as `numpy==2.3.1`, of everything that is needed."""
@@ -41,6 +44,7 @@ def needed(name: str = NAME, extra: str = EXTRA) -> set[str]:
         if one not in done:
             done.add(one)
             waiting += _requirements(*one)
+            waiting += [(other, frozenset()) for other in OF_OTHER_VERSIONS.get(one[0], ())]
     return {name for name, _ in done}
 
 

@@ -106,6 +106,7 @@ def test_what_the_container_installs_is_pinned_with_hashes_for_every_python(auto
         "click",
         "numpy",
         "setuptools",
+        "six",
         "tomli",
         "ros-jazzy-rclpy",
         "ros-test-msgs",

@@ -149,7 +149,7 @@ def test_the_means_to_install_are_there_and_can_be_read(real: HandedOut) -> None
     lines = (real.folder / "requirements.txt").read_text().splitlines()
     assert f"./wheels/{wheel.name}" in lines
     names = {line.partition("==")[0] for line in lines if "==" in line}
-    assert {"ipykernel", "numpy", "ros-rmw-fastrtps-cpp", "colcon-core"} <= names
+    assert {"ipykernel", "decorator", "six", "numpy", "ros-rmw-fastrtps-cpp", "colcon-core"} <= names
     lab = {line.partition("==")[0] for line in (real.folder / "jupyterlab.txt").read_text().splitlines()}
     assert {"jupyterlab", "tornado"} - lab == {"tornado"}, "what notebooks have anyway is not named twice"
     assert not (names | lab) & {"sphinx", "mypy", "jedi", "debugpy"}
