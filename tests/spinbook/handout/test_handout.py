@@ -115,7 +115,7 @@ def test_notebooks_have_the_starter_and_the_check_and_no_outputs(real: HandedOut
     starter = ids.index("exercise-joint-velocity-starter")
     assert cells[starter]["source"].startswith("%%node joint_velocity\n")
     assert "TODO" in cells[starter]["source"]
-    assert cells[starter + 1]["source"] == "%check joint_velocity"
+    assert cells[starter + 2]["source"] == "%check joint_velocity"
 
 
 def test_the_same_course_gives_the_same_bytes_wherever_it_lies(real: HandedOut, again: HandedOut) -> None:
