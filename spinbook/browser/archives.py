@@ -21,6 +21,7 @@ import rmw_lockstep
 import ros_in_python
 import spinbook
 from interface_compiler import prefixes
+from ros_in_python.example_robots import EXAMPLES
 
 #: Modules of the environment that rclpy and `ros2` need, besides the interface packages.
 _ROS = ("rclpy", "rpyutils", "rosidl_parser", "rosidl_generator_py", "ament_index_python", "yaml", "click")
@@ -33,6 +34,7 @@ _SPINBOOK = (
     "kernel/__init__.py",
     "kernel/entry.py",
     "kernel/recorder_lines.py",
+    "kernel/robot_recorder.py",
     "kernel/timeline.py",
     "kernel/timeline_picture.py",
     "kernel/timeline_recorder.py",
@@ -102,7 +104,8 @@ def share_archive() -> bytes:
         for file in sorted((share / package).rglob("*")):
             if file.suffix in _TEXTS:
                 files[file.relative_to(share.parent).as_posix()] = file.read_bytes()
-    return zipped(files)
+    robots = (file for file in sorted(EXAMPLES.rglob("*")) if file.is_file())
+    return zipped({**files, **{file.relative_to(EXAMPLES).as_posix(): file.read_bytes() for file in robots}})
 
 
 def check_archive(exercises: Mapping[str, bytes]) -> bytes:

@@ -1,4 +1,4 @@
-"""Reads what a robot's kinematics need from a URDF: links, joints and their limits. Meshes and inertia are left out.
+"""Reads a robot's links, joints and limits from a URDF, and its boxes, cylinders and spheres. Inertia is left out.
 
 The format: https://wiki.ros.org/urdf/XML (it is the same in ROS 2). PyPI's readers bring meshes and a renderer along,
 or have not been kept since 2021; joints alone are a page.
@@ -6,6 +6,7 @@ or have not been kept since 2021; joints alone are a page.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
@@ -52,19 +53,39 @@ class Joint:
         return self.kind in MOVING
 
     @property
+    def is_limited(self) -> bool:
+        """Whether it has a lowest and a highest position."""
+        return self.moves and self.kind != "continuous" and self.lower < self.upper
+
+    @property
     def rest(self) -> float:
         """Its position before anything moved it: 0, or the middle of its limits if 0 is outside (rad or m)."""
-        limited = self.kind != "continuous" and self.lower < self.upper
-        return (self.lower + self.upper) / 2 if limited and not self.lower <= 0.0 <= self.upper else 0.0
+        return (self.lower + self.upper) / 2 if self.is_limited and not self.lower <= 0.0 <= self.upper else 0.0
+
+
+@dataclass(frozen=True)
+class LinkShape:
+    """What a link looks like, or a part of it: a "box", "cylinder" (along z), "sphere", or a "mesh", which has no size.
+
+    `half` is half its size along x, y and z (m), `origin` where it is in the link, and `colour` red, green and blue
+    (0 to 1), None if the URDF does not say.
+    """
+
+    link: str
+    kind: str
+    half: Vector
+    origin: RigidMotion = IDENTITY
+    colour: Vector | None = None
 
 
 @dataclass(frozen=True)
 class RobotDescription:
-    """A robot's name, its links and its joints, in the order of the file."""
+    """A robot's name, its links, its joints and its shapes, in the order of the file."""
 
     name: str
     links: tuple[str, ...]
     joints: tuple[Joint, ...]
+    shapes: tuple[LinkShape, ...] = ()
 
     @property
     def root(self) -> str:
@@ -86,7 +107,43 @@ def read(text: str) -> RobotDescription:
     links = tuple(_attribute(link, "name") for link in robot.findall("link"))
     joints = tuple(_joint(element) for element in robot.findall("joint"))
     _check(links, joints)
-    return RobotDescription(robot.get("name", ""), links, joints)
+    colours = {m.get("name", ""): m for m in robot.iter("material") if m.find("color") is not None}
+    shapes = tuple(
+        shape
+        for link in robot.findall("link")
+        for visual in link.findall("visual")
+        for shape in _shapes(_attribute(link, "name"), visual, colours)
+    )
+    return RobotDescription(robot.get("name", ""), links, joints, shapes)
+
+
+def _shapes(link: str, visual: ElementTree.Element, colours: Mapping[str, ElementTree.Element]) -> Iterator[LinkShape]:
+    origin, material = _origin(visual.find("origin")), visual.find("material")
+    if material is not None and material.find("color") is None:
+        material = colours.get(material.get("name", ""))
+    colour = None if material is None else _colour(material.find("color"))
+    for element in visual.findall("geometry/*"):
+        if (half := _half(element)) is not None:
+            yield LinkShape(link, element.tag, half, origin, colour)
+
+
+def _half(element: ElementTree.Element) -> Vector | None:
+    radius = _number(element, "radius", 0.0)
+    if element.tag == "box":
+        x, y, z = _vector(element, "size", (0.0, 0.0, 0.0))
+        return (x / 2, y / 2, z / 2)
+    if element.tag == "cylinder":
+        return (radius, radius, _number(element, "length", 0.0) / 2)
+    return {"sphere": (radius, radius, radius), "mesh": (0.0, 0.0, 0.0)}.get(element.tag)
+
+
+def _colour(color: ElementTree.Element | None) -> Vector | None:
+    text = "" if color is None else color.get("rgba", "")
+    try:
+        red, green, blue, _ = (float(word) for word in text.split())
+    except ValueError:
+        raise InvalidUrdf(f'rgba="{text}" is not four numbers') from None
+    return (red, green, blue)
 
 
 def _joint(element: ElementTree.Element) -> Joint:

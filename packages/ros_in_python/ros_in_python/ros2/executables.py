@@ -15,6 +15,7 @@ from pathlib import Path
 import click
 
 from interface_compiler import prefixes
+from ros_in_python.example_robots import EXAMPLES
 from ros_in_python.ros2.cli import CONTEXT, CommandError
 from ros_in_python.ros2.opening import check_installed
 
@@ -137,6 +138,7 @@ def add_own_prefix(environment: MutableMapping[str, str]) -> None:
     """Let programs find the packages of this Python's environment, too: `get_package_share_directory('std_msgs')`."""
     if (Path(sys.prefix) / prefixes.RESOURCES).is_dir():
         _append(environment, "AMENT_PREFIX_PATH", sys.prefix)
+    _append(environment, "AMENT_PREFIX_PATH", str(EXAMPLES))
 
 
 _DEMOS = ("add_two_ints_client", "add_two_ints_server", "listener", "talker")
