@@ -1,4 +1,4 @@
-"""The notebook's commands: `%%node`, `%nodes`, `%stop`, `%log`, `%ros2`, `%colcon`, `%plot`, `%graph`, `%turtle` …
+"""The notebook's commands: `%%node`, `%nodes`, `%stop`, `%log`, `%ros2`, `%colcon`, `%plot`, `%robot` …
 
 Each reads its line and calls the session.
 """
@@ -267,6 +267,19 @@ class SpinbookMagics(Magics):
         reader = LineReader("%turtle", "Show turtlesim's window as it is now.")
         if reader.read(line) is not None:
             picture_cells.show_turtle()
+
+    @no_var_expand
+    @line_magic
+    def robot(self, line: str) -> None:
+        """%robot [PACKAGE or FILE]: a robot as its URDF describes it, moved by the positions that are published."""
+        reader = LineReader("%robot", "Show a robot, moved by /joint_states or /joint_commands.")
+        reader.add_argument("source", nargs="?", default="", help="a URDF; without it, /robot_description is shown")
+        reader.add_argument("--seconds", type=float, default=COMMAND_SECONDS, help="how long to record")
+        if arguments := reader.read(line):
+            # Imported here because few chapters have a robot.
+            from spinbook.kernel import robot_cell
+
+            robot_cell.show_robot(arguments.source, arguments.seconds)
 
     @no_var_expand
     @line_magic

@@ -7,8 +7,10 @@ import os
 import sys
 import tempfile
 import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from IPython.display import display
 
@@ -18,7 +20,7 @@ from spinbook.graph.picture import in_words, node_graph_svg
 from spinbook.kernel.environment import EXECUTING
 from spinbook.kernel.plot.picture import as_png, draw, moving_plot
 from spinbook.kernel.plot.picture import in_words as plot_in_words
-from spinbook.kernel.plot.recording import PlotRecording, RecordingTime
+from spinbook.kernel.plot.recording import APPEAR_S, PlotRecording, RecordingTime
 from spinbook.kernel.process import CellFailed, KeptProcess
 
 #: How long looking at the graph may take, in addition to counting (s).
@@ -75,28 +77,49 @@ _REDRAW_S = 0.5
 
 def show_plot(paths: list[str], seconds: float, title: str) -> None:
     """Record these paths for this many seconds from the first sample on, and show the plot. Raises CellFailed."""
-    argv = [sys.executable, "-u", "-m", "spinbook.kernel.plot.recorder", *paths]
-    process = KeptProcess(argv, os.environ, Path.cwd())
     recording = PlotRecording()
-    try:
-        handle = _record(process, recording, seconds, title)
-    finally:
-        process.stop((0.5, 0.5))
-        process.close()
+    handle = record("spinbook.kernel.plot.recorder", paths, recording, seconds, partial(_show, title=title))
     if recording.error:
         raise CellFailed(recording.error)
     if not recording.curves:
         raise CellFailed(recording.why_empty(paths))
-    _show(recording, title, handle)
+    _show(recording, handle, title)
 
 
-def _record(process: KeptProcess, recording: PlotRecording, seconds: float, title: str) -> Any:
-    """Record what arrives. Return the handle of the live picture, if there is one."""
+_Recording = TypeVar("_Recording", bound=PlotRecording)
+
+
+def record(
+    module: str,
+    arguments: list[str],
+    recording: _Recording,
+    seconds: float,
+    show: Callable[[_Recording, Any], Any],
+    appear_s: float = APPEAR_S,
+) -> Any:
+    """Record for this many seconds what a recorder prints, and show it meanwhile if somebody watches.
+
+    `module` is the recorder; `show` gets the handle of the live picture, None at first, and returns it. The first
+    sample may take `appear_s` seconds. Return the handle.
+    """
+    process = KeptProcess([sys.executable, "-u", "-m", module, *arguments], os.environ, Path.cwd())
+    try:
+        return _follow(process, recording, RecordingTime(seconds, time.monotonic(), appear_s), show)
+    finally:
+        process.stop((0.5, 0.5))
+        process.close()
+
+
+def _follow(
+    process: KeptProcess,
+    recording: _Recording,
+    recording_time: RecordingTime,
+    show: Callable[[_Recording, Any], Any],
+) -> Any:
     watched = EXECUTING not in os.environ
     handle: Any = None
     rest = ""
     drawn = 0.0
-    recording_time = RecordingTime(seconds, time.monotonic())
     try:
         while True:
             data, _ = process.read()
@@ -106,14 +129,14 @@ def _record(process: KeptProcess, recording: PlotRecording, seconds: float, titl
             if recording.error or not process.status.running or recording_time.is_over(recording, now):
                 return handle
             if watched and recording.curves and now - drawn > _REDRAW_S:
-                handle = _show(recording, title, handle)
-                drawn = now
+                handle = show(recording, handle)
+                drawn = time.monotonic()
             time.sleep(0.03)
     except KeyboardInterrupt:
         return handle
 
 
-def _show(recording: PlotRecording, title: str, handle: Any) -> Any:
+def _show(recording: PlotRecording, handle: Any, title: str) -> Any:
     """Show what has been recorded so far; as a moving picture, too, if nobody was watching."""
     words = plot_in_words(recording)
     bundle = {"image/png": as_png(draw(recording, title)), "text/plain": words}

@@ -13,6 +13,7 @@ from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.classify import CellKind
 from spinbook.site.drawings import smaller, still_of
 from spinbook.site.page import Repository, exercise_page
+from spinbook.site.robots import is_robot, robot_html, robot_still
 
 
 @dataclass(frozen=True)
@@ -156,6 +157,8 @@ def _published(output: dict[str, Any]) -> dict[str, Any]:
     """Return an output for the page: with compressed pictures, and without formats that a page can't show."""
     if "data" not in output:
         return output
+    if is_robot(output):
+        return {**output, "data": {"text/html": robot_html(output, "../")}, "metadata": {}}
     data = dict(output["data"])
     for kind in [kind for kind in data if kind not in _SHOWN]:
         del data[kind]
@@ -170,8 +173,8 @@ _SHOWN = ("image/svg+xml", "image/png", "text/plain")
 
 
 def is_picture(output: Mapping[str, Any]) -> bool:
-    """Return whether an output has a picture."""
-    return any(kind.startswith("image/") for kind in output.get("data", {}))
+    """Return whether an output has a picture, other than a robot."""
+    return not is_robot(output) and any(kind.startswith("image/") for kind in output.get("data", {}))
 
 
 def alternative(output: Mapping[str, Any], cell: ChapterCell) -> str:
@@ -187,9 +190,10 @@ def alternative(output: Mapping[str, Any], cell: ChapterCell) -> str:
 
 
 def stills(chapter: Chapter, ran: ExecutedNotebook) -> dict[str, bytes]:
-    """Return still versions of the chapter's moving pictures: path in the site -> PNG."""
-    pictures = [still_of(output) for cell in chapter.cells for output in ran.outputs(cell.id)]
-    return {still.path: still.data for still in pictures if still}
+    """Return still versions of the chapter's moving pictures: path in the site -> PNG or WebP."""
+    outputs = [output for cell in chapter.cells for output in ran.outputs(cell.id)]
+    pictures = [still for still in map(still_of, outputs) if still]
+    return {still.path: still.data for still in pictures} | dict(map(robot_still, filter(is_robot, outputs)))
 
 
 def as_text(notebook: Mapping[str, Any]) -> str:

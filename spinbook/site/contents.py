@@ -30,10 +30,11 @@ from spinbook.site.chapter_page import ExecutedNotebook, ExerciseCard, as_text, 
 from spinbook.site.drawings import DrawingError, Picture, draw, drawing_files, drawing_html
 from spinbook.site.exercise_page import exercise_markdown, public_checks
 from spinbook.site.graph_section import node_graph_excerpt, node_graph_of, node_graph_section
-from spinbook.site.home_page import about_markdown, home_chapters, home_drawing, home_log, home_pictures
+from spinbook.site.home_page import about_markdown, home_chapters, home_drawing, home_log, home_pictures, home_robot
 from spinbook.site.notebooks import branch_files, launch_notebook, openers, requirement
 from spinbook.site.page import Page, Repository, address_files, repository_of
 from spinbook.site.prose import Links, Term, rich, terms_of
+from spinbook.site.robots import SCRIPT, script
 
 DOWNLOADS = "downloads"
 
@@ -102,6 +103,7 @@ def read_contents(course: Course) -> SiteContents:
             contents.files |= drawing_files(code, picture)
     contents.pictures |= links.pictures
     contents.files |= links.pictures
+    contents.files[SCRIPT] = script()
     if can_run():
         contents.files |= run_files(contents.copies)
     contents.files |= address_files(course.site, course.title, contents.pages)
@@ -317,6 +319,7 @@ def _home(
     contents.files |= {path: data for picture in pictures for path, data in picture.files.items()}
     about = {
         "chapters": home_chapters(runs, exercises),
+        "robot": home_robot(runs),
         "graph": next((node_graph_excerpt(graph) for graph in graphs if graph), ""),
         "drawing": home_drawing(drawings.pictures),
         "pictures": [picture.about for picture in pictures],

@@ -9,6 +9,7 @@ import os
 import platform
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from html import escape
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
@@ -25,6 +26,7 @@ from spinbook.site.chapter_page import ExecutedNotebook, alternative, is_picture
 from spinbook.site.drawings import PICTURE_FOLDER, Picture, drawing_html, smaller, still_of
 from spinbook.site.log_lexer import LogLexer
 from spinbook.site.page import Repository, chapter_page, exercise_page
+from spinbook.site.robots import is_robot, robot_html
 
 _LOG_LINES = 6
 
@@ -78,6 +80,16 @@ def home_pictures(runs: list[tuple[Chapter, ExecutedNotebook]]) -> list[HomePict
     if turtles:
         chosen.append((turtles[-1], "A turtle, driven by a node"))
     return [_shown(*drawn, caption) for drawn, caption in chosen]
+
+
+def home_robot(runs: list[tuple[Chapter, ExecutedNotebook]]) -> str:
+    """Return the first robot that moves in a chapter, as HTML; "" if there is none."""
+    for chapter, ran in runs:
+        for cell in chapter.cells:
+            for output in filter(is_robot, ran.outputs(cell.id)):
+                page = f'<a href="{chapter_page(chapter.name)}.html">{escape(chapter.title)}</a>'
+                return robot_html(output, "", f"A robot, moved by a node. From {page}.")
+    return ""
 
 
 def home_log(runs: list[tuple[Chapter, ExecutedNotebook]]) -> dict[str, str]:

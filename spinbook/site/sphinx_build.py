@@ -37,7 +37,8 @@ def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], 
     """Make `site` consist of these `pages` of `html` and these `files`: path -> content. Return the number of files."""
     scripts = {name: (html / "_static" / name).read_bytes() for name in _OURS}
     # The search data changes with every sentence: it is no reason to load the rest again.
-    version = digest(run_version(files), *(data for name, data in scripts.items() if name != _SEARCH_DATA))[:16]
+    own = [data for path, data in files.items() if Path(path).parent.name == "_static"]
+    version = digest(run_version(files), *own, *(data for name, data in scripts.items() if name != _SEARCH_DATA))[:16]
     published = {Path(f"{page}.html"): _stamped((html / f"{page}.html").read_bytes(), version) for page in pages}
     used = b"\n".join(published.values())
     for image in (html / _IMAGES).glob("*"):

@@ -124,7 +124,8 @@ def opened(
         origin = "/".join(url.split("/")[:3])
 
         def hear(message: ConsoleMessage) -> None:
-            if message.type in ("error", "warning"):
+            # Without a graphics card, Chromium itself warns that its pictures are slow.
+            if message.type in ("error", "warning") and "GL Driver Message" not in message.text:
                 shown.console.append(f"{message.type}: {message.text}")
 
         def see(request: Request) -> None:

@@ -3,6 +3,7 @@ import { runExecutable, showLog, showNodes, showTurtle, stop } from "./nodes.js"
 import { launch } from "./launch.js";
 import { graph, show } from "./picture.js";
 import { environment, take } from "./processes.js";
+import { robot } from "./robot.js";
 import { timeline } from "./timeline.js";
 import { files, keep, notWritten } from "./workspace.js";
 
@@ -126,6 +127,7 @@ async function magic(cell, [word, ...written]) {
   if (word in known) await known[word](cell, args);
   else if (word === "timeline") await inTerminal(cell, (process) => timeline(cell, process, args));
   else if (word === "plot") await inTerminal(cell, (process) => drawPlot(cell, process, args));
+  else if (word === "robot") await robot(cell, optionsOf(args).words[0] ?? "");
   else if (word === "graph") await inTerminal(cell, (process) => drawGraph(cell, process, args));
   else if (word === "ros2") {
     const command = { kind: "ros2", words: ["ros2", ...args], text: `ros2 ${args.join(" ")}` };

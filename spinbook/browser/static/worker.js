@@ -149,6 +149,11 @@ const does = {
     const { py } = await ready;
     return py.pyimport("spinbook.browser.in_page.turtle").show.callPromising(page);
   },
+  robot: async ({ source }) => {
+    const { py } = await ready;
+    await shares(py);
+    return py.pyimport("spinbook.browser.in_page.robot").show.callPromising(page, source);
+  },
   check: async ({ exercise, source }) => {
     const result = await (await checks()).check.callPromising(exercise, source);
     return JSON.parse(result);

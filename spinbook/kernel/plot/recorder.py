@@ -68,12 +68,12 @@ class PlotRecorder(Node):
             self._write("sample", quantity.topic, quantity.kind, quantity.unit, quantity.label, now, value)
 
 
-def main() -> None:
-    """Record until stopped."""
+def record_until_stopped(recorder: Callable[[], Node]) -> None:
+    """Make a recorder, and let it record until its process is stopped."""
     rclpy.init()
     try:
         with errors_written():
-            _record(sys.argv[1:])
+            _record(recorder())
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except (LookupError, ValueError) as error:
@@ -82,8 +82,7 @@ def main() -> None:
         rclpy.try_shutdown()
 
 
-def _record(paths: list[str]) -> None:
-    recorder: Node = PlotRecorder(paths)
+def _record(recorder: Node) -> None:
     try:
         rclpy.spin(recorder)
     finally:
@@ -92,4 +91,4 @@ def _record(paths: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    record_until_stopped(lambda: PlotRecorder(sys.argv[1:]))

@@ -65,7 +65,7 @@ class PlotRecording:
 
 #: How long the recorder may take to start, and after that a topic's first message to arrive (s).
 _STARTING_S = 30.0
-_APPEAR_S = 7.0
+APPEAR_S = 7.0
 
 
 class RecordingTime:
@@ -74,15 +74,15 @@ class RecordingTime:
     The recorder's own start does not count as waiting: on a busy machine it may take longer than the recording.
     """
 
-    def __init__(self, seconds: float, now: float) -> None:
-        self._seconds = seconds
+    def __init__(self, seconds: float, now: float, appear_s: float = APPEAR_S) -> None:
+        self._seconds, self._appear_s = seconds, appear_s
         self._ends = now + _STARTING_S
         self._is_looking = self._has_samples = False
 
     def is_over(self, recording: PlotRecording, now: float) -> bool:
         """Return whether the time is over, when polled; `now` is a monotonic clock's time (s)."""
         if recording.is_looking and not self._is_looking:
-            self._is_looking, self._ends = True, now + _APPEAR_S
+            self._is_looking, self._ends = True, now + self._appear_s
         if recording.curves and not self._has_samples:
             self._has_samples, self._ends = True, now + self._seconds
         return now > self._ends

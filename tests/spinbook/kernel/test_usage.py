@@ -18,6 +18,7 @@ from notebook_kernel import Kernel
         ("%ros2 run turtlesim", "ros2 run PACKAGE EXECUTABLE"),
         ("%domain 500", "a number from 0 to 101"),
         ("%turtle", "turtlesim"),
+        ("%robot no_such_robot", "no installed package 'no_such_robot'"),
     ],
 )
 def test_bad_usage_is_reported_in_words(module_kernel: Kernel, line: str, words: str) -> None:
@@ -27,7 +28,7 @@ def test_bad_usage_is_reported_in_words(module_kernel: Kernel, line: str, words:
     assert "Traceback" not in error
 
 
-@pytest.mark.parametrize("command", ["node", "nodes", "stop", "log", "plot", "turtle", "domain"])
+@pytest.mark.parametrize("command", ["node", "nodes", "stop", "log", "plot", "turtle", "robot", "domain"])
 def test_every_command_explains_itself(module_kernel: Kernel, command: str) -> None:
     line = "%%node --help\nx" if command == "node" else f"%{command} --help"
 

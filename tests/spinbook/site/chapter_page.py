@@ -39,11 +39,11 @@ _SHOWS = f"""(at, patterns, seconds) => {{
 }}"""
 _DRAWS = f"""(at, seconds) => {{
   {_CELL} {_UNTIL}
-  return until(() => cell.querySelector('.ran figure svg > *'), seconds);
+  return until(() => cell.querySelector('.ran figure :is(svg > *, canvas)'), seconds);
 }}"""
 _SHOWN = f"""(at) => {{
   {_CELL}
-  return [cell.querySelector('.ran pre').textContent, Boolean(cell.querySelector('.ran figure svg'))];
+  return [cell.querySelector('.ran pre').textContent, Boolean(cell.querySelector('.ran figure :is(svg, canvas)'))];
 }}"""
 _EVERY = "() => document.querySelector('.running:not([hidden]) button[aria-label=\"Stop all nodes\"]')"
 _NONE_RUNS = f"""(seconds) => {{

@@ -32,7 +32,7 @@ from small_course import served  # noqa: E402
 PICTURE = "(a picture)"
 _NOT_IN_A_PAGE = ("spinbook-setup", "exercise-")
 _ENDLESS = re.compile(
-    r"^%%node|^%ros2 .*(topic (echo|hz|bw|delay|pub)|run) |^%log|^%plot|^%turtle|^%graph|^%nodes", re.MULTILINE
+    r"^%%node|^%ros2 .*(topic (echo|hz|bw|delay|pub)|run) |^%log|^%plot|^%turtle|^%robot|^%graph|^%nodes", re.MULTILINE
 )
 _NUMBER = re.compile(r"\b([0-9a-f]{2}\.){8,}[0-9a-f]{2}\b|\b[0-9a-f]{32}\b|-?(?<![\w.])\d+(\.\d+)?(e[+-]?\d+)?")
 _FILE = re.compile(r'File "[^"]*?([^/"<>]+|<[^>]*>)"')

@@ -139,17 +139,40 @@ function printing() {
   });
 }
 
+// Load one of the site's scripts. Resolves when it has run.
+const load = (name) =>
+  new Promise((done) => {
+    const script = document.createElement("script");
+    script.src = `${root.dataset.root}_static/${name}${version}`;
+    script.addEventListener("load", done);
+    document.head.append(script);
+  });
+
+// Let a robot move in `place`: its script is loaded for the first one that comes into view.
+let robotView = null;
+async function moveRobot(place, data) {
+  await (robotView ??= load("robot_view.js"));
+  return showRobot(place, data);
+}
+
+function robots() {
+  const observer = new IntersectionObserver(
+    (entries) => {
+      for (const { target, isIntersecting } of entries) {
+        if (!isIntersecting) continue;
+        observer.unobserve(target);
+        moveRobot(target, JSON.parse(target.querySelector("script").textContent));
+      }
+    },
+    { rootMargin: "300px" },
+  );
+  for (const place of document.querySelectorAll("main .robot")) observer.observe(place);
+}
+
 // Load the search data when the reader begins to search. "/" focuses the search field, except while typing.
 function searching() {
   const field = document.getElementById("search-field");
   const now = document.getElementById("search-now");
-  const load = (name) =>
-    new Promise((done) => {
-      const script = document.createElement("script");
-      script.src = `${root.dataset.root}_static/${name}${version}`;
-      script.addEventListener("load", done);
-      document.head.append(script);
-    });
   const isThere = document.querySelector('script[src$="search.js"]') !== null;
   if (!isThere) {
     field.addEventListener("focus", () => load("search-data.js").then(() => load("search.js")), { once: true });
@@ -209,6 +232,7 @@ function progress() {
 colours();
 searching();
 pausing();
+robots();
 progress();
 menu();
 copying();
