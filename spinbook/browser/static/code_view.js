@@ -43,7 +43,6 @@ export function codeView({ parent, text, label, language, before, onchange }) {
   // The first error in words, for who can't hover over it.
   const said = element("p", { className: "code-problem", hidden: true });
   said.setAttribute("aria-live", "polite");
-  parent.append(said);
   let filling = false;
   const view = new EditorView({
     parent,
@@ -67,6 +66,7 @@ export function codeView({ parent, text, label, language, before, onchange }) {
       ...(language === "python" ? forPython(before, () => edited, said) : []),
     ],
   });
+  parent.append(said);
   return {
     focus(point) {
       view.focus();
