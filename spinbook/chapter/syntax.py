@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import functools
+from typing import Any
 
 _CONTEXTS = frozenset({ast.Load, ast.Store, ast.Del})
 #: Enough for one chapter. A tree of 100 lines takes 0.3 MB.
@@ -21,7 +22,9 @@ def descendants(node: ast.AST) -> tuple[ast.AST, ...]:
     """Return a node and all those below it in the order of `ast.walk`, without `ctx`, which is no code of its own."""
     nodes = [node]
     for item in nodes:
-        for value in item.__dict__.values():
+        # Not all attributes: IPython adds each node's parent, also to `+`, of which all trees have the same one.
+        for name in item._fields:
+            value: Any = getattr(item, name, None)
             kind = type(value)
             if kind is list:
                 nodes += [part for part in value if isinstance(part, ast.AST)]
