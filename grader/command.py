@@ -12,7 +12,8 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import NoExercise, find, load
 from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.submission.file_kinds import kind_of
-from grader.submission.reader import NoSubmission, Submission, is_one, of_source, read
+from grader.submission.reader import NoSubmission, is_one, of_source, read
+from grader.submission.submission import Submission
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 
 if TYPE_CHECKING:

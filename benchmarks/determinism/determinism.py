@@ -29,7 +29,8 @@ from grader.exercise.edits import read_edits
 from grader.grading import Grade, Options
 from grader.grading.grading import Grading, grading_of
 from grader.recording.recording import to_json
-from grader.submission.reader import Submission, of_source, read
+from grader.submission.reader import of_source, read
+from grader.submission.submission import Submission
 from grader.workers import WorkerPool
 from groundwork.files import write_if_changed
 from spinbook.course.course import find_course

@@ -19,7 +19,8 @@ from grader.grading.reference import solution_file
 from grader.recording.recording import Recording
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Scenario
-from grader.submission.reader import Submission, of_source
+from grader.submission.reader import of_source
+from grader.submission.submission import Submission
 
 #: A node that exists and does nothing.
 IDLE = """import rclpy

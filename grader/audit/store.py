@@ -27,7 +27,7 @@ from grader.grading.reference import GRADER, cache_folder, digest_of, solution_f
 from grader.grading.scenario_runner import ScenarioRunner
 from grader.recording.recording import Recording, from_json, to_json
 from grader.scenario.scenario import Scenario
-from grader.submission.reader import Submission
+from grader.submission.submission import Submission
 from grader.workers.pool import Worker
 from groundwork.files import write_if_changed
 

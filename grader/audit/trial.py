@@ -16,7 +16,7 @@ from grader.checking.verdict import Finding, Status, Verdict
 from grader.grading.grading import Grading
 from grader.recording.recording import Ending, ReceivedMessage, Recording
 from grader.scenario.scenario import Scenario
-from grader.submission.reader import Submission
+from grader.submission.submission import Submission
 from grader.workers.pool import Worker
 
 

@@ -19,7 +19,7 @@ from grader.checking.plugin import Checks, ReportsWithoutTracebacks, fixtures_of
 from grader.checking.run import Run
 from grader.checking.verdict import Finding, Verdict
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.modules import importable
+from grader.exercise.imported_files import importable
 from grader.recording.recording import Recording
 
 

@@ -16,7 +16,7 @@ from grader.checking.known_names import KnownNames
 from grader.checking.message import Message
 from grader.checking.run import Run
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.modules import with_modules
+from grader.exercise.imported_files import with_modules
 from grader.recording.events import STATES, Call, Goal
 from grader.recording.recording import Endpoint, ReceivedMessage, SentMessage
 from grader.scenario.scenario import Scenario

@@ -23,18 +23,20 @@ from grader.classroom.decisions import decisions, show_decisions
 from grader.classroom.gradebook import gradebook, write_gradebook
 from grader.classroom.groups import read_groups
 from grader.classroom.local import LocalBackend, at_once
-from grader.classroom.misconceptions import Signature, failures_of, grouped, signatures
+from grader.classroom.misconceptions import Signature, failures_of, grouped
 from grader.classroom.overview import overview_page
 from grader.classroom.rejudge import difference, rejudge
 from grader.classroom.request import Backend, ClassRequest, host_error, no_grade
 from grader.classroom.results import ClassGrading, ClassPlan, NotWritable, Results, Tries, not_written
 from grader.classroom.roster import read_roster
+from grader.classroom.signatures import signatures
 from grader.classroom.student_zips import publish
 from grader.classroom.submissions import StudentSubmission, Submissions, SubmissionsError
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Entry, Grade
 from grader.grading.grading import Grading, grading_of
-from grader.submission.reader import Submission, read
+from grader.submission.reader import read
+from grader.submission.submission import Submission
 from grader.workers.pool import WorkerPool
 from groundwork.files import write_if_changed
 

@@ -21,7 +21,7 @@ from grader.grading.grading import Grading, grading_of
 from grader.grading.reference import versions
 from grader.report.feedback_plot import picture
 from grader.sandbox.middleware import require_middleware
-from grader.submission.reader import Submission
+from grader.submission.submission import Submission
 from grader.workers.pool import WorkerPool
 from groundwork.files import cached, write_if_changed
 from interface_compiler.near import CURRENT, STORE, current

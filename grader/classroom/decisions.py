@@ -10,7 +10,7 @@ from rich.console import Console
 from grader.classroom.class_display import counted, say
 from grader.classroom.deadline import Adjuster
 from grader.classroom.submissions import File, StudentSubmission, Submissions, Unclear
-from grader.submission.reader import Submission
+from grader.submission.submission import Submission
 
 
 @dataclass(frozen=True)

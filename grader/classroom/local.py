@@ -18,7 +18,7 @@ from grader.exercise.exercise import ExerciseError
 from grader.grading.grading import Grading
 from grader.grading.scenario_runner import WorkStealing
 from grader.report.feedback_plot import picture
-from grader.submission.reader import Submission
+from grader.submission.submission import Submission
 from groundwork.files import claim_number
 
 #: How many submissions to grade at once per core; more than one, as the grader and the program wait for each other.

@@ -11,7 +11,7 @@ from typing import Protocol
 from grader.grading.grade import Grade, Options, Outcome
 from grader.grading.reference import versions
 from grader.grading.scenario_runner import ScenarioRunner
-from grader.submission.reader import Submission
+from grader.submission.submission import Submission
 
 
 @dataclass(frozen=True)

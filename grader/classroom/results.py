@@ -21,7 +21,7 @@ from grader.classroom.request import Backend, GradedSubmission
 from grader.classroom.submissions import StudentSubmission, Submissions
 from grader.exercise.data_files import data_paths
 from grader.exercise.exercise import Exercise
-from grader.exercise.modules import with_modules
+from grader.exercise.imported_files import with_modules
 from grader.grading.grade import Entry, Grade, Student
 from grader.grading.grading import Grading
 from grader.grading.reference import digest_of, versions
@@ -30,7 +30,7 @@ from grader.recording.recording import from_json as recordings_from_json
 from grader.recording.recording import to_json as recordings_to_json
 from grader.report.as_json import STUDENTS, folder_of, from_json, to_json
 from grader.report.feedback import feedback_page
-from grader.submission.reader import Submission
+from grader.submission.submission import Submission
 from groundwork.files import remove_parts, try_lock, write_if_changed
 
 #: The recordings in a student's folder: a line with their key and the name of the file, next to `students/`, with the

@@ -1,95 +1,21 @@
-"""The modules of an exercise: Python files in its folder that its scenarios, checks, worlds and companions import."""
+"""What the modules of an exercise may be: those of its scenarios, checks, worlds and companions."""
 
 from __future__ import annotations
 
-import ast
-import contextlib
-import hashlib
-import importlib
-import importlib.util
-import sys
-import traceback
-from collections.abc import Iterable, Iterator
-from importlib.machinery import PathFinder
+from collections.abc import Iterable
 from pathlib import Path
-from types import ModuleType
 
 from grader.exercise.data_files import data_paths
 from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.imported_files import imports_of, installed, place_of, with_modules
 
 #: Files that no student gets. What a public check or scenario needs must be in another file of the exercise's folder.
 HIDDEN_FILES = ("scenarios.py", "hidden_checks.py")
 
 
-@contextlib.contextmanager
-def importable(folder: Path) -> Iterator[None]:
-    """Let code import the files in `folder`, and forget them at the end: another exercise may have the same names.
-
-    An installed module takes precedence. So a file of a student's next to the checks, such as random.py, is never
-    imported in place of Python's own.
-    """
-    path = str(folder)
-    if path in sys.path:
-        yield
-        return
-    wrote, sys.dont_write_bytecode = sys.dont_write_bytecode, True
-    sys.path.append(path)
-    importlib.invalidate_caches()
-    try:
-        yield
-    finally:
-        sys.path.remove(path)
-        sys.dont_write_bytecode = wrote
-        for name, module in list(sys.modules.items()):
-            if Path(getattr(module, "__file__", None) or "/").parent == folder:
-                del sys.modules[name]
-
-
-def imported(file: Path, name: str) -> ModuleType:
-    """Return a file of an exercise as a module called `name`, which may import the files next to it."""
-    spec = importlib.util.spec_from_file_location(name, file)
-    assert spec
-    assert spec.loader
-    module = importlib.util.module_from_spec(spec)
-    with importable(file.parent):
-        sys.modules[name] = module  # `inspect` and `dataclasses` look here for the file of a class
-        spec.loader.exec_module(module)
-    return module
-
-
-def imports_of(file: Path) -> Iterator[tuple[int, str]]:
-    """Yield the line and the first part of the name of each module that a Python file imports, such as `maze`."""
-    try:
-        tree = ast.parse(file.read_text(encoding="utf-8"))
-    except (OSError, SyntaxError, ValueError):
-        return  # whoever runs the file reports it
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            yield from ((node.lineno, alias.name.partition(".")[0]) for alias in node.names)
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            yield node.lineno, node.module.partition(".")[0]
-
-
-def with_modules(files: Iterable[Path]) -> tuple[Path, ...]:
-    """Return these files of one exercise and the files next to them that they import, directly or by way of others."""
-    closure = list(dict.fromkeys(files))
-    for file in closure:  # which grows meanwhile
-        near = [file.parent / f"{name}.py" for _, name in imports_of(file)]
-        closure += [one for one in dict.fromkeys(near) if one not in closure and one.exists() and not _installed(one)]
-    return tuple(closure)
-
-
 def grading_files(exercise: Exercise) -> list[Path]:
     """Return the files that decide a grade, besides the scenarios and the solution."""
     return [exercise.folder / "exercise.toml", *with_modules(exercise.check_files), *data_paths(exercise)]
-
-
-def digest_with_modules(file: Path) -> str:
-    """Return the SHA-256 of a file's text and of the text of the files next to it that it imports."""
-    total = hashlib.sha256()
-    for one in with_modules([file]):
-        total.update(one.read_bytes())
-    return total.hexdigest()
 
 
 def see_modules(exercise: Exercise) -> None:
@@ -117,28 +43,12 @@ def _see_import(exercise: Exercise, file: Path, line: int, name: str) -> None:
     if near.name in submitted and near.exists():
         problem = f"{near.name} is the name of the file that students hand in"
         raise ExerciseError(file, problem, "Give the module that this line imports another name.", line)
-    if near.exists() and _installed(near):
+    if near.exists() and installed(near):
         problem = f"{near.name} has the name of an installed module, which this line imports instead"
         raise ExerciseError(file, problem, "Rename it.", line)
-    if (exercise.folder / name).is_dir() and not near.exists() and not _installed(near):
+    if (exercise.folder / name).is_dir() and not near.exists() and not installed(near):
         problem = f"{name} is a folder in the exercise's folder"
         raise ExerciseError(file, problem, "Import only files next to this one: put the module there.", line)
-
-
-def _installed(near: Path) -> bool:
-    """Return whether Python has a module of this file's name elsewhere."""
-    if near.stem in sys.stdlib_module_names:
-        return True
-    elsewhere = [entry for entry in sys.path if Path(entry or ".").resolve() != near.parent.resolve()]
-    return PathFinder.find_spec(near.stem, elsewhere) is not None
-
-
-def place_of(error: BaseException, folder: Path) -> tuple[Path, int] | None:
-    """Return the innermost file and line in an exercise's folder that led to an error; None if there is none."""
-    if isinstance(error, SyntaxError) and error.filename and Path(error.filename).parent == folder:
-        return Path(error.filename), error.lineno or 1
-    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if Path(frame.filename).parent == folder]
-    return (Path(frames[-1].filename), frames[-1].lineno or 1) if frames else None
 
 
 def error_in(

@@ -23,7 +23,8 @@ from grader.grading.grade import Entry, Options, Student
 from grader.grading.grading import grading_of
 from grader.report.as_json import gradescope_results, no_score
 from grader.sandbox.program import Isolation, SandboxUnavailable
-from grader.submission.reader import Submission, read
+from grader.submission.reader import read
+from grader.submission.submission import Submission
 from grader.workers.pool import HostFault, WorkerPool
 from groundwork.files import write_if_changed
 from groundwork.plain_text import print_in_any_encoding

@@ -19,7 +19,7 @@ from grader.sandbox.isolation import choose
 from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Scenario
-from grader.submission.reader import Submission
+from grader.submission.submission import Submission
 from grader.workers.pool import HostFault, WorkerPool
 
 

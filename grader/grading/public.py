@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.modules import HIDDEN_FILES, see_that_students_have, with_modules
+from grader.exercise.imported_files import with_modules
+from grader.exercise.modules import HIDDEN_FILES, see_that_students_have
 from grader.grading.grade import Options
 from grader.grading.reference import reference
 from grader.grading.scenario_runner import ScenarioRunner

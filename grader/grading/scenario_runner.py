@@ -18,7 +18,7 @@ from grader.recording.recording import Recording, not_run_because
 from grader.sandbox.program import Isolation, ProgramSpec
 from grader.scenario.command_line import ARGUMENTS, arguments, programs_of
 from grader.scenario.scenario import Companion, Scenario
-from grader.submission.reader import Submission
+from grader.submission.submission import Submission
 from grader.workers.jobs import JudgeJob, RunJob
 from grader.workers.pool import STUDENT_ENVIRONMENT, WorkerPool
 from grader.workers.shared import Sandbox

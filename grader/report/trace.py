@@ -23,7 +23,8 @@ from grader.report.terminal import show
 from grader.report.timeline import lines_of
 from grader.sandbox.isolation import choose
 from grader.scenario.declared import declared
-from grader.submission.reader import NoSubmission, Submission, of_source, read
+from grader.submission.reader import NoSubmission, of_source, read
+from grader.submission.submission import Submission
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 
 #: How often --watch looks whether a file was saved (s).

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from grader.exercise.exercise import ExerciseError
-from grader.exercise.modules import place_of
+from grader.exercise.imported_files import place_of
 from grader.recording.events import Call, Goal, ParameterChange, ParameterReading, Truth
 from grader.runner.action_clients import CancelStep, Goals
 from grader.runner.action_servers import ScriptedActionServer

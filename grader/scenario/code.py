@@ -11,7 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from grader.exercise.modules import digest_with_modules, imported
+from grader.exercise.imported_files import digest_with_modules, imported
 
 
 @dataclass(frozen=True)

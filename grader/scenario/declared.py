@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.modules import error_in, importable, imported, see_modules
+from grader.exercise.imported_files import importable, imported
+from grader.exercise.modules import error_in, see_modules
 from grader.scenario.resolver import resolved
 from grader.scenario.scenario import Scenario
 

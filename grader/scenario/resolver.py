@@ -9,7 +9,8 @@ from dataclasses import replace
 from typing import Any, NoReturn, TypeVar
 
 from grader.exercise.exercise import Exercise, ExerciseError, ServiceOrAction
-from grader.exercise.modules import error_in, see_that_students_have, with_modules
+from grader.exercise.imported_files import with_modules
+from grader.exercise.modules import error_in, see_that_students_have
 from grader.recording.recording import Fields
 from grader.recording.types import CHANGE_STATE, TRANSITIONS, message_class
 from grader.scenario.command_line import programs_of

@@ -167,8 +167,8 @@ def _cell(number: int, cell: dict[str, Any]) -> NotebookCell:
 def _text(source: Any) -> str:
     lines = [line for line in (source if isinstance(source, list) else [source]) if isinstance(line, str)]
     # Some programs write a cell's lines without their ends.
-    joint = "" if any("\n" in line for line in lines) else "\n"
-    return joint.join(lines).replace("\r\n", "\n").replace("\r", "\n")
+    between = "" if any("\n" in line for line in lines) else "\n"
+    return between.join(lines).replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _exercise(metadata: Any) -> str:

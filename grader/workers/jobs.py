@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from grader.exercise.data_files import data_files
 from grader.exercise.exercise import Exercise
-from grader.exercise.modules import importable
+from grader.exercise.imported_files import importable
 from grader.recording.recording import Recording
 from grader.runner.program import Task
 from grader.sandbox.program import Isolation, Limits, ProgramSpec

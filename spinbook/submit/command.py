@@ -17,7 +17,7 @@ from grader.report import hint_steps
 from grader.report.checks import first_hints
 from grader.report.terminal import show
 from grader.sandbox.program import SandboxUnavailable
-from grader.submission.reader import Submission
+from grader.submission.submission import Submission
 from grader.workers.pool import HostFault
 from groundwork.problem import Problem
 from spinbook.problem import SpinbookError

@@ -21,7 +21,8 @@ from grader.grading.reference import versions
 from grader.report.hint_steps import taken, taken_in_page
 from grader.sandbox.program import SandboxUnavailable
 from grader.submission.file_kinds import can_be_read, kind_of
-from grader.submission.reader import NoSubmission, Submission, read
+from grader.submission.reader import NoSubmission, read
+from grader.submission.submission import Submission
 from grader.submission.upload import pack
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.misconceptions import signatures
+from grader.classroom.signatures import signatures
 from grader.exercise import load, starter
 from grader.exercise.mistakes import mistakes_of
 from grader.grading import Options, grading_of

@@ -15,7 +15,8 @@ from grader.grading.grading import Grading
 from grader.submission import read
 from grader.submission.code import code_of, uses_other_files
 from grader.submission.program_choice import digest_of
-from grader.submission.reader import Submission, is_one, of_content
+from grader.submission.reader import is_one, of_content
+from grader.submission.submission import Submission
 
 SETUP = """\
 from setuptools import setup
