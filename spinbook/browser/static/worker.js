@@ -70,9 +70,14 @@ async function python(memory) {
     fsInit: (FS) => FS.writeFile("/ros.zip", archive),
   };
   if (memory) {
-    const copy = await memory.arrayBuffer();
-    const py = await loadPyodide({ ...options, _loadSnapshot: new Uint8Array(copy) });
-    copy.transfer(0); // Pyodide keeps references to it: 31 MB in each process. This frees them.
+    const copy = new Uint8Array(memory.size);
+    let filled = 0;
+    for await (const part of memory.stream()) {
+      copy.set(part, filled);
+      filled += part.length;
+    }
+    const py = await loadPyodide({ ...options, _loadSnapshot: copy });
+    copy.buffer.transfer(0); // Pyodide keeps references to it: 31 MB in each process. This frees them.
     return py;
   }
   progress("Python");
