@@ -132,7 +132,7 @@ def test_an_exercise_s_notebook_holds_all_that_it_takes_to_do_it_and_check_it(
 ) -> None:
     notebook = nbformat.read(built.site / "downloads" / "exercise-joint_velocity.ipynb", as_version=4)
     kinds = [cell.metadata.get("spinbook", {}).get("kind", cell.cell_type) for cell in notebook.cells]
-    assert kinds == ["markdown", "install", "exercises", "setup", "exercise", "check"]
+    assert kinds == ["markdown", "install", "exercises", "setup", "exercise", "markdown", "check"]
     assert "/joint_velocities" in notebook.cells[0].source
     assert notebook.cells[-1].source == "%check joint_velocity"
     for name in ("01-talk", "exercise-joint_velocity"):
