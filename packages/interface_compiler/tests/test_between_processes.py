@@ -77,6 +77,7 @@ def test_add_two_ints_and_fibonacci_with_feedback_and_cancel(tmp_path: Path) -> 
     assert talk(tmp_path, asked, None, None) == "all as expected\n"
 
 
+@pytest.mark.soak
 @pytest.mark.usefixtures("ros_domain")
 @pytest.mark.parametrize("asking", ["ours", "theirs"])
 def test_a_package_compiled_here_talks_to_the_same_one_made_by_cmake(

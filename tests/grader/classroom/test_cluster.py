@@ -53,6 +53,7 @@ def spinning(worker: subprocess.Popen[bytes]) -> bool:
         return False
 
 
+@pytest.mark.soak
 def test_a_worker_dies_while_it_grades_and_the_grades_are_those_of_one_machine(
     tmp_path: Path, cache: Path, graded: tuple[SmallClass, str]
 ) -> None:

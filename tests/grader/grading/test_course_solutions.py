@@ -26,7 +26,13 @@ NAMES = sorted(
 )
 
 
-@pytest.fixture(scope="module", params=NAMES)
+#: Its scenarios take longest. The class that `make course` grades has its solution, too.
+LONG = "go_to_goal"
+
+
+@pytest.fixture(
+    scope="module", params=[pytest.param(name, marks=pytest.mark.soak if name == LONG else ()) for name in NAMES]
+)
 def graded(request: pytest.FixtureRequest, workers_with_interfaces: WorkerPool) -> Grading:
     """A grading of one exercise; its solution has been verified in this run of the tests."""
     return grading_of(load(ROOT / "exercises" / request.param), Options(), workers_with_interfaces)

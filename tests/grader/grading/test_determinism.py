@@ -53,7 +53,11 @@ def recorded(grade: Grade) -> str:
     )
 
 
-@pytest.mark.parametrize("name", [*SUBMISSIONS, "answers_itself"])
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=() if name == "several_threads" else pytest.mark.soak) for name in SUBMISSIONS]
+    + [pytest.param("answers_itself", marks=pytest.mark.soak)],
+)
 def test_beside_busy_loops_the_grade_is_the_same(short: Grading, name: str) -> None:
     submission = submission_of(name, short.runner.exercise)
     alone = short.grade(submission)

@@ -75,7 +75,7 @@ def test_the_policy_stops_a_script_even_if_one_got_in(browser: Browser, site: Pa
             assert any("Content Security Policy" in fault for fault in shown.faults)
 
 
-@pytest.mark.parametrize(("width", "dark"), [(1280, False), (390, True)])
+@pytest.mark.parametrize(("width", "dark"), [pytest.param(1280, False, marks=pytest.mark.soak), (390, True)])
 def test_everybody_can_read_them_at_a_desk_and_on_a_phone(browser: Browser, site: Path, width: int, dark: bool) -> None:
     with opened(browser, site / "index.html", width=width, dark=dark) as shown:
         for page in every_page(site):

@@ -11,11 +11,23 @@ from grader.sandbox import Isolation, choose
 
 APART = (Isolation.BUBBLEWRAP, Isolation.NAMESPACES)
 CONFINED = (*APART, Isolation.LANDLOCK)
+#: In every `make test`, each level, and root and another user; `make soak` tries each level as both.
+ALWAYS = {
+    (Isolation.BUBBLEWRAP, False),
+    (Isolation.BUBBLEWRAP, True),
+    (Isolation.NAMESPACES, False),
+    (Isolation.LANDLOCK, True),
+    (Isolation.NONE, False),
+}
 
 
 def _rigs(levels: tuple[Isolation, ...]) -> list[object]:
     return [
-        pytest.param((level, rootless), id=f"{level}{'-rootless' if rootless else ''}")
+        pytest.param(
+            (level, rootless),
+            id=f"{level}{'-rootless' if rootless else ''}",
+            marks=() if (level, rootless) in ALWAYS else pytest.mark.soak,
+        )
         for level in levels
         for rootless in (False, True)
     ]

@@ -118,6 +118,7 @@ def test_notebooks_have_the_starter_and_the_check_and_no_outputs(real: HandedOut
     assert cells[starter + 2]["source"] == "%check joint_velocity"
 
 
+@pytest.mark.soak
 def test_the_same_course_gives_the_same_bytes_wherever_it_lies(real: HandedOut, again: HandedOut) -> None:
     assert again.archive.read_bytes() == real.archive.read_bytes()
 

@@ -159,6 +159,7 @@ def test_a_wheel_for_students_is_the_same_bytes_each_time(built: CourseFolder) -
     assert str(built.root).encode() not in content
 
 
+@pytest.mark.soak
 def test_a_handout_brings_a_package_that_only_the_courses_definitions_need(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
 from small_course import SmallCourse
 
 from spinbook.site.command import pages_of
@@ -39,6 +40,7 @@ def test_a_change_of_prose_runs_nothing_and_leaves_other_chapters_alone(course: 
     assert not {"chapters/01-talk.html", "about.html", "glossary.html"} & changed
 
 
+@pytest.mark.soak
 def test_a_chapter_that_is_taken_out_leaves_nothing(course: SmallCourse) -> None:
     course.change("course.toml", ', "chapters/02-more.md"', "")
     course.change("chapters/01-talk.md", "[the next chapter](02-more.md)", "what follows")

@@ -205,6 +205,7 @@ def test_what_moves_stands_still_on_paper_and_for_those_who_prefer_no_motion(
         assert shown.faults == []
 
 
+@pytest.mark.soak
 def test_while_an_author_writes_the_open_page_follows(browser: Browser, course: SmallCourse) -> None:
     with course.serving() as address, opened(browser, f"{address}/chapters/02-more.html") as shown:
         with shown.page.expect_websocket(timeout=DEADLINE_MS):

@@ -93,6 +93,7 @@ def test_a_node_in_pieces_runs_with_the_messages_of_its_chapter(shown: Opened) -
     assert shown.faults == []
 
 
+@pytest.mark.soak
 def test_demo_nodes_run_in_a_page(shown: Opened) -> None:
     _, talker, listener = shown.page.locator(".cell-shell").all()
     talker.get_by_role("button", name="Run cell 5", exact=True).click()

@@ -90,6 +90,7 @@ def test_a_robot_moves_and_says_which_joint_is_beyond_its_limits(shown: Opened) 
     assert shown.faults == []
 
 
+@pytest.mark.soak
 def test_a_recorded_robot_moves_can_be_paused_and_turned_with_the_keys(shown: Opened) -> None:
     motion = RobotMotion((0.0, 0.1, 0.2), {"left_elbow": (0.5, 1.0, 1.5)})
     data = as_data(read(description_text("humanoid_description")), motion)

@@ -96,6 +96,7 @@ def test_a_loop_before_the_spin_is_named_as_such(kernel: Kernel, before: str, me
     assert message in text
 
 
+@pytest.mark.soak
 def test_a_loop_without_end_is_reported_and_the_kernel_goes_on(kernel: Kernel) -> None:
     looping = solution().replace("answer = JointState()", "while True: pass")
     assert looping != solution()
