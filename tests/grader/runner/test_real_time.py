@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import threading
 from collections.abc import Iterator
 from dataclasses import replace
@@ -14,7 +15,7 @@ import rclpy
 from rclpy.action import ActionClient, ActionServer
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
-from ros_domains import reserved
+from ros_domains import nodes_left, reserved
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 from test_msgs.action import Fibonacci
@@ -90,15 +91,28 @@ def recording() -> Iterator[Recording]:
         context = rclpy.Context()
         rclpy.init(context=context, domain_id=domain)
         executor = SingleThreadedExecutor(context=context)
-        executor.add_node(Student(context))
+        student, reference = Student(context), rclpy.create_node("reference", context=context)
+        executor.add_node(student)
         spinning = threading.Thread(target=spun, args=[executor], daemon=True)
         spinning.start()
-        run = RealTimeRun(rclpy.create_node("reference", context=context), EXERCISE, SCENARIO)
+        run = RealTimeRun(reference, EXERCISE, SCENARIO)
         assert run.wait_for_program() == ""
         run.play(lambda so_far: None)
         yield run.recording()
         rclpy.try_shutdown(context=context)
         spinning.join(10)
+        student.goes.destroy()
+        student.counts.destroy()
+        leave(student, reference)
+        del run, executor, student, reference, context
+        gc.collect()
+        assert not nodes_left()
+
+
+def leave(*nodes: Node) -> None:
+    """Take nodes out of their ROS domain, which the next test uses."""
+    for node in nodes:
+        node.destroy_node()
 
 
 def test_messages_arrive_in_both_directions(recording: Recording) -> None:
@@ -128,11 +142,11 @@ def test_what_a_program_lacks_is_named() -> None:
     with reserved() as domain:
         context = rclpy.Context()
         rclpy.init(context=context, domain_id=domain)
-        student = rclpy.create_node("student", context=context)
-        run = RealTimeRun(rclpy.create_node("reference", context=context), EXERCISE, SCENARIO)
-        lacks = run.wait_for_program()
+        student = rclpy.create_node(EXERCISE.node_name, context=context)
+        reference = rclpy.create_node("reference", context=context)
+        lacks = RealTimeRun(reference, EXERCISE, SCENARIO).wait_for_program()
         rclpy.try_shutdown(context=context)
-    assert student.get_name() == EXERCISE.node_name
+        leave(student, reference)
     assert (
         lacks
         == "Your node does not subscribe to /in. Your node does not serve /count. Your node does not serve /switch."

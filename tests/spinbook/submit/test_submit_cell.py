@@ -36,7 +36,7 @@ def test_the_cell_is_checked_and_handed_in_as_it_was_run(kernel: Kernel) -> None
     shown = kernel.run("%submit joint_velocity --student 'Ada L'")
     assert not shown.error, shown.error
     assert "Handed in: the cell %%node joint_velocity as you ran it at " in shown.text
-    assert "This is a self-check, not your grade." in shown.text
+    assert "This is a self-check, not your grade." in shown.text, shown.text
     assert "Upload this file: joint_velocity-submission.zip" in shown.text
     upload = unpack((kernel.folder / "joint_velocity-submission.zip").read_bytes())
     assert upload.faults == ()
