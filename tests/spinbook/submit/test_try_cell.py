@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from notebook_kernel import Kernel
 
 from submit.conftest import node_cell, solution
@@ -21,6 +22,7 @@ def test_an_unknown_scenario_lists_those_that_there_are(kernel: Kernel) -> None:
     assert error == "joint_velocity has no scenario `late`. There are: chapter, irregular."
 
 
+@pytest.mark.soak  # in real time: on a busy machine, the scenario is over before Stop arrives
 def test_the_node_is_started_again_and_drawn_until_stop(kernel: Kernel) -> None:
     kernel.run(node_cell(solution()))
     kernel.run("%stop --all")
