@@ -52,7 +52,7 @@ def middleware_wheel() -> tuple[str, bytes]:
 
 
 def only_middleware() -> tuple[str, bytes]:
-    """Return the file name and content of a wheel that stands in for Fast DDS in an environment that only grades.
+    """Return the file name and content of a wheel that replaces Fast DDS where programs are only graded.
 
     PyPI's rclpy is linked to Fast DDS by name, and looks for libraries in each folder `ros_*.libs` of site-packages.
     Next to the real Fast DDS, chance would decide which of them is loaded. Raises as `middleware_wheel` does.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from dataclasses import dataclass
 from importlib import metadata
@@ -267,11 +268,10 @@ def packages(top: TomlTable) -> tuple[str, ...]:
 def _pinned(top: TomlTable, text: str) -> str:
     from packaging.requirements import InvalidRequirement, Requirement  # a web page does not have it
 
-    try:
+    wanted = None
+    with contextlib.suppress(InvalidRequirement):
         wanted = Requirement(text)
-    except InvalidRequirement:
-        wanted = Requirement("none>0")
-    if wanted.url or wanted.marker or [one.operator for one in wanted.specifier] not in ([], ["=="]):
+    if wanted is None or wanted.url or wanted.marker or [one.operator for one in wanted.specifier] not in ([], ["=="]):
         fix = 'Write a name on PyPI, such as "scipy" or "scipy==1.16.3".'
         top.fault("packages", f"packages has {text!r}", fix)
     remedy = _FROM_HANDOUT if (top.file.parent / PUBLIC_FILE).exists() else f"Install it: pip install {text}"

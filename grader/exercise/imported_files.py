@@ -56,7 +56,7 @@ def imports_of(file: Path) -> Iterator[tuple[int, str]]:
     try:
         tree = ast.parse(file.read_text(encoding="utf-8"))
     except (OSError, SyntaxError, ValueError):
-        return  # whoever runs the file reports it
+        return  # running the file will report it
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from ((node.lineno, alias.name.partition(".")[0]) for alias in node.names)

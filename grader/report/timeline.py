@@ -12,7 +12,7 @@ from grader.recording.recording import ReceivedMessage, Recording, SentMessage
 from grader.report.printable import printable
 from grader.scenario.times import SECOND, START
 
-#: So many messages of one topic are shown, spread over the scenario, unless all are asked for.
+#: At most this many messages of a topic are shown, spread over the scenario, unless `--all` asks for all.
 MOST_OF_A_TOPIC = 12
 
 #: In characters: the fields of one message.

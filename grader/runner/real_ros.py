@@ -131,7 +131,7 @@ class RealRos:
 
 
 def _later(request: Any, response: Any) -> Any:
-    """Hand the request to what stands in for `send_response`."""
+    """Return the request in place of a response: the service's own `send_response` takes it, and answers later."""
     return request
 
 

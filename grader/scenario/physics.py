@@ -73,7 +73,7 @@ class MuJoCo:
                 self._data.actuator(name).ctrl[0] = value
 
     def push(self, body: str, force: Sequence[float], seconds: float = 0.1) -> None:
-        """Push a body with this force (N; x, y, z of the world) for so many seconds: a step of a scenario."""
+        """Push a body with this force (N; x, y, z of the world) for this many seconds: a step of a scenario."""
         self._pushes.append((self._data.time + seconds, self._model.body(body).id, [float(one) for one in force]))
 
     def step(self, seconds: float) -> None:

@@ -65,7 +65,7 @@ _INNER = {"choice", "env", "keep", "param", "remap"}
 _TYPES: dict[str, Any] = {"yaml": None, "bool": bool, "float": float, "int": int, "str": str}
 _TYPES |= {"list_of_bool": list[bool], "list_of_float": list[float], "list_of_int": list[int], "list_of_str": list[str]}
 _IN_NODE = {"env", "param", "remap"}
-#: What stands in an element; in those of `_ANY`, all but the inner ones.
+#: The elements that an element may contain; those of `_ANY` may contain all but the inner ones.
 _CHILDREN = {
     "arg": {"choice"},
     "executable": {"env"},
