@@ -17,6 +17,11 @@ from grader.submission.entry_points import is_below, roots
 from grader.submission.file_kinds import kind_of
 from grader.submission.places import LAUNCHER
 
+if sys.version_info >= (3, 11):
+    pass
+else:
+    pass
+
 _PACKAGE_NAME = re.compile(rb"<name>\s*([\w-]+)\s*</name>")
 #: Python files that are never the student's program.
 _NOT_PROGRAMS = re.compile(r"(?:setup|conftest|__init__|test_\w*|\w*_test|\w*[._]launch)\.py", re.IGNORECASE)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -72,13 +72,21 @@ def find_node_errors(chapter: Path, ran: dict[str, Any]) -> list[CellFailure]:
     """Find what went wrong in nodes, also after their cells, and the cells that expected an error that did not come."""
     cells = _code_cells(ran)
     reported = [(cell, about) for cell in cells for about in node_errors(cell)]
-    errors = [_node_error(chapter, cells, cell, about) for cell, about in reported if not about["meant"]]
+    errors = _each_once(_node_error(chapter, cells, cell, about) for cell, about in reported if not about["meant"])
     meant = [about["node"] for _, about in reported if about["meant"]]
     for cell in cells:
         if _about(cell).get("expects_error") and not _had_error(cell, meant):
             what = "this cell says `expect-error`, but nothing went wrong in what it started. Remove the word."
             errors.append(CellFailure(chapter, _line(cell), what, ""))
     return errors
+
+
+def _each_once(errors: Iterable[CellFailure]) -> list[CellFailure]:
+    """Return the errors; one that a node repeats, such as a line that it logs each second, is there once."""
+    first: dict[tuple[int, str], CellFailure] = {}
+    for error in errors:
+        first.setdefault((error.line, error.what), error)
+    return list(first.values())
 
 
 def node_errors(cell: Mapping[str, Any]) -> list[dict[str, Any]]:

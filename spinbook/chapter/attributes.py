@@ -27,25 +27,26 @@ CODE = frozenset({"code-cell", "code-block", "code", "sourcecode", "highlight"})
 UNSEEN = frozenset({"toctree", "tableofcontents", "contents", "index", "bibliography", "only", "raw", "eval-rst"})
 #: Tags that hold blocks: MDX's, HTML's, Liquid's.
 _TABS = frozenset({"Tabs", "TabItem", "Tab", "tabs", "tab", "CodeGroup", "TabPanel"})
-_HOLDING = frozenset({"Admonition", "details", "Details", "hint", "highlight", "raw", "capture", "comment"})
+_HOLDING = frozenset({"Admonition", "details", "Details", "highlight", "raw", "capture", "comment", "code"})
 
 
 class _PairedTags:
     """The names of tags that come in pairs: every capitalised one of MDX, and a few others."""
 
     def __contains__(self, name: str) -> bool:
-        return name[:1].isupper() or name in _TABS or name in _HOLDING or name in _STYLE
+        is_ours = name in _TABS or name in _HOLDING or name in _STYLE
+        return is_ours or name[:1].isupper() or name.capitalize() in _BOXES or name in _FOLDED
 
 
 PAIRED = _PairedTags()
-_PAIR = re.compile(r"""([A-Za-z_][\w-]*)\s*[=:]\s*(?:\{?\s*"([^"]*)"\s*\}?|\{?\s*'([^']*)'\s*\}?|([^\s,}>]+))""")
+_PAIR = re.compile(r"""([A-Za-z_][\w-]*)\s*[=:]\s*(?:\{?\s*"([^"]*)"\s*\}?|\{?\s*'([^']*)'\s*\}?|([^\s,{}>]+))""")
 _EXERCISE = re.compile(r"^<!--\s*exercise:\s*([\w-]+)\s*-->")
 _OPTION = re.compile(r"^:([\w-]+):\s*(.*)$")
 _SNIPPET = re.compile(r"\s*(?:#|//)?\s*-+8<-+\s+[\"'](.+?)[\"']\s*$")
 #: Components that hold a box whose kind is a property, and those that fold what they hold.
 _BOXES = frozenset({"Admonition", "Aside", "Callout", "Alert", "Notice", "Message", "Box", "Infobox"})
 _FOLDED = frozenset(
-    {"details", "accordion", "accordionitem", "expandable", "collapsible", "dropdown", "toggle", "spoiler"}
+    {"details", "accordion", "accordionitem", "expandable", "collapsible", "dropdown", "toggle", "spoiler", "expand"}
 )
 _PICTURE = r"[^\"'`{}]+\.(?:png|jpe?g|gif|svg|webp|avif)"
 _PICTURE_PATH = re.compile(rf"""["'`]({_PICTURE})["'`]""", re.IGNORECASE)
@@ -56,7 +57,7 @@ _PICTURE_IMPORT = re.compile(
 _JSX = re.compile(r"`[^`]*`|<[a-z]\w*\s(?:[^<>{}]|\{(?:[^{}]|\{[^{}]*\})*\})*>")
 _PROPERTY = re.compile(r"\s+([\w-]+)=\{((?:[^{}]|\{[^{}]*\})*)\}")
 _PATH = re.compile(r"""(["'`])([^"'`]+)\1""")
-_QUOTED = re.compile(r"\"((?:[^\"\\]|\\.){12,})\"|'((?:[^'\\]|\\.){12,})'")
+_QUOTED = re.compile(r"\"((?:[^\"\\]|\\.)*)\"|'((?:[^'\\]|\\.)*)'")
 
 
 def exercise(html: str) -> str:
@@ -130,8 +131,10 @@ def container_name(info: str) -> tuple[str, str]:
     if bracket and " " not in name.strip():
         return name.strip().lower(), rest.rpartition("]")[0].strip()
     name, _, rest = info.partition(" ")
-    name = name.partition("{")[0]
-    return name.lower(), rest.partition("{")[0].strip().strip("\"'") if not rest.startswith("{") else ""
+    name, brace, _ = name.partition("{")
+    if brace or rest.startswith("{"):
+        return name.lower(), pairs(info).get("title", "")
+    return name.lower(), rest.partition("{")[0].strip().strip("\"'")
 
 
 def container(name: str, argument: str, colon: bool = False) -> tuple[str | None, str, str]:
@@ -167,8 +170,8 @@ def kramdown_style(text: str) -> str:
 
 def paired(name: str, properties: dict[str, str], words: str) -> tuple[str, str, str]:
     """Return (kind, style, title) for an opening tag of this name."""
+    positional = words.strip().strip("\"'") if "=" not in words else ""
     if name in {"TabItem", "Tab", "tab", "TabPanel"}:
-        positional = words.strip().strip("\"'") if "=" not in words else ""
         # jekyll-tabs names the group first: `tab group title`.
         positional = positional.partition(" ")[2] or positional
         return (
@@ -178,16 +181,21 @@ def paired(name: str, properties: dict[str, str], words: str) -> tuple[str, str,
         )
     title = properties.get("title") or properties.get("summary") or properties.get("header") or ""
     if name.lower() in _FOLDED:
-        return "details", "note", title or properties.get("label", "")
-    if name in _BOXES:
-        kind = next((properties[key] for key in ("type", "variant", "kind", "severity") if key in properties), "note")
-        return "admonition", _STYLE.get(kind.lower(), "note"), title
-    if name == "hint":
-        return "admonition", _STYLE.get(properties.get("style", "info"), "note"), ""
+        return "details", "note", title or properties.get("label") or positional
+    if name in _BOXES or name.capitalize() in _BOXES or name == "hint":
+        keys = ("type", "variant", "kind", "severity", "style", "context", "color")
+        # Hugo's `{{< hint warning >}}` and `{{% notice tip "Title" %}}` name it first.
+        first, _, rest = positional.partition(" ")
+        kind = next((properties[key] for key in keys if key in properties), first.strip("\"'") or "note")
+        return "admonition", _STYLE.get(kind.lower(), "note"), title or rest.strip("\"'")
     if name.lower() in _STYLE and name not in {"highlight"}:
         title = properties.get("title") or ("" if name.lower() in STYLES else in_words(name))
         return "admonition", _STYLE[name.lower()], title
-    return ("dropped", "", "") if name == "comment" else ("group", "", title if name[:1].isupper() else "")
+    return (
+        ("dropped", "", "")
+        if name == "comment"
+        else ("group", "", title if name[:1].isupper() or name == "code" else "")
+    )
 
 
 def in_words(name: str) -> str:
@@ -199,7 +207,7 @@ def words_of(name: str, properties: str) -> list[str]:
     """Return the sentences among a component's properties, as a quotation; nothing if it has none."""
     sentences = [(double or single).replace('\\"', '"') for double, single in _QUOTED.findall(properties)]
     title = pairs(properties).get("title", "")
-    sentences = [text for text in sentences if " " in text and text != title]
+    sentences = [text for text in sentences if len(text) >= 12 and " " in text and text != title]
     return [f"> **{title or in_words(name)}**", ">", *(f"> - {text}" for text in sentences), ""] if sentences else []
 
 

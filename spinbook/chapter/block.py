@@ -27,6 +27,10 @@ class BlockKind(Enum):
     GROUP = "group"
 
 
+#: What may have the name of the file that it holds as its title.
+HOLDS_FILE = frozenset({BlockKind.TAB, BlockKind.DETAILS, BlockKind.GROUP})
+
+
 @dataclass(frozen=True)
 class SourceLine:
     """A line of the chapter, without the indentation of its container. `number` counts from 1 in the chapter."""
@@ -87,24 +91,41 @@ def as_fence(fence: Fence, lines: tuple[SourceLine, ...]) -> tuple[SourceLine, .
 def merged_callouts(blocks: list[Block]) -> list[Block]:
     """Make an admonition of each paragraph or quotation with kramdown's `{: .note }` before or after it."""
     out: list[Block] = []
-    style = ""
+    mark: Block | None = None
     for block in blocks:
         if block.kind is BlockKind.DROPPED and block.style in attributes.STYLES:
             if out and out[-1].kind in {BlockKind.TEXT, BlockKind.QUOTE} and out[-1].lines[-1].text.strip():
-                out[-1] = _called_out(out[-1], block.style)
+                out[-1] = _called_out(out[-1], block)
             else:
-                style = block.style
+                mark = block
             continue
-        if style and block.kind in {BlockKind.TEXT, BlockKind.QUOTE} and any(line.text.strip() for line in block.lines):
-            block, style = _called_out(block, style), ""
+        if mark and block.kind in {BlockKind.TEXT, BlockKind.QUOTE} and any(line.text.strip() for line in block.lines):
+            block, mark = _called_out(block, mark), None
         out.append(block)
     return out
 
 
-def _called_out(block: Block, style: str) -> Block:
+def _called_out(block: Block, mark: Block) -> Block:
+    """Return the block in a box; after `{: .note-title }`, its first line is the title."""
     quoted = block.lines[0].text.lstrip().startswith(">")
     lines = tuple(unquoted(line) for line in block.lines) if quoted else block.lines
-    return Block(BlockKind.ADMONITION, block.lines, (Block(BlockKind.TEXT, lines),), style=style)
+    title = lines[0].text.strip() if mark.title else ""
+    inner = (Block(BlockKind.TEXT, lines[1:] if title else lines),)
+    return Block(BlockKind.ADMONITION, block.lines, inner, title, mark.style)
+
+
+def quarto_title(name: str, inner: list[SourceLine]) -> str:
+    """Take the title out of Quarto's `::: {.callout-tip}`: a heading that is its first line; "" if there is none."""
+    at = next((at for at, line in enumerate(inner) if line.text.strip()), -1)
+    if at < 0 or not name.startswith("callout-") or not inner[at].text.startswith("#"):
+        return ""
+    return inner.pop(at).text.lstrip("#").strip()
+
+
+def closes(markup: str, lines: tuple[SourceLine, ...]) -> bool:
+    """Return whether the last line of a fence closes it."""
+    last = lines[-1].text.strip() if len(lines) > 1 else ""
+    return set(last) == {markup[0]} and len(last) >= len(markup)
 
 
 def paired(blocks: list[Block]) -> tuple[Block, ...]:

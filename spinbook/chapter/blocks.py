@@ -18,10 +18,12 @@ from spinbook.chapter.block import (
     Directive,
     SourceLine,
     as_fence,
+    closes,
     dedented,
     merged_callouts,
     offset_of,
     paired,
+    quarto_title,
     unquoted,
 )
 from spinbook.chapter.components import unindented
@@ -96,7 +98,7 @@ class _Reader:
         return [Block(BlockKind.EXERCISE, lines[:1], title=name), *rest]
 
     def _fence(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
-        closed = _is_closed(token, lines)
+        closed = closes(token.markup, lines)
         name, argument = directive(token.info)
         body = [SourceLine(text, lines[0].number + 1 + i) for i, text in enumerate(token.content.split("\n")[:-1])]
         if name:
@@ -176,7 +178,8 @@ class _Reader:
         """Return an admonition, a tab or another container; an unknown directive becomes a fence."""
         kind, style, title = attributes.container(directive.name, directive.argument)
         if kind is None:
-            return [Block(BlockKind.FENCE, directive.lines, fence=make_fence(directive.name, directive.code, 1))]
+            fence = make_fence(directive.name, directive.code, directive.lines[0].number)
+            return [Block(BlockKind.FENCE, directive.lines, fence=replace(fence, skipped=directive.skipped))]
         inner, number = directive.body, directive.lines[0].number
         if style and not title and directive.argument:
             inner = [SourceLine(directive.argument, number), SourceLine("", number), *inner]
@@ -200,7 +203,7 @@ class _Reader:
             return self._directive(name, argument, lines, inner, ends)
         is_myst = token.info.strip().startswith("{") and not token.info.strip().startswith("{.")
         kind, style, title = attributes.container(name, argument, colon=not is_myst)
-        title = title or options.get("title", "")
+        title = title or options.get("title", "") or quarto_title(name, inner)
         if style and not title and argument and is_myst:
             inner[:skipped] = [SourceLine(argument, lines[0].number), SourceLine("", lines[0].number)]
             skipped = 0
@@ -230,7 +233,8 @@ class _Reader:
         return [Block(BlockKind.TEXT, lines, new=(SourceLine(token.content, lines[0].number),))]
 
     def _kramdown(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
-        return [Block(BlockKind.DROPPED, lines, style=attributes.kramdown_style(token.info))]
+        title = "titled" if "-title" in token.info else ""
+        return [Block(BlockKind.DROPPED, lines, title=title, style=attributes.kramdown_style(token.info))]
 
     def _label(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         return [Block(BlockKind.DROPPED, lines, label=token.tag)]
@@ -242,11 +246,9 @@ class _Reader:
         return [Block(BlockKind.DROPPED, lines, title=name, style=mark, new=(SourceLine(token.info, lines[0].number),))]
 
     def _liquid(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
-        if token.tag == "include":
+        if token.tag in {"include", "figure", "img", "image"}:
             properties = attributes.pairs(token.info)
-            source = (
-                properties.get("image_path") or properties.get("src") or properties.get("url") or properties.get("file")
-            )
+            source = next((properties[key] for key in ("image_path", "src", "url", "file") if key in properties), "")
             if source:
                 new = (SourceLine(attributes.image(source, properties), lines[0].number),)
                 return [Block(BlockKind.TEXT, lines, new=new)]
@@ -339,11 +341,6 @@ def _inside(tokens: Sequence[Token], index: int) -> Iterator[Token]:
     """Return the tokens between an opening token and its closing token."""
     level = tokens[index].level
     return itertools.takewhile(lambda token: token.level > level, itertools.islice(tokens, index + 1, None))
-
-
-def _is_closed(token: Token, lines: tuple[SourceLine, ...]) -> bool:
-    last = lines[-1].text.strip() if len(lines) > 1 else ""
-    return set(last) == {token.markup[0]} and len(last) >= len(token.markup)
 
 
 def _words(token: Token, lines: tuple[SourceLine, ...]) -> tuple[SourceLine, ...]:

@@ -24,7 +24,7 @@ from spinbook.chapter.terminal import (
     looks_like_shell,
     read_commands,
 )
-from spinbook.chapter.transcripts import split_transcript, without_gaps
+from spinbook.chapter.transcripts import split_session, split_transcript, without_gaps
 
 #: Programs that a chapter never runs here, wherever they are named, because they change the machine or download
 #: something.
@@ -73,6 +73,12 @@ NEVER_RUN = frozenset(
         "rosdep",
     ]
 )
+
+
+#: Languages of fences whose content says whether they are for a notebook's terminal.
+_ANY = frozenset({"", "text", "plaintext", "powershell", "ps1", "pwsh", "cmd", "bat", "batch"})
+#: Languages of what Python shows in a terminal.
+_SESSIONS = frozenset({"pycon", "doctest", "python-repl", "python-console", "", "text", "console"})
 
 
 class CellKind(str, Enum):
@@ -172,8 +178,9 @@ def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[C
         item, more = _absent(fence, absent, file)
         return item, problems + more
     if fence.is_python:
-        item, more = _python(fence, file)
-        return item, problems + more
+        code, output = split_session(fence.code)
+        item, more = _python(replace(fence, code=code), file)
+        return replace(item, output=output), problems + more
     what = f"`{fence.language}` is" if fence.language else "a fence without a language is"
     return ClassifiedFence(fence, CellKind.STATIC, f"{what} neither Python nor shell"), problems
 
@@ -205,7 +212,9 @@ def _package_file(fence: Fence) -> ClassifiedFence | None:
 
 def with_language(fence: Fence) -> Fence:
     """Return the fence; one without a language gets the one that its content clearly is."""
-    if fence.language not in {"", "text", "plaintext"} or fence.attributes:
+    if fence.language in _SESSIONS and fence.code.lstrip().startswith(">>> "):
+        return replace(fence, language="python")
+    if fence.language not in _ANY or fence.attributes:
         return fence
     if looks_like_shell(split_transcript(fence.code)[0] if SHOWN_PROMPT.match(fence.code.lstrip()) else fence.code):
         return Fence("bash", fence.code, fence.line, fence.attributes, fence.skipped)
@@ -243,7 +252,9 @@ def _shell(fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
     if runnable and not refused:
         fence = replace(fence, code=without_gaps(code, output)) if output else fence
         return ClassifiedFence(fence, CellKind.SHELL, commands=commands, output=output), []
-    ros = next((command for command in refused if command.is_ros), None)
+    ros = next((command for command in refused if command.is_ros), None) or next(
+        (command for command in refused if re.search(r"\bros2 (run|launch|\w+ \w+)", command.text)), None
+    )
     if runnable or ros:
         shown = ros or refused[0]
         return ClassifiedFence(fence, CellKind.STATIC, shown.why, f"{shown.why}."), [_not_run(fence, shown, file)]

@@ -31,7 +31,7 @@ _DIRECTIVE = re.compile(r"\{([A-Za-z][\w:-]*)\}(.*)$")
 #: Endings of files whose names are titles, whatever the attribute is called.
 _FILES = (".py", ".msg", ".srv", ".action")
 
-PYTHON = frozenset({"python", "py", "python3", "ipython", "ipython3"})
+PYTHON = frozenset({"python", "py", "py3", "python3", "ipython", "ipython3"})
 SHELL = frozenset({"bash", "sh", "shell", "zsh", "console", "shell-session", "terminal"})
 
 
@@ -111,6 +111,8 @@ def parse_info(info: str) -> tuple[str, dict[str, str]]:
     language, brace, glued = language.partition("{")
     if brace:
         rest = glued.rstrip("}") + " " + rest
+    # Hugo's ```python {linenos=true,filename="a.py"}.
+    rest = re.sub(r"(?<!\S)\{|\}(?!\S)|,(?=\w+=)", " ", rest)
     language, colon, file = language.partition(":")
     if colon and file.endswith(".py"):
         rest = f'title="{file}" {rest}'
@@ -120,6 +122,9 @@ def parse_info(info: str) -> tuple[str, dict[str, str]]:
             attributes[key] = double or single or plain.rstrip("}")
         elif re.fullmatch(r"[A-Za-z_][\w-]*", word):
             attributes[word] = "true"
+        elif word.strip("[]").endswith(_FILES):
+            # VitePress' ```python [a.py].
+            attributes["title"] = word.strip("[]")
     for name in ("filename", "file", "caption", "name"):
         if "title" not in attributes and attributes.get(name, "").endswith(_FILES):
             attributes["title"] = attributes[name]
@@ -141,12 +146,34 @@ def make_fence(info: str, content: str, line: int) -> Fence:
             skipped += 1
         content = "".join(lines[skipped:])
     if info.strip().startswith("{"):
-        attributes |= _quarto(content)
+        attributes |= _quarto(content, attributes)
     if "raises-exception" in _tags(attributes):
         attributes["raises"] = "true"
-    if attributes.get("caption", "").endswith(_FILES):
-        attributes["title"] = attributes["caption"]
-    return Fence(language=language, code=content, line=line, attributes=attributes, skipped=skipped)
+    for name in ("caption", "filename"):
+        if attributes.get(name, "").endswith(_FILES):
+            attributes["title"] = attributes[name]
+    return _written(Fence(language=language, code=content, line=line, attributes=attributes, skipped=skipped))
+
+
+#: `cat > msg/Limits.msg <<EOF`, and the cell that Jupyter runs in a shell.
+_HERE_DOCUMENT = re.compile(
+    r"\s*(?:\$\s+)?cat\b(?=[^\n]*?>\s*(?P<file>[\w./~-]+))[^\n]*<<-?\s*(?P<quote>[\"']?)(?P<end>\w+)(?P=quote)[^\n]*\n"
+    r"(?P<text>.*?)^(?P=end)\s*",
+    re.DOTALL | re.MULTILINE,
+)
+_SHELL_CELL = re.compile(r"%%(?:bash|sh|script bash)[^\n]*\n")
+
+
+def _written(fence: Fence) -> Fence:
+    """Return the file that a shell fence writes and does nothing else, or the commands of a cell with `%%bash`."""
+    match = _HERE_DOCUMENT.fullmatch(fence.code) if fence.is_shell and "<<" in fence.code else None
+    if match and match["file"].endswith(_FILES):
+        language = "python" if match["file"].endswith(".py") else "text"
+        attributes = {"title": match["file"], **fence.attributes}
+        return Fence(language, match["text"], fence.line, attributes, fence.skipped + 1)
+    if fence.is_python and (shell := _SHELL_CELL.match(fence.code)):
+        return Fence("bash", fence.code[shell.end() :], fence.line, fence.attributes, fence.skipped + 1)
+    return fence
 
 
 #: Quarto's `#| key: value` in a cell -> the tag that means the same in MyST.
@@ -159,12 +186,14 @@ _CELL_OPTIONS = {
 }
 
 
-def _quarto(code: str) -> dict[str, str]:
-    """Return the tags that stand for Quarto's options in the first lines of a cell."""
+def _quarto(code: str, in_braces: Mapping[str, str]) -> dict[str, str]:
+    """Return the file and the tags that stand for Quarto's options, in the first lines of a cell or in its braces."""
     lines = itertools.takewhile(lambda line: line.startswith("#|"), code.split("\n"))
-    pairs = (line[2:].partition(":") for line in lines)
-    tags = [_CELL_OPTIONS.get((key.strip(), value.strip().lower())) for key, _, value in pairs]
-    return {"tags": ", ".join(filter(None, tags))} if any(tags) else {}
+    parts = (line[2:].partition(":") for line in lines)
+    values = {**in_braces, **{key.strip(): value.strip().strip("\"'") for key, _, value in parts}}
+    tags = list(filter(None, (_CELL_OPTIONS.get((key, value.lower())) for key, value in values.items())))
+    named = {"filename": values["filename"]} if "filename" in values else {}
+    return {**named, **({"tags": ", ".join(tags)} if tags else {})}
 
 
 def _tags(attributes: Mapping[str, str]) -> tuple[str, ...]:

@@ -5,7 +5,8 @@ Each addition is a block rule of markdown-it, so fences and code in a line are n
 - containers `:::note[Title]`, `::: tip`, `:::{warning}` (Docusaurus, VitePress, MyST, Quarto): mdit-py-plugins
 - `!!! note "Title"`, `??? tip` (MkDocs): mdit-py-plugins, and tabs `=== "Title"` (pymdownx.tabbed)
 - tags of MDX on lines of their own, `<Tabs>`, `<TabItem label="Python">`, and `import …`, `export …`, `{/* … */}`
-- `{% tab %}`, `{% hint %}` (Jekyll, GitBook), kramdown's `{: .note }`, docsify's `!> text`, MyST's `(label)=` and `+++`
+- `{% tab %}`, `{% hint %}` (Jekyll, GitBook), Hugo's `{{< tab >}}`, kramdown's `{: .note }`
+- docsify's `!> text`, MyST's `(label)=` and `+++`
 - `--8<-- "file.py"` (pymdownx.snippets)
 """
 
@@ -31,6 +32,7 @@ _FENCE = ("```", "~~~")
 #: Lines that only book tools understand: the kind of token, and how such a line is written.
 _LINES = (
     ("liquid", re.compile(r"\{%-?\s*(?P<name>\w+)\s*(?P<info>.*?)\s*-?%\}$")),
+    ("liquid", re.compile(r"\{\{[<%]\s*(?P<name>/?\s*\w+)\s*(?P<info>.*?)\s*/?\s*[%>]\}\}$")),
     ("kramdown", re.compile(r"\{:\s*(?P<info>.*?)\s*\}$")),
     ("snippet", re.compile(r"-+8<-+\s+[\"'](?P<info>.+?)[\"']$")),
     ("callout", re.compile(r"(?P<name>[!?])> (?P<info>.*)")),
@@ -102,7 +104,9 @@ def _parse(text: str) -> tuple[str, str, str]:
     for kind, pattern in _LINES:
         if match := pattern.match(text):
             parts = match.groupdict()
-            return kind, parts.get("name", ""), parts.get("info", "")
+            # Hugo closes with `/hint` what Liquid closes with `endhint`.
+            name = re.sub(r"/\s*", "end", parts.get("name", ""))
+            return kind, name if kind == "liquid" else parts.get("name", ""), parts.get("info", "")
     return "", "", ""
 
 

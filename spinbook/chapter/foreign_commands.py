@@ -52,7 +52,8 @@ def foreign_program(package: str, executable: str, course_package: str, own: Col
         return Reason(f"`{package}` has no program `{executable}` here", fix, f"programs of {package}")
     close = difflib.get_close_matches(package, [course_package, *executables.BUILT_IN, *own], n=1, cutoff=0.85)
     if package in own:
-        fix = f'Show its program in a fence above: ```python title="{executable}.py"'
+        stem = executable.removesuffix(".py")
+        fix = f'Show its program in a fence above: ```python title="{stem}.py"'
         return Reason(f"no fence above shows `{executable}` of `{package}`", fix, "programs that no fence shows")
     if is_placeholder(package):
         return TO_FILL_IN

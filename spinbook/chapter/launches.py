@@ -22,12 +22,16 @@ class Launches:
     package: str
     named_files: Mapping[int, str]
     files: set[str] = field(default_factory=set)
+    titles: set[str] = field(default_factory=set)
+    """Those of fences that are only shown."""
     _codes: dict[str, str] = field(default_factory=dict)
 
     def add(self, number: int, item: ClassifiedFence) -> None:
         """Remember a fence that is a launch or parameter file; `number` is its place among the fences."""
         if item.kind is CellKind.FILE:
             self.files.add((item.name or "").rpartition("/")[2])
+        elif item.kind is CellKind.STATIC and (item.fence.title or "").endswith((".xml", ".yaml", ".yml", ".py")):
+            self.titles.add((item.fence.title or "").rpartition("/")[2])
         if _is_launch_file(item):
             name = item.fence.title or self.named_files.get(item.fence.line) or f"launch file {number}"
             self._codes[name.rsplit("/", 1)[-1]] = item.fence.code

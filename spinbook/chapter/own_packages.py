@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from markdown_it import MarkdownIt
 
-from spinbook.chapter.block import Block, BlockKind
+from spinbook.chapter.block import HOLDS_FILE, Block, BlockKind
 from spinbook.chapter.fence import Fence
 from spinbook.chapter.terminal import programs_of
 
@@ -21,6 +21,7 @@ _ENTRY = re.compile(r"""["']\s*([\w.-]+)\s*=\s*([\w.]+):(\w+)\s*["']""")
 _PLAIN_ENTRY = re.compile(r"""^\s*([\w.-]+)\s*=\s*["']?([\w.]+):(\w+)["']?,?\s*$""", re.MULTILINE)
 _HAS_ENTRIES = re.compile(r"console_scripts|entry_points|\[project\.scripts\]")
 _PACKAGE_NAME = re.compile(r"""\b(?:package_name|name)\s*=\s*["']([a-z][a-z0-9_]*)["']""")
+_PACKAGE_VARIABLE = re.compile(r"""\{package_name\}|["']\s*\+\s*package_name\s*\+\s*["']""")
 _MARKDOWN = MarkdownIt("commonmark")
 _FILE_COMMENT = re.compile(r"""^\s*(?:#+|\"\"\"|''')\s*(?:[Ff]ile(?:name)?\s*:?\s*)?`?([\w./~-]+\.py)\b""")
 _PY_FILE = re.compile(r"[\w./~-]*\w\.py\b", re.ASCII)
@@ -60,7 +61,7 @@ def own_packages(fences: Iterable[Fence]) -> OwnPackages:
             for name, build_type in _created(fence.code):
                 (compiled if build_type in {"ament_cmake", "cmake"} else names).add(name)
         if _HAS_ENTRIES.search(fence.code) or _ENTRY.search(fence.code):
-            entries, shown = _entries(fence.code)
+            entries, shown = _entries(_with_package(fence.code, names))
             executables.update(entries)
             names |= shown
     return OwnPackages(frozenset(names | compiled), executables, frozenset(compiled))
@@ -106,6 +107,12 @@ def _created(code: str) -> Iterator[tuple[str, str]]:
                 yield name, build_type
 
 
+def _with_package(code: str, names: set[str]) -> str:
+    """Return a setup.py with the package's name in place of its variable: in an f-string, or between two `+`."""
+    named = {match[1] for match in _PACKAGE_NAME.finditer(code)} or names
+    return _PACKAGE_VARIABLE.sub(named.copy().pop(), code) if len(named) == 1 else code
+
+
 def _entries(code: str) -> tuple[dict[tuple[str, str], str], set[str]]:
     executables: dict[tuple[str, str], str] = {}
     names = {match[1] for match in _PACKAGE_NAME.finditer(code)} if "setup(" in code else set()
@@ -138,7 +145,7 @@ def named_files(blocks: Iterable[Block]) -> dict[int, str]:
             text = "\n".join(line.text for line in block.lines)
             if text.strip():
                 words = _files_in(text)
-        elif block.kind is BlockKind.TAB and block.title.endswith(".py"):
+        elif block.kind in HOLDS_FILE and block.title.endswith(".py"):
             words = [block.title]
         elif block.kind is BlockKind.FENCE and block.fence is not None:
             fence = block.fence

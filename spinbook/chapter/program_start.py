@@ -24,6 +24,7 @@ _OF_SUBPROCESS = frozenset({"run", "call"})
 _NEEDS_INIT = frozenset(
     ["Node", "rclpy.node.Node", "rclpy.create_node", "rclpy.spin", "rclpy.spin_once", "rclpy.shutdown"]
 ) | {"rclpy.spin_until_future_complete"}
+_EXECUTORS = frozenset({"SingleThreadedExecutor", "MultiThreadedExecutor"})
 _SPINS = frozenset({"spin", "spin_once", "spin_until_future_complete"})
 _ENDS = frozenset({"exit", "quit", "sys.exit", "os._exit"})
 _READS_COMMAND_LINE = frozenset({"parse_args", "parse_known_args"})
@@ -113,9 +114,12 @@ def only_defines(statement: ast.stmt) -> bool:
 def wants_ros(tree: ast.Module) -> int:
     """Return the first line on which code outside classes makes a node, spins one or shuts ROS down, and so needs
     `rclpy.init` before it; 0 if there is none."""
+    names = _NEEDS_INIT
+    if spins(tree):
+        names |= _EXECUTORS | {item.name for item in tree.body if isinstance(item, ast.ClassDef) and _is_node(item)}
     outside = (item for item in tree.body if not isinstance(item, ast.ClassDef))
     calls = (item for statement in outside for item in descendants(statement) if isinstance(item, ast.Call))
-    return min((call.lineno for call in calls if _is_ros(call.func)), default=0)
+    return min((call.lineno for call in calls if dotted_name(call.func) in names), default=0)
 
 
 def spins(tree: ast.Module) -> bool:
@@ -149,8 +153,8 @@ def leaves(tree: ast.Module) -> str:
     return ""
 
 
-def _is_ros(function: ast.expr) -> bool:
-    return dotted_name(function) in _NEEDS_INIT
+def _is_node(own: ast.ClassDef) -> bool:
+    return any(last_name(base) in {"Node", "LifecycleNode"} for base in own.bases)
 
 
 def _starts_a_program(call: ast.Call, of_subprocess: frozenset[str]) -> bool:

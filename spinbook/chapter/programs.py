@@ -35,6 +35,8 @@ class Programs:
     _defined: set[str] = field(default_factory=set)
     _versions: NodeVersions = field(default_factory=NodeVersions)
     _used: dict[int, tuple[int, ...]] = field(default_factory=dict)
+    _undefined_names: dict[str, int] = field(default_factory=dict)
+    """Names that snippets use and nothing above defines -> line. A snippet that uses `self` is a piece of a class."""
     _has_ros: bool = False
     """Whether snippets above have started ROS in the notebook's kernel."""
 
@@ -49,7 +51,7 @@ class Programs:
             if item.code and not item.code.is_setup_script and not item.code.is_launch_file:
                 self._pieces.append(number)
         out = _with_parts(out, self._used)
-        self.problems += _without_file_name(self.file, out)
+        self.problems += [*_without_file_name(self.file, out), *_without_definition(self.file, self._undefined_names)]
         return out
 
     def _goes_on_in_kernel(self, item: ClassifiedFence) -> bool:
@@ -111,6 +113,9 @@ class Programs:
             item, code, missing = replace(item, before=f"{before}\n"), inspect(f"{before}\n{item.fence.code}"), []
         if missing:
             names = ", ".join(f"`{name}`" for name in missing)
+            if "self" not in missing:
+                first = missing[0]
+                self._undefined_names[first] = item.fence.first_code_line + code.needs[first] - 1
             return _static(
                 item,
                 f"it uses {names}, which no earlier snippet of the chapter defines",
@@ -314,6 +319,17 @@ def _without_file_name(file: Path, items: Sequence[ClassifiedFence]) -> list[Pro
     which = "a node has no file name; it is called" if len(nodes) == 1 else "nodes have no file name; they are called"
     fix = f'Name the file: ```python title="{nodes[0].name}.py"'
     return [Problem(file, nodes[0].fence.line, f"{which} {names}.", fix, Severity.WARNING, group="a file name")]
+
+
+def _without_definition(file: Path, names: Mapping[str, int]) -> list[Problem]:
+    """Return one warning for all snippets of a chapter that use a name that nothing defines."""
+    if not names:
+        return []
+    listed = ", ".join(f"`{name}` (line {line})" for name, line in names.items())
+    what = "a snippet is" if len(names) == 1 else "snippets are"
+    problem = f"{what} shown and not run, because nothing above defines {listed}."
+    fix = "Define it in a snippet above or import it, or write `static` after the language if it is only to be shown."
+    return [Problem(file, min(names.values()), problem, fix, Severity.WARNING, group="a definition")]
 
 
 def _imported(code: PythonCode) -> set[str]:

@@ -235,6 +235,12 @@ class Shells:
         package = names[0] if len(names) > 1 else ""
         if not package or package in {self.package, *self.own.names, *ros_packages()}:
             file = _file_name(names[-1]) if names else ""
+            if file in self._launches.files:
+                why = f"`{file}` becomes a file of the course's package, `{self.package}`, and not of `{package}`"
+                return Reason(why, f"Write: ros2 launch {self.package} {file}", "")
+            if file in self._launches.titles:
+                fix = f'Write title="launch/{file}", and ros2 launch {self.package} {file}'
+                return Reason(f"`{file}` is shown above with a title that makes no file of it", fix, "")
             close = self._launches.close(file)
             fix = f"Did you mean `{close}`?" if close else "Show it in a fence above."
             return Reason("no fence above is its launch file", fix, "" if close else "launch files")

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from interface_compiler import prefixes, shipped
 from interface_compiler.definition import KINDS
 from interface_compiler.grammar import PRIMITIVES, usual_name
-from spinbook.chapter.block import Block, BlockKind, SourceLine, as_fence
+from spinbook.chapter.block import HOLDS_FILE, Block, BlockKind, SourceLine, as_fence
 from spinbook.chapter.fence import Fence
 from spinbook.chapter.installed_interfaces import is_someone_elses
 
@@ -97,6 +97,8 @@ def shown_interfaces(blocks: Iterable[Block], text: str, own: str) -> dict[int, 
                 item.after.extend(line.text for line in block.lines)
         if block.kind in {BlockKind.TEXT, BlockKind.HEADING}:
             before.read(block)
+        elif block.kind in HOLDS_FILE and (in_title := _names_in(block.title)):
+            before.names = in_title
         elif block.kind is BlockKind.FENCE and block.fence is not None and block.closed:
             words, candidates = before.text, before.pop()
             if name := _name_of(block.fence, candidates):

@@ -54,13 +54,18 @@ _BESIDE = frozenset(
 _SHELL_SYNTAX = re.compile(r"[|;<>`]|&&|\$\(|(?<!\S)&(?!\S)|&$")
 #: Characters with a special meaning to a shell.
 _QUOTING = re.compile(r"[\"'\\]")
-_ZSH = r"(?:\S*❯|➜\s+\S+(?:\s+git:\(\S+\))?(?:\s+✗)?)"
-_WHO = _ZSH + r"|(?:\([\w.-]+\)\s*)?(?:\[?[\w.-]+@[\w.-]+[:\s]?[^\s$#%]*\]?\s?[$#%]|[\w.~/-]*\$)"
+_ZSH = r"(?:(?:[\w.~/-]+\s)?\S*❯|➜\s+\S+(?:\s+git:\(\S+\))?(?:\s+✗)?)"
+#: `PS C:\ws>` and `C:\ws>` of Windows; `>` and `%`, which only the command after them makes prompts.
+_OTHER = r"|(?:PS\s)?[A-Z]:\\[^>\n]*>|[>%](?=\s+(?:ros2|colcon)\s)"
+_WHO = _ZSH + _OTHER + r"|(?:\([\w.-]+\)\s*)?(?:\[?[\w.-]+@[\w.-]+[:\s]?[^\s$#%]*\]?\s?[$#%]|[\w.~/-]*\$)"
 #: A prompt that is certainly one: `$`, `~/ros2_ws$`, `user@host:~$`, `[user@host ws]$`, `(venv) $`, `❯`, `➜ ~`.
 SHOWN_PROMPT = re.compile(rf"^\s*(?:{_WHO})\s+(?=\S)")
 _PROMPT = re.compile(rf"^\s*(?:{_WHO}|[#>])\s+(?=\S)")
 #: What a reader replaces: `{topic_name}`, `[options]`, `<name>`.
 _PLACEHOLDER = re.compile(r"\{[A-Za-z][\w -]*\}|\[[A-Za-z][\w .|=-]*\]|<[A-Za-z][^<>]*>")
+_CAPITALS = re.compile(
+    r"(PACKAGE|PKG|NODE|TOPIC|SERVICE|ACTION|PARAM(ETER)?|TYPE|NAME|FILE|VALUE|DATA|EXECUTABLE)(_[A-Z]+)*"
+)
 PROGRAMS = frozenset({"ros2", "colcon", "rqt_plot", "rqt_graph"})
 #: Windows that a notebook draws in a cell; their packages have the same names.
 _WINDOWS = ("rqt_plot", "rqt_graph")
@@ -140,6 +145,16 @@ def is_placeholder(package: str) -> bool:
     return bool(_PACKAGE_PLACEHOLDER.fullmatch(package))
 
 
+def _is_to_fill_in(word: str) -> bool:
+    """Return whether a word of a command is for a reader to fill in.
+
+    >>> [_is_to_fill_in(word) for word in ("/<node>", "NODE_NAME", "...", "/cmd_vel", "Q")]
+    [True, True, True, False, False]
+    """
+    name = word.strip("/")
+    return name in {"...", "…"} or bool(_PLACEHOLDER.fullmatch(name) or _CAPITALS.fullmatch(name))
+
+
 def programs_of(code: str) -> list[tuple[str, ...]]:
     """Return the words of each command, whether a notebook runs it or not."""
     commands = []
@@ -186,7 +201,11 @@ def _logical_lines(code: str) -> Iterator[tuple[str, int]]:
             start = number
             prompt = _PROMPT.match(raw)
             # `# text` is a comment; `root@machine:~# text` is a prompt.
-            joined = raw[prompt.end() :].strip() if prompt and prompt[0].strip() not in {"#", ">"} else raw.strip()
+            joined = (
+                raw[prompt.end() :].strip()
+                if prompt and (prompt[0].strip() not in {"#", ">"} or SHOWN_PROMPT.match(raw))
+                else raw.strip()
+            )
         else:
             joined += "\n" + raw if inside_quotes(joined) else " " + raw.strip()
         if joined.endswith("\\"):
@@ -226,12 +245,10 @@ def _read(text: str, line: int) -> Command | UnsupportedCommand:
         return Command(CommandKind.NOTE, f"# {text}", (), line)
     if program not in PROGRAMS:
         return UnsupportedCommand(text, line, f"`{program}` is not ros2, colcon, rqt_plot or rqt_graph")
-    if any(_PLACEHOLDER.fullmatch(word) for word in words[1:]):
+    if any(map(_is_to_fill_in, words[1:])):
         return UnsupportedCommand(text, line, _FORM)
     if _SHELL_SYNTAX.search(outside_quotes):
         return UnsupportedCommand(text, line, "pipes, `;`, `&` and redirections need a real shell")
-    if re.search(r"\.\.\.|…", outside_quotes):
-        return UnsupportedCommand(text, line, "it is an alias for other commands")
     if program == "ros2":
         return _ros2(text, words, line)
     if program == "colcon":

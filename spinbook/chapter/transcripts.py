@@ -9,8 +9,12 @@ from spinbook.chapter.terminal import MOVING_ABOUT, PROGRAMS, SHOWN_PROMPT, insi
 
 #: Words with which a line is a command although it has no prompt.
 _COMMANDS = PROGRAMS | MOVING_ABOUT
-#: What only a ROS program prints: a log line, or a topic's, a service's or a node's name alone on its line.
-_PRINTED = re.compile(r"\[(?:INFO|WARN|ERROR|DEBUG|FATAL)\]|/\w[\w/]*\s*$")
+#: What no command begins with, and ROS programs print: a log line, the name of a topic, a service or a node alone on
+#: its line, `Type: …`, a message's `data: …` and `---`.
+_PRINTED = re.compile(
+    r"\[(?:INFO|WARN|ERROR|DEBUG|FATAL)\]|---$"
+    r"|/\w[\w/]*(?:: [\w/]+| \[[\w/]+\])?\s*$|[A-Za-z][\w ]*:(?:\s|$)(?!.*\bros2\b)"
+)
 _CONTINUED = re.compile(r"^\s*>\s?")
 
 
@@ -73,6 +77,21 @@ def split_transcript(code: str) -> tuple[str, str]:
     for line in lines:
         split.add(line)
     return ("\n".join(split.commands), split.output) if split.printed or split.has_prompts else (code, "")
+
+
+def split_session(code: str) -> tuple[str, str]:
+    """Return (the statements, the printed lines) of what Python shows in a terminal, with `>>>` before a statement.
+
+    >>> split_session(">>> for i in range(1):\\n...     print(i)\\n...\\n0\\n")
+    ('for i in range(1):\\n    print(i)\\n\\n', '0')
+    """
+    if not code.lstrip().startswith(">>> "):
+        return code, ""
+    lines = [line.strip("\r") for line in code.rstrip("\n").split("\n")]
+    is_statement = [line.startswith((">>>", "...")) for line in lines]
+    statements = [line[4:] for line, says in zip(lines, is_statement, strict=True) if says]
+    printed = [line for line, says in zip(lines, is_statement, strict=True) if not says]
+    return "".join(f"{line}\n" for line in statements), "\n".join(printed).strip("\n")
 
 
 def without_gaps(commands: str, output: str) -> str:

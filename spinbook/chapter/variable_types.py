@@ -14,6 +14,11 @@ from spinbook.chapter.syntax import descendants, dotted_name, last_name
 _MODULE = re.compile(r"(\w+)\.(msg|srv|action)")
 #: A package of interfaces, or one of its modules.
 _INTERFACES = re.compile(r"_(msgs|srvs|interfaces|actions)\b|\.(msg|srv|action)$")
+#: Where the interface is among the arguments of a call.
+_PLACES = {"create_subscription": 0, "create_service": 0, "ActionServer": 1, "create_client": 0, "ActionClient": 1}
+#: What makes a client -> the role of what it makes.
+_CLIENTS = {"create_client": "client", "ActionClient": "action_client"}
+_ANSWERS = frozenset({"call", "call_async", "result"})
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
 
@@ -111,6 +116,8 @@ class ProgramTypes:
             return self._attribute(expression, function)
         if isinstance(expression, ast.Call):
             return self._call(expression, function)
+        if isinstance(expression, ast.Await):
+            return _answer(self._type(expression.value, function), "result")
         if isinstance(expression, ast.Subscript) and not isinstance(expression.slice, ast.Slice):
             of = self._type(expression.value, function)
             return replace(of, role="value") if of is not None and of.role == "list" else None
@@ -156,10 +163,12 @@ class ProgramTypes:
         return next((function for function in self.functions if function.node is node), None)
 
     def _call(self, call: ast.Call, function: Function) -> TypedValue | None:
-        made = {"ActionClient": ("action_client", 1), "create_client": ("client", 0)}.get(last_name(call.func))
-        if made and len(call.args) > made[1]:
-            of = self.class_of(call.args[made[1]], function)
-            return replace(of, role=made[0]) if of else None
+        name = last_name(call.func)
+        if name in _CLIENTS and (interface := interface_argument(call)) is not None:
+            of = self.class_of(interface, function)
+            return replace(of, role=_CLIENTS[name]) if of else None
+        if name in _ANSWERS and isinstance(call.func, ast.Attribute):
+            return _answer(self._type(call.func.value, function), name)
         of = self.class_of(call.func, function)
         return replace(of, role="value") if of and (of.part or "/msg/" in of.interface) else None
 
@@ -171,6 +180,9 @@ class ProgramTypes:
         for function in list(self.functions):
             for call in (item for item in function.own_nodes if isinstance(item, ast.Call)):
                 for callback, types in _registered(call, functools.partial(self._type, function=function)):
+                    if isinstance(callback, ast.Call) and last_name(callback.func) == "partial" and callback.args:
+                        types = [*([None] * (len(callback.args) - 1)), *types]
+                        callback = callback.args[0]
                     target = self._function_of(callback, function)
                     if target is not None:
                         given.setdefault(id(target), []).append(types)
@@ -233,15 +245,19 @@ def _registered(
 ) -> Iterator[tuple[ast.expr, list[TypedValue | None]]]:
     """Yield each callback that a call hands over, with the types of its parameters."""
     named = {keyword.arg: keyword.value for keyword in call.keywords}
-    place = {"create_subscription": 0, "create_service": 0, "ActionServer": 1}.get(last_name(call.func))
+    place = _PLACES.get(last_name(call.func)) if last_name(call.func) not in _CLIENTS else None
     if last_name(call.func) == "send_goal_async" and isinstance(call.func, ast.Attribute):
         client = type_of(call.func.value)
         callback = named.get("feedback_callback", call.args[1] if len(call.args) > 1 else None)
         if client and client.role == "action_client" and callback:
             yield callback, [TypedValue("feedback", client.interface)]
-    if place is None or len(call.args) <= place:
+    future = type_of(call.func.value) if isinstance(call.func, ast.Attribute) and call.args else None
+    if last_name(call.func) == "add_done_callback" and future and future.role == "future":
+        yield call.args[0], [future]
+    interface = interface_argument(call)
+    if place is None or interface is None:
         return
-    of = type_of(call.args[place])
+    of = type_of(interface)
     callback = named.get("callback", named.get("execute_callback"))
     callback = callback or (call.args[place + 2] if len(call.args) > place + 2 else None)
     if of is None or of.role != "class":
@@ -260,6 +276,20 @@ def _registered(
             yield named[name], [kind]
 
 
+def interface_argument(call: ast.Call) -> ast.expr | None:
+    """Return the argument that says which message, service or action a call is about."""
+    named = (k.value for k in call.keywords if k.arg in {"msg_type", "srv_type", "action_type"})
+    place = _PLACES[last_name(call.func)] if last_name(call.func) in _PLACES else len(call.args)
+    return call.args[place] if len(call.args) > place else next(named, None)
+
+
+def _answer(of: TypedValue | None, method: str) -> TypedValue | None:
+    """Return what a service's client answers: `call` a response, `call_async` its future, `result` of that the same."""
+    if of is None or (of.role, method) not in {("client", "call"), ("client", "call_async"), ("future", "result")}:
+        return None
+    return replace(of, role="future" if method == "call_async" else "value", part="Response")
+
+
 def _is_self(expression: ast.expr) -> bool:
     return isinstance(expression, ast.Name) and expression.id == "self"
 
@@ -272,13 +302,25 @@ def _imported(everything: Sequence[ast.AST]) -> Mapping[str, TypedValue]:
             for alias in item.names:
                 interface = f"{module[1]}/{module[2]}/{alias.name}"
                 known[alias.asname or alias.name] = TypedValue("class", interface)
-    modules = {alias.name for item in everything if isinstance(item, ast.Import) for alias in item.names}
+    imports = [alias for item in everything if isinstance(item, ast.Import) for alias in item.names]
+    modules = {alias.name for alias in imports}
+    called = {alias.asname: alias.name for alias in imports if alias.asname}
+    called |= {
+        alias.asname or alias.name: f"{item.module}.{alias.name}"
+        for item in everything
+        if isinstance(item, ast.ImportFrom) and item.module
+        for alias in item.names
+        if alias.name in PARTS
+    }
+    modules |= set(called.values())
     for item in everything if any(map(_INTERFACES.search, modules)) else ():
-        dotted = dotted_name(item) if isinstance(item, ast.Attribute) else ""
+        written = dotted_name(item) if isinstance(item, ast.Attribute) else ""
+        first, _, rest = written.partition(".")
+        dotted = f"{called.get(first, first)}.{rest}"
         package, _, rest = dotted.partition(".")
         kind, _, name = rest.partition(".")
         if {package, f"{package}.{kind}"} & modules and kind in PARTS and name.isidentifier():
-            known[dotted] = TypedValue("class", f"{package}/{kind}/{name}")
+            known[written] = TypedValue("class", f"{package}/{kind}/{name}")
     defined = {i.name for i in everything if isinstance(i, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)}
     return {name: kind for name, kind in known.items() if name not in defined}
 
@@ -294,6 +336,9 @@ def _bindings(function: Function) -> dict[str, list[ast.expr | None]]:
             assert isinstance(item, ast.Assign | ast.AnnAssign)
             plain.add(id(target))
             bound.setdefault(target.id, []).append(item.value)
+        if isinstance(item, ast.For | ast.comprehension) and isinstance(item.target, ast.Name):
+            plain.add(id(item.target))
+            bound.setdefault(item.target.id, []).append(ast.Subscript(item.iter, ast.Constant(0)))
     for item in function.own_nodes:
         if isinstance(item, ast.Name) and not isinstance(item.ctx, ast.Load) and id(item) not in plain:
             bound.setdefault(item.id, []).append(None)

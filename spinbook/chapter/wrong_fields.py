@@ -18,6 +18,8 @@ from spinbook.chapter.variable_types import Function, ProgramTypes, TypedValue
 #: What every message has besides its fields.
 _ALWAYS = frozenset(dir(object)) | {"get_fields_and_field_types", "SLOT_TYPES"}
 _IN_WORDS = {bool: "a bool", int: "an integer", float: "a float", str: "a string", bytes: "bytes"}
+#: No message lists more names than this.
+_MANY = 20
 _WHOLE = ("int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64")
 
 
@@ -49,6 +51,7 @@ def _in_function(function: Function, types: ProgramTypes) -> Iterator[WrongField
     for item in function.own_nodes:
         if isinstance(item, ast.Attribute):
             yield from _attribute(item, types.value_of(item.value, function))
+            yield from _constant(item, types.class_of(item.value, function))
         elif isinstance(item, ast.Call):
             yield from _constructor(item, types.class_of(item.func, function))
         elif isinstance(item, ast.Assign):
@@ -61,6 +64,12 @@ def _attribute(item: ast.Attribute, value: TypedValue | None) -> Iterator[WrongF
     if known is None or item.attr in _ALWAYS or item.attr.startswith("_"):
         return
     if item.attr not in known.fields and item.attr not in known.constants:
+        yield missing_field(item.attr, known, item.end_lineno or item.lineno)
+
+
+def _constant(item: ast.Attribute, of: TypedValue | None) -> Iterator[WrongField]:
+    known = of.fields if of else None
+    if known is not None and item.attr.isupper() and item.attr not in known.constants:
         yield missing_field(item.attr, known, item.end_lineno or item.lineno)
 
 
@@ -87,16 +96,24 @@ def _assignment(target: ast.Attribute, value: ast.expr, of: TypedValue | None) -
 
 
 def missing_field(name: str, known: InterfaceFields, line: int) -> WrongField:
-    """Return that a field does not exist, with the one that is probably meant."""
+    """Return that a field or a constant does not exist, with the one that is probably meant."""
+    is_constant = name.isupper() and bool(known.constants)
+    kind, there = ("constant", sorted(known.constants)) if is_constant else ("field", list(known.fields))
     names = {each.lower(): each for each in (*known.constants, *known.fields)}
     close = difflib.get_close_matches(name.lower(), names, n=1, cutoff=0.5) or list(names) * (len(names) == 1)
-    there = ", ".join(f"`{field}`" for field in known.fields) or "none"
+    listed = ", ".join(f"`{each}`" for each in there[:_MANY]) + " …" * (len(there) > _MANY) or "none"
     fix = f"Did you mean `{names[close[0]]}`? " if close else ""
-    return WrongField(line, f"`{known.name}` has no field `{name}`.", f"{fix}Its fields: {there}.")
+    return WrongField(line, f"`{known.name}` has no {kind} `{name}`.", f"{fix}Its {kind}s: {listed}.")
 
 
 def _value(name: str, kind: FieldType, value: ast.expr, owner: str, line: int) -> Iterator[WrongField]:
-    """Check a literal value: rclpy does not, and sends another number for an integer in a float field."""
+    """Check a literal value: rclpy does not, and sends another number for an integer in a float field.
+
+    A time that is no message ends the program when it is published, without a traceback.
+    """
+    if kind.base == "builtin_interfaces/msg/Time" and ast.unparse(value).endswith("get_clock().now()"):
+        problem = f"`{name}` of `{owner}` is a message, and `now()` is a time of rclpy, which can't be sent."
+        yield WrongField(line, problem, f"Write `{ast.unparse(value)}.to_msg()`.")
     try:
         literal = ast.literal_eval(value)
     except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):

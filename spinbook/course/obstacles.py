@@ -14,6 +14,10 @@ _WORDS = {
         "shell fence needs a real shell (a pipe, or a command that is not ROS's)",
         "shell fences need a real shell",
     ),
+    "a definition": (
+        "chapter has snippets that use undefined names",
+        "chapters have snippets that use undefined names",
+    ),
     "a file name": ("chapter has nodes without a file name", "chapters have nodes without a file name"),
     "files that are not there": ("link leads to a file that is not there", "links lead to files that are not there"),
     "labels that no chapter has": (

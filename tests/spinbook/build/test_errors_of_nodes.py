@@ -12,6 +12,7 @@ import pytest
 from course_folder import CourseFolder
 
 from spinbook.build.failures import find_node_errors, node_errors
+from spinbook.kernel.node_errors import ERROR, NodeError
 
 #: A node that does BODY in its timer's third call, and AFTER when it is stopped.
 PROGRAM = """import os
@@ -158,6 +159,20 @@ def test_errors_of_nodes_are_warnings_unless_strict(built: BuiltCourse) -> None:
     assert "✗ callback: unchanged since its last run" in again.stdout
     assert strict.returncode == 1
     assert "ValueError: 42" in strict.stdout
+
+
+def test_an_error_that_a_node_repeats_is_reported_once() -> None:
+    error = NodeError("lamp", "it logged ERROR: no power.")
+    output = {
+        "output_type": "display_data",
+        "metadata": {ERROR: error.plain},
+        "data": {"text/plain": error.in_words},
+    }
+    cells = [{"cell_type": "code", "source": "pass", "metadata": {}, "outputs": [output]} for _ in range(3)]
+
+    (report,) = find_node_errors(Path("c.md"), {"cells": cells})
+
+    assert report.what == "lamp went wrong: it logged ERROR: no power."
 
 
 def test_the_notebook_shows_the_error_in_the_next_cell_that_runs(built: BuiltCourse) -> None:

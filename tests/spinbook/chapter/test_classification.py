@@ -158,3 +158,25 @@ def test_a_continued_command_is_one_command(tmp_path: Path) -> None:
     (command,) = read(tmp_path, text).cells[-1].commands
 
     assert command.words == ("ros2", "topic", "pub", "--once", "/a", "std_msgs/msg/String", "{data: 'x'}")
+
+
+@pytest.mark.parametrize(
+    "info",
+    [
+        'python {linenos=true,filename="arm.py"}',
+        "python [arm.py]",
+        'py3 {title="arm.py"}',
+        '{.python #lst-arm filename="arm.py"}',
+        'python {1,3} title="arm.py"',
+    ],
+)
+def test_a_file_is_named_as_each_book_tool_does(tmp_path: Path, info: str) -> None:
+    assert read(tmp_path, f"```{info}\n{NODE}```\n").cells[-1].name == "arm"
+
+
+def test_options_of_a_quarto_cell_may_be_in_its_braces(tmp_path: Path) -> None:
+    skipped = "```{python, eval=FALSE}\n1 / 0\n```\n\n"
+
+    chapter = read(tmp_path, f"{skipped}```{{python}}\n#| filename: arm.py\n{NODE}```\n")
+
+    assert [(cell.name, cell.tags) for cell in chapter.cells[1:]] == [(None, ("skip-execution",)), ("arm", ())]

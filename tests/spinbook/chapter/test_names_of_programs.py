@@ -40,6 +40,8 @@ ENTRY = "'tock = bench.tock_tool:main'"
         f"```python\n        {ENTRY},\n```\n",
         f"```python\n        'console_scripts': [\n            {ENTRY},  # new\n```\n",
         f"- In setup.py:\n\n  ```python\n  entry_points={{'console_scripts': [{ENTRY}]}},\n  ```\n",
+        "```python\nentry_points={'console_scripts': [f'tock = {package_name}.tock_tool:main']},\n```\n",
+        "```python\nentry_points={'console_scripts': ['tock = ' + package_name + '.tock_tool:main']},\n```\n",
         "```ini\n[options.entry_points]\nconsole_scripts =\n    tock = bench.tock_tool:main\n```\n",
     ],
 )
@@ -196,3 +198,20 @@ def test_a_launch_file_of_another_name_is_not_taken_for_the_one_that_is_launched
 
     assert result.chapter.static_fences[-1].sign == "no fence above is its launch file."
     assert result.problems[-1].fix == "Did you mean `lamps.launch.py`?"
+
+
+@pytest.mark.parametrize(
+    ("title", "fix"),
+    [
+        ("line.launch.xml", 'Write title="launch/line.launch.xml", and ros2 launch robot line.launch.xml'),
+        ("launch/line.launch.xml", "Write: ros2 launch robot line.launch.xml"),
+    ],
+)
+def test_a_launch_file_that_another_package_has_comes_with_the_right_command(
+    tmp_path: Path, title: str, fix: str
+) -> None:
+    shown = f'```xml title="{title}"\n<launch/>\n```\n'
+
+    (problem,) = reading(tmp_path, CREATE, shown, shell("ros2 launch bench line.launch.xml")).problems
+
+    assert problem.fix == fix

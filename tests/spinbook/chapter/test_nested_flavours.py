@@ -30,6 +30,13 @@ FLAVOURS = {
     "one-line": (('<Aside type="tip" title="Short">WORDS</Aside>',), "Short"),
     "gitbook": (('{% hint style="danger" %}', "WORDS", "{% endhint %}"), "Caution"),
     "kramdown": (("WORDS", "{: .warning }"), "Warning"),
+    "kramdown-title": (("{: .note-title }", "> Oiled", ">", "> WORDS"), "Oiled"),
+    "docusaurus-property": ((':::note{title="Loud"}', "WORDS", ":::"), "Loud"),
+    "quarto-heading": (("::: {.callout-note}", "## Wet", "", "WORDS", ":::"), "Wet"),
+    "hugo": (('{{< callout type="warning" >}}', "WORDS", "{{< /callout >}}"), "Warning"),
+    "hugo-hint": (("{{< hint danger >}}", "WORDS", "{{< /hint >}}"), "Caution"),
+    "hugo-notice": (('{{% notice tip "Dry" %}}', "WORDS", "{{% /notice %}}"), "Dry"),
+    "hugo-folded": (('{{< expand "More" >}}', "WORDS", "{{< /expand >}}"), None),
     "docsify": (("?> WORDS",), "Tip"),
     "mkdocs-folded": (("??? tip", "    WORDS"), None),
     "mkdocs-tab": (('=== "Python"', "    WORDS"), None),
@@ -114,7 +121,8 @@ def test_a_page_shows_it_with_its_title(built: Built, flavour: str, holder: str)
 
 def test_nothing_of_a_book_tools_own_language_is_left(built: Built) -> None:
     marks = (
-        r":::|!!!|\?\?\?|===|\{%|\{:|\{/\*|\)=|8<|</?Tab|</?Adm|</?Aside|</?Call|import Tabs|toctree|[!?]&gt; |[!?]> "
+        r"\{\{|:::|!!!|\?\?\?|===|\{%|\{:|\{/\*|\)=|8<|</?Tab|</?Adm|</?Aside|</?Call|import Tabs"
+        r"|toctree|[!?]&gt; |[!?]> "
     )
 
     assert re.findall(marks, built.notebook) == []

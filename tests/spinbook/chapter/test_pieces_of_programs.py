@@ -225,7 +225,7 @@ def test_a_demo_node_is_not_the_chapters_own_node_of_that_name(tmp_path: Path) -
         ("ros2 pkg create --build-type ament_cmake arm", "C++"),
         ("ros2 topic pub /a nav2_msgs/msg/Route {}", "needs `nav2_msgs`"),
         ("ros2 topic echo /scan", "nothing above makes `/scan`"),
-        ("ros2 topic echo ...", "is an alias for other commands"),
+        ("ros2 topic echo ...", "holds placeholders"),
         ("ros2 run arm hand --ros-args --params-file p.yaml", "reads a parameter file"),
     ],
 )

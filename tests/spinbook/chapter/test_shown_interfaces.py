@@ -47,6 +47,10 @@ def fence(code: str, info: str = "") -> str:
     "shown",
     [
         fence(SERVICE, 'text title="Cosine.srv"'),
+        fence(SERVICE, 'text {filename="srv/Cosine.srv"}'),
+        fence("cat > srv/Cosine.srv <<EOF\n" + SERVICE + "EOF\n", "bash"),
+        fence("cat <<'END' >src/trig_interfaces/srv/Cosine.srv\n" + SERVICE + "END\n", "bash"),
+        '=== "Cosine.srv"\n\n' + "".join(f"    {line}\n" for line in fence(SERVICE).split("\n")),
         fence(SERVICE, 'text filename="src/trig_interfaces/srv/Cosine.srv"'),
         "Create `Cosine.srv`:\n\n" + fence(SERVICE),
         "In the folder, make **srv/Cosine.srv**:\n\n" + fence(SERVICE, "python"),

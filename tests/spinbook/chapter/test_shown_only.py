@@ -145,7 +145,18 @@ def test_a_fence_that_includes_a_file_which_is_not_here_is_shown_only(tmp_path: 
     assert [(item.line, item.severity) for item in result.problems] == [(3, Severity.NOT_RUN)]
 
 
-@pytest.mark.parametrize("words", ["topic pub {topic} {type} {data}", "run [package] [executable]", "topic echo <x>"])
+@pytest.mark.parametrize(
+    "words",
+    [
+        "topic pub {topic} {type} {data}",
+        "run [package] [executable]",
+        "topic echo <x>",
+        "node info /<x>",
+        "topic echo ...",
+        "param get NODE_NAME PARAM",
+        "topic pub /TOPIC TYPE DATA",
+    ],
+)
 def test_a_command_with_placeholders_is_shown_only(tmp_path: Path, words: str) -> None:
     assert cells(read(tmp_path, f"```bash\nros2 {words}\n```\n")) == []
 
@@ -159,3 +170,23 @@ def test_what_init_calls_may_not_use_what_nothing_sets(tmp_path: Path) -> None:
 
     assert cells(result.chapter) == []
     assert [(item.line, item.severity) for item in result.problems if not item.group] == [(13, Severity.NOT_RUN)]
+
+
+def test_snippets_that_use_what_nothing_defines_are_one_warning(tmp_path: Path) -> None:
+    snippets = ["```python\nprint(first)\nprint(second)\n```\n", "```python\n\nprint(third)\n```\n"]
+    method = "```python\nself.pub.publish(message)\n```\n"
+
+    (problem,) = reading(tmp_path, *snippets, method).problems
+
+    assert problem.severity is Severity.WARNING
+    assert "nothing above defines `first` (line 4), `third` (line 10)." in problem.problem
+    assert "Define it in a snippet above" in problem.fix
+
+
+def test_an_executor_needs_init_too(tmp_path: Path) -> None:
+    code = "from rclpy.executors import SingleThreadedExecutor\nfrom rclpy.node import Node\n\n\n"
+    code += "class A(Node):\n    pass\n\n\nrunner = SingleThreadedExecutor()\nrunner.add_node(A('a'))\nrunner.spin()\n"
+
+    (problem,) = reading(tmp_path, f'```python title="a.py"\n{code}```\n').problems
+
+    assert (problem.line, problem.problem) == (12, "nothing calls `rclpy.init` before this, so the program would fail.")

@@ -34,6 +34,11 @@ def printed(cells: tuple[ChapterCell, ...]) -> str:
         "[eva@desk ws]$ ",
         "root@c1:/# ",
         "╰─❯ ",
+        "~/ws ❯ ",
+        "> ",
+        "% ",
+        "eva@mac ws % ",
+        "PS C:\\ws> ",
         "➜  ws ",
     ],
 )
@@ -49,6 +54,8 @@ def test_a_prompt_marks_a_command_and_the_rest_was_printed(tmp_path: Path, promp
     "text",
     [
         "ros2 node list\n/hand\n/arm\n",
+        "ros2 topic list -t\n/clock [rosgraph_msgs/msg/Clock]\n",
+        "ros2 topic info /rosout\nType: rcl_interfaces/msg/Log\n\nPublisher count: 1\n",
         "ros2 run demo_nodes_cpp talker\n[INFO] [17.1] [talker]: Publishing: 'Hello World: 1'\nand more\n",
     ],
 )
@@ -150,3 +157,34 @@ def test_a_node_gets_the_names_that_tutorials_use(tmp_path: Path, code: str) -> 
     (node,) = cells(read(tmp_path, code))
 
     assert node.kind is CellKind.NODE
+
+
+@pytest.mark.parametrize("language", ["powershell", "ps1", "pwsh"])
+def test_a_terminal_of_windows_runs_ros_commands(tmp_path: Path, language: str) -> None:
+    chapter = read(tmp_path, f"```{language}\nPS C:\\ws> ros2 node list\n/arm\n```\n")
+
+    assert [commands(cell) for cell in cells(chapter)] == [["ros2 node list"]]
+    assert printed(chapter.cells) == "/arm"
+
+
+@pytest.mark.parametrize("language", ["python", "pycon", "text", ""])
+def test_a_session_of_python_runs_as_a_snippet(tmp_path: Path, language: str) -> None:
+    text = ">>> for i in range(2):\n...     print(i)\n...\n0\n1\n>>> i + 1\n2\n"
+
+    chapter = read(tmp_path, f"```{language}\n{text}```\n")
+
+    (snippet,) = cells(chapter)
+    assert (snippet.kind, " ".join(snippet.source.split())) == (CellKind.SNIPPET, "for i in range(2): print(i) i + 1")
+    assert printed(chapter.cells) == "0\n1\n2"
+
+
+def test_a_cell_that_jupyter_runs_in_a_shell_is_one_for_the_terminal(tmp_path: Path) -> None:
+    (cell,) = cells(read(tmp_path, "```{code-cell} ipython3\n%%bash\nros2 node list\n```\n"))
+
+    assert (cell.line, commands(cell)) == (5, ["ros2 node list"])
+
+
+def test_commands_that_no_rule_understands_are_reported(tmp_path: Path) -> None:
+    (problem,) = reading(tmp_path, "```bash\nTerminal 1: ros2 run demo_nodes_py talker\n```\n").problems
+
+    assert problem.problem.startswith("this shell fence is shown and not run")

@@ -65,6 +65,50 @@ def node(setup: str, method: str) -> str:
             "`Fibonacci.Feedback` has no field `part`.",
             "Did you mean `sequence`?",
         ),
+        ("import std_msgs.msg as sm\nsm.String().dat", "`String` has no field `dat`.", "Did you mean `data`?"),
+        ("from std_msgs import msg\nmsg.String(dat='x')", "`String` has no field `dat`.", "Did you mean `data`?"),
+        (
+            f"{MSGS}n.create_subscription(msg_type=String, topic='x', callback=lambda m: m.dta, qos_profile=10)",
+            "`String` has no field `dta`.",
+            "Did you mean `data`?",
+        ),
+        (
+            MSGS
+            + node(
+                "self.create_subscription(String, 'x', partial(self.on, 1), 10)", "def on(self, n, m):\n        m.dta"
+            ),
+            "`String` has no field `dta`.",
+            "Did you mean `data`?",
+        ),
+        (f"{MSGS}for p in PoseArray().poses:\n    p.place", "`Pose` has no field `place`.", "Its fields: `position`"),
+        (
+            SRV
+            + node(
+                "self.c = self.create_client(AddTwoInts, 'x'); self.c.call_async(q).add_done_callback(self.on)",
+                "def on(self, f):\n        f.result().summ",
+            ),
+            "`AddTwoInts.Response` has no field `summ`.",
+            "Did you mean `sum`?",
+        ),
+        (
+            SRV
+            + node(
+                "self.c = self.create_client(AddTwoInts, 'x')",
+                "async def go(self):\n        r = await self.c.call_async(q)\n        r.c",
+            ),
+            "`AddTwoInts.Response` has no field `c`.",
+            "Did you mean `sum`?",
+        ),
+        (
+            "from diagnostic_msgs.msg import DiagnosticStatus as D\nD(level=D.OKAY)",
+            "`DiagnosticStatus` has no constant `OKAY`.",
+            "Did you mean `OK`? Its constants: `ERROR`, `OK`",
+        ),
+        (
+            "from std_msgs.msg import Header\nh = Header()\nh.stamp = self.get_clock().now()",
+            "`stamp` of `Header` is a message, and `now()` is a time of rclpy, which can't be sent.",
+            "Write `self.get_clock().now().to_msg()`.",
+        ),
     ],
 )
 def test_a_wrong_field_is_found_with_the_right_one(code: str, problem: str, fix: str) -> None:
@@ -81,6 +125,8 @@ def test_a_wrong_field_is_found_with_the_right_one(code: str, problem: str, fix:
         f"{MSGS}def f(m):\n    m.text\nf(String())",
         f"{MSGS}m = String(data='x')\nm.data.upper()\nm.get_fields_and_field_types()\nm.__slots__",
         f"{MSGS}m = String()\nfor m in things:\n    m.text",
+        f"{MSGS}class Pose:\n    pass\nfor p in PoseArray().poses:\n    p = Pose()\n    p.text",
+        "from std_msgs.msg import Header\nh = Header()\nh.stamp = self.get_clock().now().to_msg()",
         f"{MSGS}def f():\n    m = String()\n    def g(m):\n        return m.text\n    return g",
         f"{MSGS}m = String()\ndef f():\n    m = other()\n    return m.text",
         f"{MSGS}Float64(data='text', check_fields=True)",
