@@ -47,7 +47,7 @@ def disagreements(exercise: Exercise) -> Iterator[ExerciseError]:
     A line outside the markers is also in the starter. A solution that can't be read yields nothing.
     """
     file = exercise.solution_file
-    if file is None or not file.exists():
+    if file is None or not file.exists() or exercise.nodes:  # a launch file creates nothing itself
         return
     source = file.read_text(encoding="utf-8", errors="replace")
     hidden = {number for block in hidden_blocks(source) for number, _ in block}

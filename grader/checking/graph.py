@@ -146,7 +146,12 @@ def must_have_nodes(run: RecordedRun) -> None:
     """
     starts = run.recording.programs
     names = [f"{one.namespace.strip('/')}/{one.node.lstrip('/')}" for one in starts]
-    names = names or [program.node for program in run.exercise.programs] or [run.exercise.node_name]
+    names = (
+        names
+        or [*run.exercise.nodes]
+        or [program.node for program in run.exercise.programs]
+        or [run.exercise.node_name]
+    )
     expected = tuple(sorted(f"/{name.lstrip('/')}" for name in names))
     got, text = ", ".join(run.nodes) or "none", ""
     if lacking := [name for name in expected if name not in run.nodes]:
@@ -221,7 +226,9 @@ def _has_no_others(run: RecordedRun, declared: list[tuple[Kind, str]]) -> None:
 def _lacks(run: RecordedRun, kind: Kind, name: str) -> NoReturn:
     does, others = _WORDS[kind]
     names = ", ".join(sorted({end.topic for end in end_points(run, kind)} - {*OF_EVERY_NODE})) or "none"
-    _wrong(f"your node does not {does} {name}. {others}: {names}.", name, names, lacking(kind))
+    # If a program of a launch file has ended with an error, that is why.
+    cause = run.observed if run.exercise.nodes and run.recording.ending.survived else lacking(kind)
+    _wrong(f"your node does not {does} {name}. {others}: {names}.", name, names, cause)
 
 
 #: Kind of endpoint -> the call that creates it.

@@ -106,8 +106,9 @@ class Exercise:
     out, as in a student's copy. `programs` are the programs of a submission with several; `class_name` and `node_name`
     are then those of the first. `packages` are packages from PyPI that programs may use, such as "scipy==1.16.3".
     `advice` maps the name of an exception, such as "KeyError", to a sentence for students whose program ended with it.
-    With `count_hints`, the upload says how many further hints a student took. With `many_answers`, checks judge by
-    properties that other answers than the solution's have, too.
+    `nodes` are the full names of the nodes that a launch file must start, if the submission is one: then `node_name` is
+    the first of them. With `count_hints`, the upload says how many further hints a student took. With `many_answers`,
+    checks judge by properties that other answers than the solution's have, too.
     """
 
     name: str
@@ -129,6 +130,7 @@ class Exercise:
     count_hints: bool = False
     packages: tuple[str, ...] = ()
     many_answers: bool = False
+    nodes: tuple[str, ...] = ()
 
     @property
     def scenarios_file(self) -> Path:

@@ -49,6 +49,7 @@ KEYS: dict[str, dict[str, bool]] = {
             "count_hints",
             "packages",
             "many_answers",
+            "nodes",
         ),
         False,
     ),
@@ -255,6 +256,22 @@ def programs(entries: dict[str, Any], file: Path) -> tuple[ProgramFile, ...]:
             table.fault("file", f"file = {name!r}", "Give a Python file name, such as 'leader.py'.")
         declared.append(ProgramFile(name, table.text("node"), table.text("class")))
     return tuple(declared)
+
+
+def nodes(top: TomlTable, several: bool) -> tuple[str, ...]:
+    """Return the nodes that a launch file must start; () if the submission is no launch file.
+
+    `several` is whether there are tables of programs.
+    """
+    names = top.entries.get("nodes", [])
+    if not isinstance(names, list) or not all(isinstance(name, str) and name.startswith("/") for name in names):
+        top.fault(
+            "nodes", f"nodes = {names!r}", 'Give a list of full names, such as nodes = ["/left/arm", "/right/arm"].'
+        )
+    if names and (several or "node" in top.entries or "class" in top.entries):
+        fix = "With `nodes`, the submission is a launch file, which starts the programs: leave the others out."
+        top.fault("nodes", "nodes is given next to node, class or [[program]]", fix)
+    return tuple(names)
 
 
 def packages(top: TomlTable) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.exercise.exercise import REFERENCE_NODE, Exercise, ExerciseError, ProgramFile
-from grader.exercise.exercise_toml import TomlTable, endpoints, packages, parameters, programs, topics
+from grader.exercise.exercise_toml import TomlTable, endpoints, nodes, packages, parameters, programs, topics
 from interface_compiler.near import use_near
 
 if sys.version_info >= (3, 11):
@@ -37,7 +37,8 @@ def load(folder: Path | str) -> Exercise:
     top = TomlTable(file, "", 0, entries)
     top.see_keys()
     parts = programs(entries, file)
-    file_name, class_name, node_name = _main_program(top, parts)
+    launched = nodes(top, bool(parts))
+    file_name, class_name, node_name = _main_program(top, parts, launched)
     solutions = folder.parent.parent / "solutions" / folder.name
     exercise = Exercise(
         name=folder.name,
@@ -58,6 +59,7 @@ def load(folder: Path | str) -> Exercise:
         count_hints=top.flag("count_hints"),
         packages=packages(top),
         many_answers=top.flag("many_answers"),
+        nodes=launched,
     )
     if not exercise.topics and not exercise.endpoints and not exercise.parameters:
         fix = "Declare each topic under [[subscribe]] or [[publish]], and services, actions and parameters likewise."
@@ -65,7 +67,7 @@ def load(folder: Path | str) -> Exercise:
     return exercise
 
 
-def _main_program(top: TomlTable, parts: tuple[ProgramFile, ...]) -> tuple[str, str, str]:
+def _main_program(top: TomlTable, parts: tuple[ProgramFile, ...], launched: tuple[str, ...]) -> tuple[str, str, str]:
     """Return the name of the submitted file, and class and node of the only program, or of the first of several."""
     if parts and "file" not in top.entries:
         fix = 'Give the name of a submission that is one file with all programs, such as file = "line.py", at the top.'
@@ -73,6 +75,11 @@ def _main_program(top: TomlTable, parts: tuple[ProgramFile, ...]) -> tuple[str, 
     file_name = _text(top, "file")
     if not re.fullmatch(r"[a-z_][a-z0-9_]*\.py", file_name):
         top.fault("file", f"file = {file_name!r}", "Give a Python file name, such as 'my_node.py'.")
+    if launched:
+        if not file_name.endswith("launch.py"):
+            fix = "With `nodes`, the submission is a launch file: call it NAME_launch.py."
+            top.fault("file", f"file = {file_name!r}", fix)
+        return file_name, "", launched[0]
     if not parts:
         return file_name, top.text("class"), _text(top, "node")
     for key in ("class", "node"):

@@ -11,8 +11,9 @@ from grader.exercise.exercise import REFERENCE_NODE, Exercise, Parameter, Progra
 def to_toml(exercise: Exercise) -> str:
     """Return the text of an exercise.toml that reads as `exercise`."""
     top: dict[str, Any] = {"title": exercise.title, "points": _number(exercise.points), "file": exercise.file_name}
-    if not exercise.programs:
+    if not exercise.programs and not exercise.nodes:
         top |= {"class": exercise.class_name, "node": exercise.node_name}
+    top["nodes"] = list(exercise.nodes)
     top["reference_node"] = "" if exercise.reference_node == REFERENCE_NODE else exercise.reference_node
     top["advice"] = exercise.advice
     top |= {"count_hints": True} if exercise.count_hints else {}

@@ -91,6 +91,8 @@ def cut_short(student: RunningProgram, sources: Mapping[str, str], met: bool, wh
 
 #: rclpy's log line for an exception in an execute callback.
 _IN_EXECUTE = re.compile(r"Error raised in execute callback: (.*?)(?:, at \S+:\d+)?$", re.MULTILINE)
+#: What `ros2 launch` logs about a program that it did not ask to end.
+_DIED = re.compile(r"^\[ERROR\] \[(.+)\]: process has died ", re.MULTILINE)
 
 
 def survived_by(log: str, sources: Mapping[str, str]) -> str:
@@ -100,6 +102,9 @@ def survived_by(log: str, sources: Mapping[str, str]) -> str:
     error = first_error(log, sources)
     if error:
         return f"Your program raised an exception: {described(error, sources)}"
+    if died := _DIED.search(log):
+        last = last_error(log, sources)
+        return f"A program of your launch file ended with an error: {died[1]}. {last.error if last else ''}".rstrip()
     match = _IN_EXECUTE.search(log)
     return f"Your execute callback raised an exception: {match[1]}." if match else silently_replaced(sources)
 

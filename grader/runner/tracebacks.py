@@ -11,6 +11,8 @@ from grader.submission.places import place_of
 HEADER = "Traceback (most recent call last):"
 
 _FRAME = re.compile(r'^[ \t]*File "(?P<file>[^"]+)", line (?P<line>\d{1,9})', re.MULTILINE)
+#: What `ros2 launch` prints before each line of a program.
+_OF_A_LAUNCH = re.compile(r"^\[[\w.-]+-\d+\] ", re.MULTILINE)
 _ERROR = re.compile(r"[A-Za-z_][\w.]*(:|$)")
 
 #: An error's last line is as long as the student likes; more characters than this do not help.
@@ -54,6 +56,7 @@ def last_error(log: str, sources: Mapping[str, str]) -> LastError | None:
     An error in the main thread takes precedence over one that another thread printed later, as rclpy does for a goal in
     progress.
     """
+    log = _OF_A_LAUNCH.sub("", log)
     start = _beginning(log)
     if start < 0:
         return None
@@ -75,7 +78,7 @@ _CHAINED = ("During handling of the above exception", "The above exception was t
 
 def first_error(log: str, sources: Mapping[str, str]) -> LastError | None:
     """Return the first error in `log` that a line of the student's raised or led to; None if there is none."""
-    parts = log.split(HEADER)
+    parts = _OF_A_LAUNCH.sub("", log).split(HEADER)
     for number, part in enumerate(parts[1:], start=1):
         if any(words in part for words in _CHAINED) and number < len(parts) - 1:
             continue

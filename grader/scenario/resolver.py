@@ -69,6 +69,7 @@ class Resolver:
         self._within_its_end()
         self._parameters()
         self._see_programs()
+        self._see_launch()
         found = replace(
             given,
             messages=tuple(self._message(message) for message in given.messages),
@@ -79,6 +80,14 @@ class Resolver:
         steps = tuple(self._step(step) for step in given.steps)
         self._see_world()
         return replace(found, steps=steps)
+
+    def _see_launch(self) -> None:
+        """Refuse what a launch file sets by itself."""
+        names = ("programs", "parameters", "remappings", "namespace")
+        for name in names if self._exercise.nodes else ():
+            if getattr(self._scenario, name):
+                fix = 'Leave it to the launch file. A scenario gives it launch arguments: arguments=("speed:=2.0",).'
+                self._fault(0, f"{name} is given, but the submission is a launch file", fix)
 
     # --- what goes wrong
 

@@ -27,6 +27,7 @@ from grader.submission.file_kinds import (
     language_of,
     not_graded,
 )
+from grader.submission.launch_program import MAIN, launch_file_in, program_files
 from grader.submission.magics import cell_magic, without_commands
 from grader.submission.notebook import Notebook, NotebookCell, read_notebook
 from grader.submission.problems import Unreadable, merge_conflict
@@ -102,6 +103,8 @@ def code_of_python(content: bytes, exercise: Exercise) -> Code:
             raise Unreadable(NO_CPP)
         if code := _as_a_cell(source):
             source, content, notes = code, code.encode(errors="replace"), (_A_CELL,)
+    if exercise.nodes:
+        return _launched({exercise.file_name: content, **_encoded(parts(source))}, exercise, source, notes)
     if exercise.programs:
         files = _parts(source, exercise)
         return Code(files, next(iter(files)), source, notes)
@@ -126,15 +129,27 @@ def _refuse_conflict(content: bytes, where: str) -> None:
 def _parts(source: str, exercise: Exercise) -> dict[str, bytes]:
     if files_in(source) > MOST_FILES:
         raise Unreadable(f"There are more than {MOST_FILES} files in it. Hand in at most {MOST_FILES}.")
-    files = {file: text.encode() for file, text in parts(source).items()}
+    files = _encoded(parts(source))
     if absent := [one.file for one in exercise.programs if one.file not in files]:
         raise Unreadable(f"There is no {absent[0]} in it. Begin its part of the file with a line: # file: {absent[0]}")
     return files
 
 
+def _encoded(texts: Mapping[str, str]) -> dict[str, bytes]:
+    return {file: text.encode() for file, text in texts.items()}
+
+
+def _launched(files: Mapping[str, bytes], exercise: Exercise, source: str, notes: tuple[str, ...] = ()) -> Code:
+    file = launch_file_in(files, exercise)
+    return Code(program_files(file, files, exercise), MAIN, source or files[file].decode(errors="replace"), notes)
+
+
 def code_of_notebook(notebook: Notebook, exercise: Exercise, name: str = "") -> Code:
     """Return the program in a notebook. Raises `Unreadable` and `AmbiguousProgram`."""
     handed_out = starters(exercise)
+    if exercise.nodes:
+        choice = choose(notebook, exercise, targets(exercise)[0], handed_out)
+        return replace(code_of_python(_storable(choice.code), exercise), notes=choice.notes, python=notebook.python)
     if exercise.programs and (one := _one_cell(notebook, exercise)):
         return replace(code_of_python(_storable(one), exercise), source=one, python=notebook.python)
     choices = {one.file: choose(notebook, exercise, one, handed_out) for one in targets(exercise)}
@@ -166,7 +181,7 @@ def _one_cell(notebook: Notebook, exercise: Exercise) -> str:
 
 def uses_other_files(code: Code) -> bool:
     """Return whether a program needs other files than the one with its text: it imports them, or there are several."""
-    if len(code.files) == 1:
+    if len(code.files.keys() - {MAIN}) == 1:
         return False
     own = {path.partition("/")[0].removesuffix(".py") for path in code.files}
     return any(module.partition(".")[0] in own for module in python_code.imported(code.source)) or (
@@ -208,6 +223,8 @@ def _package(cell: NotebookCell) -> list[str]:
 
 def code_of_files(contents: Contents, exercise: Exercise, called: str = "") -> Code:
     """Return the program in a folder or an archive; `called` is the folder's name. Raises as `code_of`."""
+    if exercise.nodes and "notebook" not in map(kind_of, contents.files):
+        return _launched(contents.files, exercise, "")
     reading = ReadState(contents, exercise, called)
     handed_out = starters(exercise)
     options = {one.file: chosen(reading, one, handed_out) for one in targets(exercise)}

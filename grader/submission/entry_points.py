@@ -53,10 +53,11 @@ def is_below(name: str, root: str) -> bool:
 
 def entry_points(files: Mapping[str, bytes]) -> list[EntryPoint]:
     """Return the executables that the packages install, if their modules exist."""
-    return list(dict.fromkeys(entry for root in roots(files) for entry in _entry_points(files, root)))
+    return list(dict.fromkeys(entry for root in roots(files) for entry in entry_points_of(files, root)))
 
 
-def _entry_points(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoint]:
+def entry_points_of(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoint]:
+    """Yield the executables that the package in the folder `root` installs, if their modules exist."""
     inside = {posixpath.relpath(name, root or "."): name for name in files if is_below(name, root)}
     for line in (*_of_setup(files, root), *_of_configuration(files, root), *_of_pyproject(files, root)):
         if (match := _ENTRY.fullmatch(line)) and (file := _module_file(match["module"], inside)):

@@ -31,7 +31,7 @@ SETTINGS = {
     **{"namespace": "namespace", "arguments": "arguments", "args": "arguments", "ros_arguments": "arguments"},
 }
 
-_LAUNCH_FILE = re.compile(r"launch\.(?:py|xml|ya?ml)$|\.launch$")
+LAUNCH_FILE = re.compile(r"launch\.(?:py|xml|ya?ml)$|\.launch$")
 #: What a launch file can set for all nodes of a group, in Python, XML and YAML.
 _OF_GROUPS = re.compile(rb"SetRemap|SetParameters?|PushRosNamespace|set_remap|set_parameter|push[-_]ros[-_]namespace")
 
@@ -43,7 +43,7 @@ def launched(files: Mapping[str, bytes]) -> list[LaunchFileNode]:
         text = files[name].decode("utf-8", errors="replace")
         if name.endswith("launch.py"):
             found += _launched_by_python(text)
-        elif _LAUNCH_FILE.search(name):
+        elif LAUNCH_FILE.search(name):
             for node in re.findall(r"<node\b[^>]*>|^\s*-\s*node:.*?(?=^\s*-|\Z)", text, re.DOTALL | re.MULTILINE):
                 values = dict(re.findall(r"""\b(exec|name)\s*[=:]\s*["']?([\w.-]+)""", node))
                 keys = [key for key in SETTINGS if re.search(rf"\b{key}\b\s*[=:]|<{key}\b", _element(text, node))]
@@ -83,5 +83,5 @@ def launch_settings(files: Mapping[str, bytes], file: str) -> list[str]:
     settings = [setting for node in nodes for setting in node.settings]
     code = files[file].decode("utf-8", errors="replace")
     settings += ["the node's name" for node in nodes if node.name and not python_code.creates(code, node.name)]
-    is_in_group = any(_OF_GROUPS.search(data) for name, data in files.items() if _LAUNCH_FILE.search(name))
+    is_in_group = any(_OF_GROUPS.search(data) for name, data in files.items() if LAUNCH_FILE.search(name))
     return list(dict.fromkeys([*settings, *(["what it sets for a group"] if nodes and is_in_group else [])]))

@@ -17,12 +17,7 @@ from grader.submission.entry_points import is_below, roots
 from grader.submission.file_kinds import kind_of
 from grader.submission.places import LAUNCHER
 
-if sys.version_info >= (3, 11):
-    pass
-else:
-    pass
-
-_PACKAGE_NAME = re.compile(rb"<name>\s*([\w-]+)\s*</name>")
+PACKAGE_NAME = re.compile(rb"<name>\s*([\w-]+)\s*</name>")
 #: Python files that are never the student's program.
 _NOT_PROGRAMS = re.compile(r"(?:setup|conftest|__init__|test_\w*|\w*_test|\w*[._]launch)\.py", re.IGNORECASE)
 
@@ -60,7 +55,7 @@ def layout_of(file: str, files: Mapping[str, bytes], called: str = "") -> Layout
 
     `called` is the name of the folder that was handed in, if known.
     """
-    root = _import_root(file, files)
+    root = import_root(file, files)
     inside = posixpath.relpath(file, root) if root else file
     chosen = {
         posixpath.relpath(name, root) if root else name: data for name, data in files.items() if is_below(name, root)
@@ -84,7 +79,7 @@ def layout_of(file: str, files: Mapping[str, bytes], called: str = "") -> Layout
     return Layout(chosen, inside, inside.removesuffix(".py").replace("/", ".") if "/" in inside else "")
 
 
-def _import_root(file: str, files: Mapping[str, bytes]) -> str:
+def import_root(file: str, files: Mapping[str, bytes]) -> str:
     """Return the folder that must be on Python's path: the one above the program's package."""
     own = folder = posixpath.dirname(file)
     while folder and f"{folder}/__init__.py" in files:
@@ -152,7 +147,7 @@ def own_interfaces(files: Mapping[str, bytes]) -> set[str]:
     """Return the packages that define messages, services or actions."""
     found = set()
     for root in roots(files):
-        manifest = _PACKAGE_NAME.search(files.get(posixpath.join(root, "package.xml"), b""))
+        manifest = PACKAGE_NAME.search(files.get(posixpath.join(root, "package.xml"), b""))
         kinds = [name for name in files if is_below(name, root) and re.search(r"\.(msg|srv|action)$", name)]
         if manifest and kinds:
             found.add(manifest[1].decode())

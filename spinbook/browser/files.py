@@ -127,6 +127,7 @@ def public_parts(exercises: Iterable[Exercise]) -> dict[str, bytes]:
 def _limits(exercise: Exercise, copy: Mapping[str, bytes]) -> dict[str, bytes]:
     """Return what differs for a page, which has no packages and no data: why it can't check, and the interface."""
     lacks = ["files that programs read"] * any(name.startswith(f"{DATA}/") for name in copy)
+    lacks += ["a launch file"] * bool(exercise.nodes)
     lacks += [", ".join(package.partition("==")[0] for package in exercise.packages)] * bool(exercise.packages)
     if not lacks:
         return {}

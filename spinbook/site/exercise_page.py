@@ -70,6 +70,9 @@ def _table(head: str, rows: Sequence[str]) -> str:
 
 
 def _programs(exercise: Exercise) -> str:
+    if exercise.nodes:
+        nodes = ", ".join(f"`{node}`" for node in exercise.nodes)
+        return f"The launch file `{exercise.file_name}` starts: {nodes}."
     if exercise.programs:
         programs = [f"`{program.node}` in `{program.file}`" for program in exercise.programs]
         return f"There are {len(programs)} programs, each with its own node: {', '.join(programs)}."

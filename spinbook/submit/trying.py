@@ -67,6 +67,10 @@ def scenario_named(exercise: Exercise, name: str) -> Scenario:
     chosen = scenarios.get(name) if name else next(iter(scenarios.values()))
     if chosen is None:
         raise click.UsageError(f"{exercise.name} has no scenario {name!r}. There are: {', '.join(scenarios)}.")
+    if exercise.nodes:
+        raise click.UsageError(
+            f"{exercise.name} asks for a launch file. Try yours with: ros2 launch {exercise.file_name}"
+        )
     if chosen.programs or chosen.companions:
         raise click.UsageError(f"{chosen.name} starts and stops several programs, so it can only be checked.")
     return chosen

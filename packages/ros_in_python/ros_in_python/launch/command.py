@@ -6,6 +6,7 @@ import os
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -42,16 +43,23 @@ def launch(show_args: bool, package_or_file: str, words: tuple[str, ...]) -> Non
     _source(cwd)
     file, rest = _find(package_or_file, words, cwd)
     given = _given(rest)
-    description = read(file)
-    declared = list(arguments_of(description.entities))
     if show_args:
-        _show(declared)
+        _show(list(arguments_of(read(file).entities)))
         return
-    _refuse_unknown(given, declared)
+    raise click.exceptions.Exit(launch_file(file, given, cwd))
+
+
+def launch_file(file: Path, given: dict[str, str], cwd: Path, parameters: Sequence[Any] = ()) -> int:
+    """Run what a file describes, with these `parameters` for every node; return 1 if a program died by itself.
+
+    Raises `CommandError`.
+    """
+    description = read(file)
+    _refuse_unknown(given, list(arguments_of(description.entities)))
     with tempfile.TemporaryDirectory(prefix="launch_params_") as folder:
         plan = LaunchPlan.into(Path(folder), cwd, read)
-        steps = list(plan.steps(description.entities, Context(given, file=file.absolute())))
-        raise click.exceptions.Exit(ProcessGroup(plan).run(steps))
+        context = Context(given, file=file.absolute(), parameters=list(parameters))
+        return ProcessGroup(plan).run(list(plan.steps(description.entities, context)))
 
 
 def read(file: Path) -> LaunchDescription:
