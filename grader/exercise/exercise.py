@@ -93,6 +93,9 @@ class ProgramFile:
 #: The file that a student's copy has instead of scenarios and a solution: see `grader.grading.public`.
 PUBLIC_FILE = "public.json"
 
+#: The files of an exercise's folder that a submission may not be called: a student's copy has both.
+OWN_FILES = ("checks.py", "hidden_checks.py", "scenarios.py")
+
 #: The name of the grader's own node, which has the reference publishers, servers and clients.
 REFERENCE_NODE = "reference"
 

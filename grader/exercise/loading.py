@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from grader.exercise.exercise import REFERENCE_NODE, Exercise, ExerciseError, ProgramFile
+from grader.exercise.exercise import OWN_FILES, REFERENCE_NODE, Exercise, ExerciseError, ProgramFile
 from grader.exercise.exercise_toml import TomlTable, endpoints, nodes, packages, parameters, programs, topics
 from interface_compiler.near import use_near
 
@@ -75,6 +75,9 @@ def _main_program(top: TomlTable, parts: tuple[ProgramFile, ...], launched: tupl
     file_name = _text(top, "file")
     if not re.fullmatch(r"[a-z_][a-z0-9_]*\.py", file_name):
         top.fault("file", f"file = {file_name!r}", "Give a Python file name, such as 'my_node.py'.")
+    if taken := [name for name in (file_name, *(part.file for part in parts)) if name in OWN_FILES]:
+        fix = "A student's copy has both. Choose another name, such as 'my_node.py'."
+        top.fault("file", f"{taken[0]} is a file of the exercise itself", fix)
     if launched:
         if not file_name.endswith("launch.py"):
             fix = "With `nodes`, the submission is a launch file: call it NAME_launch.py."

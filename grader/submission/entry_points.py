@@ -34,11 +34,12 @@ _SCRIPTS = (("project", "scripts"), ("project", "entry-points", "console_scripts
 
 @dataclass(frozen=True)
 class EntryPoint:
-    """An executable that a package installs: `name` runs `function` of the module in `file`."""
+    """An executable that a package installs: `name` runs `function` of `module`, which is in `file`."""
 
     name: str
     file: str
     function: str
+    module: str = ""
 
 
 def roots(files: Mapping[str, bytes]) -> list[str]:
@@ -61,7 +62,7 @@ def entry_points_of(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoin
     inside = {posixpath.relpath(name, root or "."): name for name in files if is_below(name, root)}
     for line in (*_of_setup(files, root), *_of_configuration(files, root), *_of_pyproject(files, root)):
         if (match := _ENTRY.fullmatch(line)) and (file := _module_file(match["module"], inside)):
-            yield EntryPoint(match["name"], file, match["function"] or "main")
+            yield EntryPoint(match["name"], file, match["function"] or "main", match["module"])
     yield from _of_cmake(files, root)
 
 

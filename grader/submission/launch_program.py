@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 
 from grader.exercise.data_files import DATA, data_files
 from grader.exercise.exercise import Exercise
-from grader.submission import packages, python_code
+from grader.submission import packages
 from grader.submission.entry_points import entry_points_of, is_below, roots
 from grader.submission.file_kinds import original_name
 from grader.submission.launch_files import LAUNCH_FILE
@@ -93,10 +93,9 @@ def _name(root: str, files: Mapping[str, bytes]) -> str:
 
 def _of_package(root: str, files: Mapping[str, bytes]) -> Iterator[tuple[str, str]]:
     for entry in entry_points_of(files, root):
-        folder = packages.import_root(entry.file, files)
-        module = posixpath.relpath(entry.file, folder or ".").removesuffix(".py").replace("/", ".")
-        code = files[entry.file].decode("utf-8", errors="replace")
-        function = entry.function if entry.function.split(".")[0] in python_code.definitions(code) else ""
-        words = (entry.file, folder, module, function) if function else (entry.file, folder)
+        path = entry.module.replace(".", "/")
+        inside = next((end for end in (f"{path}.py", f"{path}/__init__.py") if entry.file.endswith(end)), entry.file)
+        folder = entry.file.removesuffix(inside).rstrip("/") if entry.module else posixpath.dirname(entry.file)
+        words = (entry.file, folder, *([entry.module, entry.function] if entry.module else []))
         if "/" not in entry.name:
             yield entry.name, f"UnbuiltExecutable{words!r}"

@@ -55,7 +55,7 @@ def layout_of(file: str, files: Mapping[str, bytes], called: str = "") -> Layout
 
     `called` is the name of the folder that was handed in, if known.
     """
-    root = import_root(file, files)
+    root = _import_root(file, files)
     inside = posixpath.relpath(file, root) if root else file
     chosen = {
         posixpath.relpath(name, root) if root else name: data for name, data in files.items() if is_below(name, root)
@@ -79,7 +79,7 @@ def layout_of(file: str, files: Mapping[str, bytes], called: str = "") -> Layout
     return Layout(chosen, inside, inside.removesuffix(".py").replace("/", ".") if "/" in inside else "")
 
 
-def import_root(file: str, files: Mapping[str, bytes]) -> str:
+def _import_root(file: str, files: Mapping[str, bytes]) -> str:
     """Return the folder that must be on Python's path: the one above the program's package."""
     own = folder = posixpath.dirname(file)
     while folder and f"{folder}/__init__.py" in files:

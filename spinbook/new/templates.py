@@ -11,7 +11,7 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from grader.exercise.exercise import Exercise
+from grader.exercise.exercise import OWN_FILES, Exercise
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem
 from spinbook.new.kind import ExerciseKind, kinds
@@ -54,6 +54,9 @@ def exercise_name(name: str, course: Path) -> str:
         fix = "Use lower-case letters, digits and single underscores, a letter first, such as gripper_force."
         raise SpinbookError(Problem(file, None, found, fix))
     _refuse_taken(name, file)
+    if f"{name}.py" in OWN_FILES:
+        found = f"each exercise has a {name}.py, and the student's file would have the same name."
+        raise SpinbookError(Problem(file, None, found, "Choose another name."))
     return name
 
 

@@ -134,7 +134,7 @@ OF_ROS = ("clock", "map", "parameter_events", "rosout")
 
 
 def test_an_exercise_of_each_kind_works_by_any_name(tmp_path: Path) -> None:
-    names = itertools.cycle(["node", "float64", "scenario", "checks", "x", "arm_7", "to_be_or_not_to_be_that_is_it"])
+    names = itertools.cycle(["node", "float64", "scenario", "check", "x", "arm_7", "to_be_or_not_to_be_that_is_it"])
     for kind, name in zip(KINDS, names, strict=False):
         write_exercise(tmp_path / kind.name, name, "Any title", kind)
         folder = tmp_path / kind.name / "exercises" / name

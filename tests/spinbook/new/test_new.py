@@ -117,7 +117,7 @@ def test_a_course_with_a_name_that_will_not_do_is_refused(
 
 
 @pytest.mark.parametrize(
-    "name", ["Speed", "1_speed", "speed-limit", "speed__limit", "numpy", "import", "../x", "", "x.py"]
+    "name", ["Speed", "1_speed", "speed-limit", "speed__limit", "numpy", "import", "checks", "../x", "", "x.py"]
 )
 def test_an_exercise_with_a_name_that_will_not_do_is_refused(
     name: str, course: Path, monkeypatch: pytest.MonkeyPatch
