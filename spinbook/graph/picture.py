@@ -16,11 +16,11 @@ from spinbook.graph.model import NodeGraph
 
 #: Space around a drawing, and between two drawings (px).
 _MARGIN, _BETWEEN = 10, 28
-_NODE, _TOPIC = "var(--node-graph-node,#2f81c9)", "var(--node-graph-topic,#b7791f)"
+_NODE, _TOPIC = "var(--node-graph-node,#0a625d)", "var(--node-graph-topic,#a8690c)"
 _FONT = "ui-monospace,SFMono-Regular,Menlo,Consolas,'DejaVu Sans Mono',monospace"
 _STANDALONE = (
-    "<style>.graph{color:#1f2328}.paper{fill:#fff}"
-    "@media(prefers-color-scheme:dark){.graph{color:#e6edf3}.paper{fill:#161b22}}</style>"
+    "<style>.graph{color:#16211f}.paper{fill:#fff}@media(prefers-color-scheme:dark){.paper{fill:#101817}"
+    ".graph{color:#e6eeec;--node-graph-node:#6fd3c8;--node-graph-topic:#e0a94a}}</style>"
 )
 
 

@@ -70,7 +70,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Lane:
-    """One line of the picture. `name` is that of its topic, service or action; `label` is shown above it."""
+    """One line of the picture. `name` is that of its topic, service or action; `label` is shown next to it."""
 
     name: str
     label: str

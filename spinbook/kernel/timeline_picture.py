@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from itertools import chain
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from ros_in_python.animation import Cycle, coord, on_paper
@@ -24,8 +25,9 @@ if TYPE_CHECKING:
 LONGEST_S = 20.0
 #: A lane with more ticks than this is thinned out; otherwise they would merge into a bar.
 MOST_TICKS = 150
-_WIDTH, _LEFT, _RIGHT, _TOP = 420, 14, 16, 14
-_LABEL, _BAR, _ROW, _GAP = 18, 16, 14, 8
+#: The whole width, where labels and lanes begin, and the margins (px). The upper one has room for a page's Pause.
+_WIDTH, _MARGIN, _LEFT, _RIGHT, _TOP = 720, 14, 196, 16, 38
+_BAR, _ROW, _GAP, _LABEL_CHARS = 16, 14, 12, 24
 _CHAR, _CAPITAL = 6.4, 8.0
 _GREY = "#808890"
 _SPANS = {"waits": ("#a8b0b8", "waits"), "runs": ("#0072B2", "runs"), "cancels": ("#E69F00", "is being canceled")}
@@ -56,8 +58,11 @@ def moving_timeline(lanes: Sequence[Lane], title: str = "") -> str:
     key = "t" + hashlib.sha256(f"{name} {lanes}".encode()).hexdigest()[:8]
     y, labels, drawn = float(_TOP), [], []
     for lane in lanes:
-        labels.append(f'<text x="{_LEFT}" y="{coord(y + 12)}" font-weight="600">{escape(_fitting(lane.label))}</text>')
-        part, y = _lane(lane, y + _LABEL, across)
+        for row, line in enumerate(_lines(lane.label)):
+            labels.append(
+                f'<text x="{_MARGIN}" y="{coord(y + 12 + _ROW * row)}" font-weight="600">{escape(line)}</text>'
+            )
+        part, y = _lane(lane, y, across)
         drawn.append(part)
     grid, bottom = _axis(across, _TOP, y), y + 22
     legend, bottom = _legend(lanes, bottom + 16)
@@ -72,9 +77,13 @@ def moving_timeline(lanes: Sequence[Lane], title: str = "") -> str:
     return on_paper(content, _WIDTH, math.ceil(bottom), key, name, f"{words}\nIt is drawn {pace}, again and again.")
 
 
-def _fitting(label: str) -> str:
-    most = int((_WIDTH - _LEFT - _RIGHT) / (_CHAR + 0.6))
-    return label if len(label) <= most else label[: most - 1] + "…"
+def _lines(label: str) -> list[str]:
+    return wrap(label, _LABEL_CHARS, max_lines=2, placeholder="…")
+
+
+def _end(lane: Lane, top: float, rows: int) -> float:
+    """Return where a lane with this many rows of texts ends (px)."""
+    return top + max(_BAR + _ROW * rows, _ROW * len(_lines(lane.label))) + _GAP
 
 
 def _lane(lane: Lane, top: float, across: Scale) -> tuple[str, float]:
@@ -86,7 +95,7 @@ def _lane(lane: Lane, top: float, across: Scale) -> tuple[str, float]:
     for text, x, row in _placed(lane.marks, across):
         rows = max(rows, row + 1)
         texts += f'<text x="{coord(x)}" y="{coord(top + _BAR + _ROW * row + 11)}" font-size="11">{escape(text)}</text>'
-    return bars + marks + texts, top + _BAR + _ROW * rows + _GAP
+    return bars + marks + texts, _end(lane, top, rows)
 
 
 def _bar(span: Span, top: float, across: Scale) -> str:
@@ -161,11 +170,11 @@ def _legend(lanes: Sequence[Lane], y: float) -> tuple[str, float]:
     shown = [("asked", "goal or request"), ("cancel", "cancel"), ("answered", "answer")]
     entries += [(look, text) for look, text in shown if look in marks]
     entries += [("tick", "feedback" if spans and not _plain_ticks(lanes) else "message")] if "tick" in marks else []
-    x, drawn = float(_LEFT), ""
+    x, drawn = float(_MARGIN), ""
     for look, text in entries:
         width = 34 + _CHAR * len(text)
-        if x > _LEFT and x + width > _WIDTH:
-            x, y = float(_LEFT), y + 18
+        if x > _MARGIN and x + width > _WIDTH:
+            x, y = float(_MARGIN), y + 18
         middle = y - 4
         is_bar = look.startswith("<")
         drawn += look.format(x=coord(x), y=coord(y - 8)) if is_bar else _shape(Mark(0.0, look), x + 8, middle)  # type: ignore[arg-type]
@@ -206,8 +215,7 @@ _POINTS_AN_INCH = 72
 
 
 def still_timeline(lanes: Sequence[Lane], title: str = "") -> Figure:
-    """Return the same as a figure of matplotlib, as wide as a phone: the SVG's layout. Time counts from the first
-    event."""
+    """Return the same as a figure of matplotlib, in the SVG's layout. Time counts from the first event."""
     # Web pages draw the SVG and have no matplotlib.
     from matplotlib.figure import Figure
 
@@ -217,8 +225,7 @@ def still_timeline(lanes: Sequence[Lane], title: str = "") -> Figure:
     axes = figure.add_axes((0, 0, 1, 1))
     top = float(_TOP)
     if title:
-        axes.text(_WIDTH / 2, top, title, fontsize=12, ha="center", va="center")
-        top += _LABEL
+        axes.text(_WIDTH / 2, top / 2, title, fontsize=12, ha="center", va="center")
     bottom = top
     for lane in lanes:
         bottom = _draw_lane(axes, lane, bottom, across)
@@ -231,8 +238,8 @@ def still_timeline(lanes: Sequence[Lane], title: str = "") -> Figure:
 
 def _draw_lane(draw: Axes, lane: Lane, top: float, across: Scale) -> float:
     """Draw a lane below `top`, as `_lane` does. Return where it ends (px)."""
-    draw.text(_LEFT, top + 6, _fitting(lane.label), fontsize=11, fontweight="bold", va="center")
-    top += _LABEL
+    for row, line in enumerate(_lines(lane.label)):
+        draw.text(_MARGIN, top + 8 + _ROW * row, line, fontsize=10, fontweight="bold", va="center")
     for span in lane.spans:
         x, (colour, _) = across.at(span.start), _SPANS[span.look]
         inset = 5 if span.look == "waits" else 2
@@ -251,7 +258,7 @@ def _draw_lane(draw: Axes, lane: Lane, top: float, across: Scale) -> float:
     for text, x, row in _placed(lane.marks, across):
         rows = max(rows, row + 1)
         draw.text(x, top + _BAR + _ROW * row + 7, text, fontsize=10, va="center")
-    return top + _BAR + _ROW * rows + _GAP
+    return _end(lane, top, rows)
 
 
 def _draw_axis(draw: Axes, across: Scale, top: float, bottom: float) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.classify import CellKind
 from spinbook.site.drawings import smaller, still_of
 from spinbook.site.page import Repository, exercise_page
+from spinbook.site.repetition import Repetition, repetitions
 from spinbook.site.robots import is_robot, robot_html, robot_still
 
 
@@ -72,13 +73,16 @@ def chapter_notebook(
     nodes that ran; "" for none.
     """
     cells: list[dict[str, Any]] = []
+    repeated = repetitions(chapter.cells)
     for cell in chapter.cells:
         if cell.kind is CellKind.PROSE:
             cells.append(_prose(cell, prose[cell.id]))
         elif cell.kind is CellKind.EXERCISE:
             cells.append(_prose(cell, _card(exercises[cell.name or ""])))
         else:
-            cells.append(_code(cell, ran, repository.link(chapter.file, cell.line), downloads.get(cell.id, "")))
+            code = _code(cell, ran, repository.link(chapter.file, cell.line), downloads.get(cell.id, ""))
+            code["metadata"]["spinbook"]["repeats"] = asdict(repeated.get(cell.id, Repetition()))
+            cells.append(code)
     if graph:
         cells.append({**_prose(chapter.cells[-1], graph), "id": "nodes-as-seen"})
     return {

@@ -20,6 +20,7 @@ from sphinx.util import logging
 from sphinx.writers.html5 import HTML5Translator
 
 from groundwork.files import write_if_changed
+from spinbook.site.command_lexer import CommandLexer
 from spinbook.site.log_lexer import LogLexer
 from spinbook.site.page import FRAME_SUFFIX, GLOSSARY, HOME
 
@@ -29,7 +30,12 @@ _HEADING_LINK = re.compile(r'<a class="headerlink" href="(#[^"]*)" title="[^"]*"
 _EMPTY_HEAD = re.compile(r'<th class="head[^"]*">\s*(?:<p></p>)?\s*</th>')
 #: Code in a table, and where its lines may break: after the slashes of a type.
 _CELL_CODE = re.compile(r"(?<=<td>)(?:(?!</td>).)*<code(?:(?!</td>).)*", re.DOTALL)
-_INNER_SLASH = re.compile(r"(?<=\w)/(?=\w)(?=[^<>]*</span></code>)")
+_INNER_SLASH = re.compile(r"(?<=\w)/(?=\w)(?=[^<>]*</code>)")
+#: What docutils adds for its own style sheets, and Pygments for browsers that are gone and for words without a colour.
+_UNUSED = re.compile(
+    r'(?<=<pre>)<span></span>|<span class="(?:pre|n|p|o|w)">([^<]*)</span>'
+    r'| docutils container(?=")|(?<=<code class=")docutils literal '
+)
 _STYLE = re.compile(r'\sstyle="[^"]*"')
 
 
@@ -44,6 +50,8 @@ def finish(app: Sphinx, page: str, template: str, context: dict[str, Any], doctr
     folder = Path(app.outdir, page).parent
     body = _IMAGE.sub(lambda match: _sized(match.group(), folder, app), body)
     body = _HEADING_LINK.sub(r'<a class="headerlink" href="\1" aria-label="Link to this section">#</a>', body)
+    body = _UNUSED.sub(lambda match: match[1] or "", body)
+    body = fold_mains(body)
     body = _EMPTY_HEAD.sub("<td></td>", body)
     if context.get("display_toc"):
         contents = f'<details class="page-toc-small"><summary>On this page</summary>{context["toc"]}</details>'
@@ -129,11 +137,40 @@ def _describe(cell: nodes.container, about: dict[str, Any]) -> None:
         if part.get("nb_element") == "cell_code_source":
             for code in part.findall(nodes.literal_block):
                 code["language"] = _language(kind, about)
+                _mark(code, about["repeats"])
         elif part.get("nb_element") == "cell_code_output":
             _pictures(part, about["alts"], about["stills"])
             part.insert(0, nodes.raw("", _output_name(about), format="html"))
+    if about["repeats"]["housekeeping"] and not about["wrong"] and not about["fails"]:
+        cell["classes"].append("cell-strip")
+        cell["hide_mode"] = cell.get("hide_mode") or "output"
     _fold(cell)
     cell.insert(0, nodes.raw("", _head(kind, about), format="html"))
+
+
+def _mark(code: nodes.literal_block, repeats: dict[str, Any]) -> None:
+    """Let Pygments mark the lines that an earlier version of the program did not have; `finish` folds its `main`."""
+    code["highlight_args"] = {"hl_lines": repeats["changed"]}
+    if repeats["main_from"] is not None:
+        code["classes"].append(f"main-from-{repeats['main_from']}")
+
+
+#: The code of a block whose `main` is as before, from a line on.
+_AS_BEFORE = re.compile(r'(<div class="main-from-(\d+) .*?<pre>)(.*?)(</pre>)', re.DOTALL)
+
+
+def fold_mains(body: str) -> str:
+    """Return a page's HTML with a button below each program whose `main` is as before; without scripts, it is shown."""
+    return _AS_BEFORE.sub(_folded, body)
+
+
+def _folded(match: re.Match[str]) -> str:
+    # Pygments ends every element of code with its line, or, if it marks the line, right after it.
+    lines = match[3].replace("\n</span>", "</span>\n").split("\n")
+    start = int(match[2])
+    same = f'<span class="as-before">{chr(10).join(lines[start:])}</span>'
+    button = '<button class="unfold" type="button" aria-expanded="false">main() as before</button>'
+    return "\n".join([match[1] + lines[0], *lines[1:start], same]) + match[4] + button
 
 
 #: MyST's tags -> what is folded: hide-input, hide-output, both of them, hide-cell.
@@ -151,6 +188,7 @@ def _fold(cell: nodes.container) -> None:
     for part in [child for child in cell.children if isinstance(child, nodes.container)]:
         if part.get("nb_element") in hidden:
             words = "Show the code" if part["nb_element"] == "cell_code_source" else "Show the output"
+            words = "Output" if "cell-strip" in cell["classes"] else words
             opening = f'<details class="hidden-part"><summary>{words}</summary>'
             cell.insert(cell.index(part), nodes.raw("", opening, format="html"))
             cell.insert(cell.index(part) + 1, nodes.raw("", "</details>", format="html"))
@@ -173,23 +211,32 @@ def _head(kind: str, about: dict[str, Any]) -> str:
     file = about.get("file", "")
     shown = file or about.get("interface", "") or about.get("package_file", "")
     name = f'<span class="cell-file">{escape(shown)}</span>' if shown else ""
-    name += f'<span class="cell-kind">{escape(about["after"])}</span>' if about.get("after") else ""
-    of = shown or f"this {_KINDS.get(kind, 'cell').lower()} block"
-    source = (
-        f'<a class="cell-source" href="{escape(about["source"])}" '
-        f'aria-label="Source of {escape(of)}, line {about["line"]}">source</a>'
-        if about["source"]
-        else ""
-    )
-    download = (
-        f'<a class="cell-download" href="../{escape(about["download"])}" download aria-label="Download {escape(file)}">'
-        "Download</a>"
-        if file
-        else ""
-    )
+    notes = [escape(about["after"])] if about.get("after") else []
+    notes += _changes(about["repeats"]["changed"])
+    name += "".join(f' <span class="cell-kind">{note}</span>' for note in notes)
+    of = shown or f"the block in line {about['line']}"
+    source = f'<a class="cell-source" href="{escape(about["source"])}">Source, line {about["line"]}</a>'
+    path = escape(about.get("download", ""))
+    download = f'<a class="cell-download" href="../{path}" download>Download {escape(file)}</a>'
     kind_name = f'<span class="cell-kind">{_KINDS.get(kind, "Cell")}</span>'
-    run = f' data-run="{escape(json.dumps(about["run"]))}"' if about.get("run") else ""
-    return f'<div class="cell-head"{run}>{kind_name}{name}<span class="cell-links">{download}{source}</span></div>'
+    run = f" data-run='{_in_quotes(about['run'])}'" if about.get("run") else ""
+    return (
+        f'<div class="cell-head"{run}><p class="cell-name">{kind_name} {name}</p><div class="cell-links">'
+        f'<details class="more"><summary aria-label="More about {escape(of)}">…</summary>'
+        f'<div class="places">{download if file else ""}{source if about["source"] else ""}</div></details></div></div>'
+    )
+
+
+def _in_quotes(data: dict[str, Any]) -> str:
+    """Return JSON for an attribute in single quotes, as it has many double ones."""
+    return escape(json.dumps(data, separators=(",", ":")), quote=False).replace("'", "&#x27;")
+
+
+def _changes(lines: list[int]) -> Iterator[str]:
+    """Yield what the marks at the lines of a changed program mean, for a page's head."""
+    if lines:
+        where = f'<span class="hidden-text">: {", ".join(map(str, lines))}</span>'
+        yield f'<span class="hll">{len(lines)} {"lines" if len(lines) > 1 else "line"} changed</span>{where}'
 
 
 def _pictures(output: nodes.container, alts: list[str], stills: list[str]) -> None:
@@ -361,6 +408,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
     """Register everything with Sphinx, which calls this function."""
     app.add_config_value("spinbook_terms", [], "env")
     app.add_lexer("ros-log", LogLexer)
+    app.add_lexer("bash", CommandLexer)
     app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))
     app.add_transform(DescribeCells)
     app.add_transform(LinkTerms)

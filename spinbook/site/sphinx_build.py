@@ -53,7 +53,7 @@ def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], 
     # Without this file, GitHub Pages leaves out folders that begin with an underscore.
     published[Path(".nojekyll")] = b""
     for relative, data in published.items():
-        write_if_changed(site / relative, data)
+        write_if_changed(site / relative, _bare(data) if relative.parent.name == "_static" else data)
     _remove_others(site, set(published))
     return len(published)
 
@@ -66,6 +66,14 @@ _OWN_FILE = re.compile(rb'(_static/(?:%s))"' % b"|".join(re.escape(name.encode()
 def _stamped(page: bytes, version: str) -> bytes:
     """Return a page that loads our scripts and styles by addresses with this version: no cache gives it older ones."""
     return _OWN_FILE.sub(rb"\1?v=" + version.encode() + b'"', page)
+
+
+_COMMENTS = re.compile(rb"^[ \t]*(?://[^\n]*\n|/\*.*?\*/\n)?", re.MULTILINE | re.DOTALL)
+
+
+def _bare(code: bytes) -> bytes:
+    """Return a script or a style sheet without indentation and without comments that have their own lines."""
+    return _COMMENTS.sub(b"", code)
 
 
 def _for_offline(published: Mapping[Path, bytes]) -> bytes:

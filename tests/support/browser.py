@@ -91,6 +91,12 @@ def write_code(place: Locator, text: str) -> None:
     place.page.keyboard.insert_text(text)
 
 
+def choose(block: Locator, item: str) -> None:
+    """Open the menu in the head of a block, and press what it calls `item`."""
+    block.locator(".more > summary").click()
+    block.locator(".places").get_by_text(item, exact=True).click()
+
+
 def _url(where: Path | str) -> str:
     return where.resolve().as_uri() if isinstance(where, Path) else where
 

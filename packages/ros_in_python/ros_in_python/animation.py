@@ -51,15 +51,18 @@ def coord(value: float, digits: int = 1) -> str:
 
 
 FONT = "system-ui,-apple-system,'Segoe UI',Roboto,'DejaVu Sans',sans-serif"
+#: As on the pages of a course: text and paper, and in the dark the parts that would be glaring.
 _COLOURS = (
-    "<style>.{key}i{{fill:#24292f}}.{key}p{{fill:#fff}}"
-    "@media(prefers-color-scheme:dark){{.{key}i{{fill:#e6edf3}}.{key}p{{fill:#161b22}}}}</style>"
+    "<style>.{key}i{{fill:#16211f}}.{key}p{{fill:#fff}}"
+    "@media(prefers-color-scheme:dark){{.{key}i{{fill:#e6eeec}}.{key}p{{fill:#101817}}.{key}b{{opacity:.6}}}}</style>"
 )
 
 
 def on_paper(content: str, width: int, height: int, key: str, title: str, words: str) -> str:
-    """Return an SVG document, `width` by `height` px. Elements with the class `key` + "i" have the text colour; `words`
-    describe the picture."""
+    """Return an SVG document, `width` by `height` px. `words` describe the picture.
+
+    Elements with the class `key` + "i" have the text colour, those with `key` + "b" are dimmed in the dark.
+    """
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" '
         f'role="img" aria-labelledby="{key}t {key}d" font-family="{FONT}">'

@@ -36,7 +36,8 @@ class Cell {
 
   // Show the reader's draft, if there is one, and follow it.
   edit() {
-    this.edits = new Edits(this.editor, this.key, this.name, this.node.querySelector(".cell-links"), this.head);
+    this.edits = new Edits(this.editor, this.key, this.name, this.node.querySelector(".places"), this.head);
+    this.node.querySelector(".cell-links").prepend(this.edits.badge);
     this.edits.onrestore = () => this.#showRecorded();
     // What is saved is what is shown.
     this.node.querySelector(".cell-download")?.addEventListener("click", (event) => {

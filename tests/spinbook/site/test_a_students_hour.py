@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from browser import Opened, code_in, opened, write_code
+from browser import Opened, choose, code_in, opened, write_code
 from playwright.sync_api import Browser, Page, expect
 from small_course import ROOT, served
 
@@ -95,7 +95,7 @@ def the_chapter(shown: Opened) -> None:
     page.reload()
     press(page, "Run left_toe.py")
     says(page, "left_toe", "AttributeError")
-    press(page, "Reset left_toe")
+    choose(page.locator(".cell-node").first, "Reset")
     expect(page.locator(".cell-node").first.locator(".cell_output")).to_be_visible()
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from browser import Opened, code_in, open_editor, opened, write_code
+from browser import Opened, choose, code_in, open_editor, opened, write_code
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from spinbook.browser.files import can_run
@@ -57,22 +57,22 @@ def test_an_edit_is_shown_after_a_reload_with_what_differs(shown: Opened) -> Non
     page.reload()
     expect(cell.locator(".edited")).to_have_text("edited")
     expect(cell.get_by_role("textbox")).to_contain_text("edited {self.count}")
-    page.get_by_role("button", name="Changes in talker").click()
+    choose(page.locator(".cell-node"), "Changes")
     lines = cell.get_by_role("group", name="Lines that differ")
     assert [line[0] for line in lines.inner_text().splitlines() if line[:1] in ("+", "-")] == ["-", "+"]
     assert shown.violations() == []
     with page.expect_download() as download:
-        page.get_by_role("link", name="Download talker.py").click()
+        choose(page.locator(".cell-node"), "Download talker.py")
     assert "edited {self.count}" in Path(download.value.path()).read_text()
 
-    page.get_by_role("button", name="Reset talker").click()
+    choose(page.locator(".cell-node"), "Reset")
     expect(cell.locator(".edited")).to_be_hidden()
     assert "edited" not in code(page)
     page.get_by_role("button", name="Undo the change of talker").click()
     assert "edited" in code(page)
-    page.get_by_role("button", name="Reset talker").click()
+    choose(page.locator(".cell-node"), "Reset")
     page.reload()
-    page.get_by_role("button", name="Changes in talker").click()
+    choose(page.locator(".cell-node"), "Changes")
     cell.get_by_role("combobox").select_option(index=1)
     page.get_by_role("button", name="Use that version of talker").click()
     assert "edited" in code(page)
@@ -93,7 +93,7 @@ def test_a_course_that_has_changed_under_a_draft_says_so_and_keeps_both(shown: O
     expect(cell).to_contain_text("The course has a new version of this code.")
     assert "edited" in code(page)
     expect(page.locator(".homeless")).to_contain_text("no longer has a cell that you have edited (talker-gone)")
-    page.get_by_role("button", name="Changes in talker").click()
+    choose(page.locator(".cell-node"), "Changes")
     cell.get_by_role("combobox").select_option(label="the course's earlier code")
     assert "edited" in cell.locator(".diff-new").inner_text()
     page.get_by_role("button", name="Use the course's new talker").click()
@@ -132,7 +132,7 @@ def test_two_tabs_never_overwrite_each_other_in_silence(shown: Opened) -> None:
         page.evaluate("([key, text]) => localStorage.setItem(key, text)", [key, json.dumps(stored)])
         cell = write(page, "first tab", "again")
         expect(cell).to_contain_text("Another tab had changed this code, too")
-        page.get_by_role("button", name="Changes in talker").click()
+        choose(page.locator(".cell-node"), "Changes")
         expect(cell.get_by_role("combobox")).to_contain_text("from another tab")
     finally:
         other.close()

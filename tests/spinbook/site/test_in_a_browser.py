@@ -5,12 +5,14 @@ from __future__ import annotations
 import gzip
 import io
 import json
+import re
+import shutil
 import statistics
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from browser import Opened, opened
+from browser import Opened, choose, opened
 from PIL import Image
 from playwright.sync_api import Browser, Locator, expect
 from small_course import SmallCourse
@@ -84,16 +86,15 @@ def test_the_search_answers_while_one_types_and_forgives(
         assert shown.faults == []
 
 
-def test_a_chapter_tells_how_far_one_has_read_and_leads_back(browser: Browser, address: str) -> None:
+def test_a_chapter_tells_how_far_one_has_read_and_its_end_leads_back(browser: Browser, address: str) -> None:
     with opened(browser, f"{address}/chapters/01-talk.html", height=300) as shown:
         bar, back = shown.page.locator("progress.reading"), shown.page.get_by_role("link", name="Back to top")
-        expect(back).to_be_hidden()
         assert bar.evaluate("bar => bar.value") == 0
+        expect(back).not_to_be_in_viewport()
         shown.page.evaluate("scrollTo(0, document.documentElement.scrollHeight)")
-        expect(back).to_be_visible()
         shown.page.wait_for_function("document.querySelector('progress.reading').value > 990")
         back.click()
-        expect(back).to_be_hidden()
+        expect(back).not_to_be_in_viewport()
 
 
 def test_the_switch_changes_colours_and_they_stay(browser: Browser, address: str) -> None:
@@ -176,17 +177,90 @@ def test_a_chapter_is_below_a_megabyte_over_the_wire(browser: Browser, built: Sm
     assert sum(len(gzip.compress(file.read_bytes())) for file in files) < 1_000_000
 
 
-def test_what_moves_stands_still_on_paper_and_for_those_who_prefer_no_motion(
-    browser: Browser, course: SmallCourse
-) -> None:
+#: A node with the talker's main(), a command and a line of code that are longer than a window, and housekeeping.
+LONGER = f"""
+```python title="listener.py"
+class Listener(Node):
+    TOPICS = [{", ".join(f"'/topic_{number}'" for number in range(20))}]
+MAIN```
+
+```bash
+ros2 topic pub --rate 2 /joint_commands sensor_msgs/msg/JointState "{{name: [left_elbow], position: [{"0.5, " * 30}]}}"
+```
+
+```python
+%stop --all
+```
+"""
+
+
+@pytest.fixture(scope="module")
+def changed(built: SmallCourse, tmp_path_factory: pytest.TempPathFactory) -> SmallCourse:
+    """A course with more blocks, which were not run, and a picture that moves."""
+    root = tmp_path_factory.mktemp("changed") / "course"
+    shutil.copytree(built.root, root)
+    course = SmallCourse(root)
+    chapter = root / "chapters" / "01-talk.md"
+    main = re.search(r"\n\ndef main.*?(?=```)", chapter.read_text(), re.DOTALL)
+    assert main
+    chapter.write_text(chapter.read_text() + LONGER.replace("MAIN", main.group().replace("Talker", "Listener")))
     executed = course.root / "build" / "executed" / "01-talk.ipynb"
     notebook = json.loads(executed.read_text())
     (picture,) = (o for c in notebook["cells"] for o in c.get("outputs", []) if "image/png" in o.get("data", {}))
     picture["data"]["image/svg+xml"] = '<svg xmlns="http://www.w3.org/2000/svg" width="42" height="24"></svg>'
     executed.write_text(json.dumps(notebook))
     assert course.spinbook_site("--no-run").returncode == 0
+    return course
 
-    with opened(browser, course.site / "chapters" / "01-talk.html") as shown:
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_a_head_is_one_row_and_housekeeping_one_line(browser: Browser, changed: SmallCourse, width: int) -> None:
+    with opened(browser, changed.site / "chapters" / "01-talk.html", width=width) as shown:
+        height = "all => all.map(one => one.getBoundingClientRect().height)"
+        heads = shown.page.locator(".cell-head").evaluate_all(height)
+        assert len(heads) == 6
+        assert max(heads) <= 46
+        assert shown.page.locator(".cell-strip").evaluate_all(height) == [pytest.approx(43, abs=4)]
+        assert shown.page.get_by_role("button", name=re.compile("^Run ")).count() == 6
+        choose(shown.page.locator(".cell-node").first, "Download talker.py")
+        expect(shown.page.locator(".more[open]")).to_have_count(0)
+
+
+def test_a_main_as_before_opens_and_is_whole_in_print_and_without_scripts(
+    browser: Browser, changed: SmallCourse
+) -> None:
+    with opened(browser, changed.site / "chapters" / "01-talk.html") as shown:
+        main = shown.page.locator(".as-before")
+        button = shown.page.get_by_role("button", name="main() as before")
+        expect(main).to_be_hidden()
+        expect(shown.page.locator(".cell-node .cell_input").nth(1)).to_contain_text("rclpy.spin(node)")
+        button.press("Enter")
+        expect(main).to_be_visible()
+        button.click()
+        expect(main).to_be_hidden()
+        shown.page.emulate_media(media="print")
+        expect(main).to_be_visible()
+        expect(button).to_be_hidden()
+        shown.page.emulate_media(media="screen")
+        shown.page.evaluate("document.documentElement.classList.remove('js')")
+        expect(main).to_be_visible()
+        expect(button).to_be_hidden()
+
+
+def test_a_command_wraps_and_code_shows_that_it_scrolls(browser: Browser, changed: SmallCourse) -> None:
+    with opened(browser, changed.site / "chapters" / "01-talk.html") as shown:
+        cut = "pre => pre.scrollWidth > pre.clientWidth"
+        assert not shown.page.locator(".cell-shell pre").evaluate(cut)
+        code = shown.page.get_by_role("group", name="Code, scrolls sideways").last
+        assert code.evaluate(cut)
+        left, right = edges(code)
+        assert right < left - 20
+
+
+def test_what_moves_stands_still_on_paper_and_for_those_who_prefer_no_motion(
+    browser: Browser, changed: SmallCourse
+) -> None:
+    with opened(browser, changed.site / "chapters" / "01-talk.html") as shown:
         moving, still = shown.page.locator("main img.moving"), shown.page.locator("main img.still")
         expect(moving).to_be_visible()
         expect(still).to_be_hidden()

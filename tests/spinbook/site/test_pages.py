@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from pathlib import Path
 from urllib.parse import unquote, urldefrag
 
@@ -17,9 +18,13 @@ from latex2mathml.converter import convert
 from small_course import ROOT, SmallCourse
 
 from spinbook.browser.files import pyodide_files, pyodide_folder
-from spinbook.site.extension import spaced
+from spinbook.chapter.chapter import ChapterCell
+from spinbook.chapter.classify import CellKind
+from spinbook.site.command_lexer import CommandLexer
+from spinbook.site.extension import fold_mains, spaced
 from spinbook.site.page import Repository
 from spinbook.site.prose import Links, rich
+from spinbook.site.repetition import Repetition, repetitions
 
 TALK = "chapters/01-talk.html"
 EXERCISE = "exercises/joint_velocity.html"
@@ -103,9 +108,7 @@ def test_an_exercise_has_task_interface_starter_and_points(built: SmallCourse) -
     assert "100 points" in page
     assert re.search(r"publishes on /joint_velocities sensor_msgs/msg/JointState keep last 10.*velocity in rad/s", page)
     assert "It publishes one message for each message after the first." in page
-    assert "sensor_msgs/<wbr>msg/<wbr>JointState</span></code>" in built.page(EXERCISE), (
-        "a long type may break in a table"
-    )
+    assert "sensor_msgs/<wbr>msg/<wbr>JointState</code>" in built.page(EXERCISE), "a long type may break in a table"
     starter = (built.site / "downloads" / "joint_velocity.py").read_text()
     assert "SOLUTION" not in starter
     ast.parse(starter)
@@ -255,8 +258,43 @@ def test_other_programs_learn_where_the_pages_are_and_what_they_are_about(built:
 def test_a_page_can_be_edited_and_a_cell_names_its_source(built: SmallCourse) -> None:
     page = built.page(TALK)
     assert 'href="https://github.com/example/course/edit/main/chapters/01-talk.md">Edit this page</a>' in page
-    assert re.search(r'aria-label="Source of talker\.py, line \d+">source</a>', page)
+    assert re.search(r'aria-label="More about talker\.py">…</summary>.*>Source, line \d+</a>', page)
     assert "About 1 minute to read" in page
+
+
+def test_a_marked_line_ends_before_a_folded_main() -> None:
+    code = '<span></span>a\n<span class="hll">b\n</span>\ndef main():\n'
+    page = f'<div class="main-from-2 highlight-python"><div class="highlight"><pre>{code}</pre></div></div>'
+    marked = '<span class="hll">b</span>\n<span class="as-before">\ndef main():\n</span></pre><button class="unfold"'
+    assert marked in fold_mains(page)
+
+
+def test_the_lines_of_a_program_that_its_earlier_version_did_not_have_are_known() -> None:
+    first = ChapterCell(CellKind.NODE, "a", f"class A(Node):\n    x = 1\n{MAIN.format('A')}", 1, "a")
+    newer = replace(first, id="a-2", source=first.source.replace("x = 1", "x = 2"))
+    other = replace(first, id="b", source=first.source.replace("A", "B"), name="b")
+    own = replace(other, id="c", source=other.source.replace("spin", "spin_once"), name="c")
+    tidies = ChapterCell(CellKind.SHELL, "d", "cd ws\ncolcon build\n", 1)
+    shows = replace(tidies, id="e", source="colcon build\nros2 run a a")
+    assert repetitions([first, newer, other, own, tidies, shows]) == {
+        "a": Repetition(),
+        "a-2": Repetition(main_from=2, changed=(2,)),
+        "b": Repetition(main_from=2),
+        "c": Repetition(),
+        "d": Repetition(housekeeping=True),
+        "e": Repetition(),
+    }
+
+
+MAIN = "\n\ndef main():\n    rclpy.spin({}())\n"
+
+
+def test_words_of_a_command_are_coloured_by_what_they_mean() -> None:
+    line = "ros2 topic pub --rate 2 /arm std_msgs/msg/Float64 '{data: 1}'\n"
+    coloured = {value: str(kind).removeprefix("Token.") for kind, value in CommandLexer().get_tokens(line)}
+    meanings = {"ros2": "Keyword", "pub": "Keyword", "--rate": "Name.Attribute", "2": "Literal.Number"}
+    meanings |= {"/arm": "Name.Variable", "std_msgs/msg/Float64": "Name.Class", "'{data: 1}'": "Literal.String.Single"}
+    assert meanings.items() <= coloured.items()
 
 
 def test_a_drawing_is_the_site_s_own_file_and_no_link_into_the_repository() -> None:

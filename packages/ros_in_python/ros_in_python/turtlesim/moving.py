@@ -18,6 +18,8 @@ from ros_in_python.turtlesim.world_svg import BOTTOM, LEFT, RIGHT, TOP, axes, gr
 
 #: A wait of all turtles that is longer is shown as this long (s).
 LONGEST_WAIT_S = 0.6
+#: The world's colour is loud: it is on a quiet panel.
+PANEL = "<style>.{key}p{{fill:#f4f7f6}}@media(prefers-color-scheme:dark){{.{key}p{{fill:#17211f}}}}</style>"
 #: A longer animation (s) is shown faster, so that it takes no longer than this.
 LONGEST_S = 30.0
 
@@ -95,7 +97,7 @@ def moving_svg(world: WorldPicture) -> str | None:
     key = "t" + hashlib.sha256(world.to_json().encode()).hexdigest()[:8]
     cycle = Cycle(key, times.seconds)
     trails = [(track.turtle, list(run)) for track in tracks for run in _drawn(track.samples)]
-    rules, content = [], [ground(world)]
+    rules, content = [], [ground(world, key)]
     if not all(track.whole for track in tracks):
         content += [path(list(stroke.points), stroke.color, stroke.width, "", world.size) for stroke in world.trails]
     for index, (_, samples) in enumerate(sorted(trails, key=lambda trail: trail[1][0].tick)):
@@ -111,7 +113,7 @@ def moving_svg(world: WorldPicture) -> str | None:
             rules.append(cycle.keyframes(f"m{coat}", _driving(track.samples, times, world.size)))
     side = round(world.size * PIXELS_PER_UNIT)
     frame = f'<svg x="{LEFT}" y="{TOP}" width="{side}" height="{side}">{"".join(content)}</svg>'
-    whole = cycle.style(*rules) + axes(world, key) + frame
+    whole = PANEL.format(key=key) + cycle.style(*rules) + axes(world, key) + frame
     title = "The turtle's way" if len(world.turtles) == 1 else "The turtles' ways"
     words = _words(world, times, error)
     return on_paper(whole, LEFT + side + RIGHT, TOP + side + BOTTOM, key, title, words)

@@ -26,13 +26,14 @@ LINE = "#16301f"
 
 
 def still_svg(world: WorldPicture, key: str) -> str:
-    """Return the world as it is now: an SVG element for a page that gives the class `key` + "i" the colour of text."""
+    """Return the world as it is now: an SVG element for a page that gives the class `key` + "i" the colour of text,
+    and dims `key` + "b" in the dark."""
     side = round(world.size * PIXELS_PER_UNIT)
     trails = "".join(path(stroke.points, stroke.color, stroke.width, "", world.size) for stroke in world.trails)
     turtles = "".join(turtle_mark(turtle, coat, "", world.size) for coat, turtle in enumerate(world.turtles))
     return (
         f'<svg viewBox="0 0 {LEFT + side + RIGHT} {TOP + side + BOTTOM}">{axes(world, key)}'
-        f'<svg x="{LEFT}" y="{TOP}" width="{side}" height="{side}">{ground(world)}{trails}{turtles}</svg></svg>'
+        f'<svg x="{LEFT}" y="{TOP}" width="{side}" height="{side}">{ground(world, key)}{trails}{turtles}</svg></svg>'
     )
 
 
@@ -74,13 +75,14 @@ def turtle_mark(turtle: TurtlePicture, coat: int, name: str, size: float) -> str
     )
 
 
-def ground(world: WorldPicture) -> str:
+def ground(world: WorldPicture, key: str) -> str:
     side = round(world.size * PIXELS_PER_UNIT)
     lines = "".join(
         f"M0 {coord(side - n * PIXELS_PER_UNIT)}H{side}M{coord(n * PIXELS_PER_UNIT)} 0V{side}" for n in _marks(world)
     )
-    ground = "#{:02x}{:02x}{:02x}".format(*world.background)
-    return f'<path d="M0 0H{side}V{side}H0z" fill="{ground}"/><path d="{lines}" stroke="#fff" stroke-opacity=".13"/>'
+    fill = "#{:02x}{:02x}{:02x}".format(*world.background)
+    square = f'<path class="{key}b" d="M0 0H{side}V{side}H0z" fill="{fill}"/>'
+    return f'{square}<path d="{lines}" stroke="#fff" stroke-opacity=".13"/>'
 
 
 def _marks(world: WorldPicture) -> range:

@@ -34,17 +34,18 @@
     return button;
   }
 
+  const sectionOf = (cell) => cell?.closest("section:has(> h2)");
   for (const [index, cell] of places.entries()) {
     const name = cell.querySelector(".cell-file")?.textContent ?? `cell ${index + 1}`;
-    const links = cell.querySelector(".cell-links");
-    if (index > 0) {
-      add(links, "page.js", "Run all above", `Run all above ${name}`, async (page, button) => {
+    // Once in each section.
+    if (index > 0 && sectionOf(cell) !== sectionOf(places[index - 1])) {
+      add(cell.querySelector(".places"), "page.js", "Run all above", `Run all above ${name}`, async (page, button) => {
         button.disabled = true;
         await page.runAbove(cell);
         button.disabled = false;
       });
     }
-    add(links, "page.js", "Run", `Run ${name}`, (page) => page.run(cell));
+    add(cell.querySelector(".cell-links"), "page.js", "Run", `Run ${name}`, (page) => page.run(cell)).classList.add("play");
     // A click into the code edits it. Who selects some of it wants to copy.
     const edit = ({ clientX: x, clientY: y }) => getSelection().isCollapsed && load("page.js").then((page) => page.edit(cell, { x, y }), () => {});
     cell.querySelector(".cell_input pre, .highlight pre")?.addEventListener("click", edit);

@@ -21,6 +21,13 @@ function colours() {
   });
 }
 
+const MENU = "details:is(.run, .more)[open]";
+
+function leave(menu) {
+  menu.open = false;
+  menu.querySelector("summary").focus({ preventScroll: true });
+}
+
 function menu() {
   const button = document.querySelector(".menu-button");
   const open = (yes) => {
@@ -34,16 +41,21 @@ function menu() {
       open(false);
       button.focus();
     }
-    for (const places of document.querySelectorAll("details.run[open]")) {
-      places.open = false;
-      places.querySelector("summary").focus();
+    for (const menu of document.querySelectorAll(MENU)) leave(menu);
+  });
+  document.addEventListener("click", ({ target }) => {
+    for (const menu of document.querySelectorAll(MENU)) {
+      if (!menu.contains(target)) menu.open = false;
+      else if (target.closest(".places :is(a, button)")) leave(menu);
     }
   });
-  document.addEventListener("click", (event) => {
-    for (const places of document.querySelectorAll("details.run[open]")) {
-      if (!places.contains(event.target)) places.open = false;
-    }
-  });
+}
+
+// Show, or fold, a program's main() that is as before.
+function unfolding() {
+  for (const button of document.querySelectorAll(".unfold")) {
+    button.addEventListener("click", () => button.setAttribute("aria-expanded", button.getAttribute("aria-expanded") === "false"));
+  }
 }
 
 async function toClipboard(text) {
@@ -101,7 +113,7 @@ function scrolling() {
     }
   };
   const observer = new ResizeObserver(update);
-  for (const place of document.querySelectorAll("main pre, .table, figure.drawing, .math")) observer.observe(place);
+  for (const place of document.querySelectorAll("main pre, .table, figure.drawing, .math, .pausable")) observer.observe(place);
 }
 
 // Mark the current section in the list next to the text.
@@ -200,29 +212,30 @@ function pausing() {
   for (const picture of document.querySelectorAll("main img.moving")) {
     const still = picture.parentElement.querySelector("img.still");
     if (!still) continue;
+    const frame = document.createElement("span");
+    frame.className = "pausable";
+    picture.before(frame);
     const button = document.createElement("button");
     button.type = "button";
     button.className = "pause";
     button.textContent = "Pause";
     button.setAttribute("aria-label", "Pause this picture");
     button.addEventListener("click", () => {
-      const paused = picture.parentElement.classList.toggle("paused");
+      const paused = frame.classList.toggle("paused");
       button.textContent = paused ? "Play" : "Pause";
       button.setAttribute("aria-label", paused ? "Play this picture" : "Pause this picture");
     });
-    still.after(button);
+    frame.append(picture, still, button);
   }
 }
 
-// Show how far the reader has scrolled, and a link back to the top.
+// Show how far the reader has scrolled.
 function progress() {
   const bar = document.querySelector("progress.reading");
-  const back = document.querySelector(".to-top");
   if (!bar) return;
   const show = () => {
     const length = root.scrollHeight - innerHeight;
     bar.value = length > 0 ? Math.round((1000 * scrollY) / length) : 1000;
-    back.hidden = scrollY < 1.5 * innerHeight;
   };
   addEventListener("scroll", show, { passive: true });
   addEventListener("resize", show);
@@ -230,6 +243,7 @@ function progress() {
 }
 
 colours();
+unfolding();
 searching();
 pausing();
 robots();
