@@ -18,6 +18,7 @@ ARM = """<?xml version="1.0"?>
   <joint name='elbow' type="revolute">
     <parent link="upper_arm"/>
     <child link="forearm"/>
+    <origin xyz="0 0 -0.3"/>
   </joint>
 </robot>
 """

@@ -28,6 +28,8 @@ _ROS = ("rclpy", "rpyutils", "rosidl_parser", "rosidl_generator_py", "ament_inde
 _CHECKS = ("pytest", "_pytest", "py", "pluggy", "iniconfig", "packaging", "pygments", "jinja2", "markupsafe")
 #: The lexers of Pygments that pytest needs, out of hundreds.
 _LEXERS = ("__init__.py", "_mapping.py", "python.py", "diff.py")
+#: Of ROS in Python, what needs numpy, or libraries that a page does not have: an import says so (process.py).
+_WITHOUT_A_PAGE = ("cv_bridge", "rosbag2_py", "tf_transformations")
 _SPINBOOK = (
     "__init__.py",
     "problem.py",
@@ -62,8 +64,10 @@ def ros_archive() -> bytes:
     # The original module also imports code that looks for compiled libraries, which a page does not have.
     files["rosidl_generator_py/__init__.py"] = b"from .import_type_support_impl import import_type_support\n"
     files |= dict(_python_files(Path(rcl_python.__file__).parent, "rcl_python"))
-    for name, data in _python_files(Path(ros_in_python.__file__).parent, "ros_in_python"):
-        files[name.removeprefix("ros_in_python/importable/")] = data  # tf2 and its kin by their own names
+    for path, data in _python_files(Path(ros_in_python.__file__).parent, "ros_in_python"):
+        name = path.removeprefix("ros_in_python/importable/")  # tf2 and its kin by their own names
+        if name.partition("/")[0] not in _WITHOUT_A_PAGE:
+            files[name] = data
     files |= dict(_python_files(Path(interface_compiler.__file__).parent, "interface_compiler"))  # `ros2` reads with it
     files["rmw_lockstep/type_hashes.json"] = json.dumps(_type_hashes(), sort_keys=True).encode()
     middleware = Path(rmw_lockstep.__file__).parent

@@ -24,7 +24,7 @@ from spinbook.chapter.values_in_commands import wrong_values
 
 #: Commands that fail if the name they are given does not exist: noun -> verbs.
 _ASKING = {
-    "topic": {"echo", "info", "type"},
+    "topic": {"echo", "info", "type", "hz", "bw", "delay"},
     "service": {"call", "type", "info"},
     "node": {"info"},
     "action": {"info", "send_goal"},

@@ -21,6 +21,7 @@ from grader.report.plot import figure
 from grader.scenario.command_line import arguments
 from grader.scenario.scenario import SECOND, Scenario
 from groundwork.clean_environment import module_command
+from ros_in_python.robot import drawing, still, urdf
 from spinbook.kernel.check_cell import exercise_of, notebook_file
 from spinbook.kernel.environment import EXECUTING
 from spinbook.kernel.plot.picture import as_png
@@ -99,10 +100,13 @@ class TriedPicture:
                 self._show(from_json(self.record.read_text(encoding="utf-8"))[self.scenario.name])
 
     def _show(self, recording: Recording) -> None:
-        drawn, words = self._timeline(recording) if recording.calls or recording.goals else self._curves(recording)
-        if drawn is None:
-            return
-        bundle = {"image/png": as_png(drawn), "text/plain": words}
+        png, words = robot_of(recording)
+        if png is None:
+            drawn, words = self._timeline(recording) if recording.calls or recording.goals else self._curves(recording)
+            if drawn is None:
+                return
+            png = as_png(drawn)
+        bundle = {"image/png": png, "text/plain": words}
         if self.handle is None:
             self.handle = display(bundle, raw=True, metadata={"image/png": {"alt": words}}, display_id=True)
         else:
@@ -122,6 +126,16 @@ class TriedPicture:
         if not any(lane.marks for lane in drawn):
             return None, ""
         return still_timeline(drawn, self.exercise.title), in_words(drawn, span_of(drawn)[0])
+
+
+def robot_of(recording: Recording) -> tuple[bytes | None, str]:
+    """Return the robot that a node published last as URDF, as a PNG and in words; (None, "") if it published none."""
+    texts = [item.fields["data"] for item in recording.received if item.topic.endswith("/robot_description")]
+    for text in reversed(texts):
+        with contextlib.suppress(urdf.InvalidUrdf):
+            robot = urdf.read(str(text))
+            return still.as_png(robot, {}), drawing.in_words(robot, {})
+    return None, ""
 
 
 def events_of(recording: Recording) -> RecordedEvents:

@@ -29,7 +29,7 @@ _NO_NUMPY = "This program imports {name}, which a web page does not have. It run
 _NO_MEMORY = "This program needs more memory than a web page has. It runs in a notebook."
 _NO_PROCESSES = "This program starts another one, which a web page can't. It runs in a notebook."
 _NO_INPUT = "This program asks for input, and a web page has no terminal to type in. Use a parameter, or the notebook."
-_ABSENT = ("numpy", "matplotlib", "scipy", "cv2", "pandas")
+_ABSENT = ("numpy", "matplotlib", "scipy", "cv2", "pandas", "cv_bridge", "rosbag2_py", "tf_transformations")
 
 
 def prepare() -> None:

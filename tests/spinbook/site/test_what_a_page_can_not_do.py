@@ -79,6 +79,7 @@ SENTENCES = {
     "from concurrent.futures import ThreadPoolExecutor\nThreadPoolExecutor().submit(lambda: 6 * 7).result()": "42",
     "import numpy as np\nnp.linspace(0, 1)": "a web page does not have numpy",
     "import matplotlib.pyplot": "This program imports matplotlib, which a web page does not have.",
+    "from cv_bridge import CvBridge": "This program imports cv_bridge, which a web page does not have.",
     "import subprocess\nsubprocess.run(['ls'])": "This program starts another one, which a web page can't.",
     "input('How far? ')": "a web page has no terminal to type in",
     "raise MemoryError": "This program needs more memory than a web page has.",

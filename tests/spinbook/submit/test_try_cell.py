@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 from notebook_kernel import Kernel
 
+from grader.recording.recording import Ending, ReceivedMessage, Recording
+from spinbook.kernel.try_cell import robot_of
 from submit.conftest import node_cell, solution
 
 
@@ -20,6 +22,20 @@ def test_an_unknown_scenario_lists_those_that_there_are(kernel: Kernel) -> None:
     error = kernel.run("%try joint_velocity late").error
 
     assert error == "joint_velocity has no scenario `late`. There are: chapter, irregular."
+
+
+def test_a_robot_that_the_node_describes_is_drawn() -> None:
+    texts = ['<robot name="arm"><link name="hand"/></robot>', "no robot"]
+    received = [
+        ReceivedMessage(0, 0, "/robot_description", "std_msgs/msg/String", {"data": text}, node="/arm")
+        for text in texts
+    ]
+
+    png, words = robot_of(Recording("late", (), tuple(received), (), (), False, Ending("completed")))
+
+    assert png is not None
+    assert png.startswith(b"\x89PNG")
+    assert words == "The robot arm: no joint has moved."
 
 
 @pytest.mark.soak  # in real time: on a busy machine, the scenario is over before Stop arrives
