@@ -30,7 +30,7 @@ def must_ask_in_time(run: Run, within: float, seconds: dict[str, float]) -> None
     "timer fires every 0.1 s.",
     depends=ASKS,
     misconception="waits for the service",
-    rule=("never_stop", "never_wait"),
+    rule=("never_stop", "never_wait", "count_topic"),
 )
 def test_never_silent(absent: Run, never: Run) -> None:
     """/calibrations_pending continues when the service is not there, and when it never answers."""
@@ -90,7 +90,7 @@ def test_offset_of_zero(again: Run) -> None:
     "`joint` of a loop reads it later, when it has another value: write `lambda future, joint=joint: …`.",
     depends=["test_publishes_the_name"],
     misconception="mixes joints up",
-    rule=("order", "success"),
+    rule=("order", "success", "offsets"),
 )
 def test_answers_in_another_order(several: Run) -> None:
     """Each offset is published with the name of its own joint, whatever the order of the answers."""

@@ -49,7 +49,7 @@ def test_repeated_and_zero_targets(again: Run) -> None:
     "publish rejected, note that no goal is under way, and send the next target, as after any other end.",
     depends=SENDS,
     misconception="ignores accepted",
-    rule=("outcome", "never_wait"),
+    rule=("outcome", "never_wait", "outcomes_topic"),
 )
 def test_rejected(rejects: Run) -> None:
     """When the server rejects a goal, it publishes rejected, and continues with the next."""
@@ -67,7 +67,7 @@ def test_rejected(rejects: Run) -> None:
     "again.",
     depends=OUTCOME,
     misconception="ignores the status",
-    rule="status",
+    rule=("status", "outcomes_topic"),
 )
 def test_aborted(aborts: Run) -> None:
     """When the server aborts a goal, it publishes aborted, and continues with the next."""

@@ -41,10 +41,11 @@ def changes_between(run: Run, begin: float, end: float, value: bool) -> list[int
     "variable, and is forgotten when the callback ends.",
     depends=RESPONDS,
     misconception="ignores the emergency stop",
-    rule="emergency",
+    rule=("emergency", "stop"),
 )
 def test_refuses_in_an_emergency(emergency: Run) -> None:
     """In an emergency it refuses to switch the motors on."""
+    emergency.must_have_interface("/emergency_stop")
     later = lambda call: call.request["data"] and seconds(call.at) > 1.0  # noqa: E731
     must_succeed(emergency, False, later, "the emergency stop is pressed")
 
@@ -56,7 +57,7 @@ def test_refuses_in_an_emergency(emergency: Run) -> None:
     "switch and publish. If your node switches first and looks at the emergency afterwards, it says no "
     "and does it all the same, and everybody sees true on /motors_on.",
     depends=RESPONDS,
-    rule="emergency",
+    rule=("emergency", "stop"),
 )
 def test_motors_stay_off_in_an_emergency(emergency: Run) -> None:
     """In an emergency the motors do not go on."""
@@ -120,10 +121,11 @@ def test_says_off_in_an_emergency(emergency: Run) -> None:
     "it in this callback. A timer or a thread that looks at the attribute is too late.",
     depends=RESPONDS,
     misconception="the emergency stop changes nothing",
-    rule=("pressed", "changes"),
+    rule=("pressed", "changes", "stop", "motors"),
 )
 def test_emergency_switches_off(emergency: Run) -> None:
     """The emergency stop switches the motors off at once."""
+    emergency.must_have_interface("/emergency_stop", MOTORS)
     if not changes_between(emergency, 1.0, 1.0601, False):
         text = "the emergency stop is pressed while the motors are on: expected false, got nothing."
         emergency.wrong_at(101_000_000_000, text, "", "false", "nothing")

@@ -25,7 +25,8 @@ ARM = """<?xml version="1.0"?>
 LEG = '<robot name="leg"><link name="shin"/></robot>'
 CALF = f"{LEG}\n"  # the same but for a line break
 CENTIPEDE = "".join(("<robot>", *(f'<link name="leg_{n}"/>' for n in range(500)), "</robot>"))
-BAD = ("", "robot", "<robot", '<robot name="leg">', "<robots/>", "<ROBOT/>", "<model><robot/></model>")
+NOT_XML = ("", "robot", "<robot", '<robot name="leg">')
+ANOTHER_ROOT = ("<robots/>", "<my_robot/>", "<ROBOT/>", "<urdf/>", "<model><robot/></model>")
 
 
 def late(*seconds: float) -> tuple[Content, ...]:
@@ -43,7 +44,7 @@ def written(text: object, *seconds: float) -> tuple[Content, ...]:
 def scenarios(seed: int) -> tuple[Scenario, ...]:
     """Every scenario. The first one must be passed by any node that works at all."""
     read = at(2.3).get_parameter(PARAMETER)
-    refused = tuple(written(text, 0.5 + n / 5) for n, text in enumerate(BAD))
+    refused = tuple(written(text, 0.5 + n / 6) for n, text in enumerate(NOT_XML + ANOTHER_ROOT))
     scripts = {
         "late": ("somebody subscribes late", (late(1.0, 2.0),), {}),
         "started": ("started with another description", (late(1.0), read), {PARAMETER: ARM}),

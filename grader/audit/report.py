@@ -74,12 +74,12 @@ def _rules(audit: Audit) -> Table:
     for rule in audit.rules:
         for row in _rows(rule, rule.id):
             table.add_row(*row)
-    table.caption = f"* {_UNJUDGED}"
+    table.caption = f"* {_COSTS_MORE}"
     table.caption_justify = "left"
     return table
 
 
-_UNJUDGED = "its program ends by itself, or does not have what every other check needs"
+_COSTS_MORE = "more than its rule is worth: mistakes.md says why"
 
 
 def _rows(rule: RuleResult, name: str) -> Iterator[tuple[str, ...]]:
@@ -88,7 +88,7 @@ def _rows(rule: RuleResult, name: str) -> Iterator[tuple[str, ...]]:
         yield name, f"{rule.points:g}", "none", "", ""
     for number, broken in enumerate(rule.mistakes):
         first = ("", "") if number else (name, f"{rule.points:g}")
-        yield *first, broken.name, f"{broken.lost:g}{'' if broken.judged else '*'}", " ".join(broken.caught_by)
+        yield *first, broken.name, f"{broken.lost:g}{'*' if broken.costs_more else ''}", " ".join(broken.caught_by)
 
 
 def write_markdown(audits: list[Audit], file: Path) -> None:
@@ -103,7 +103,7 @@ def _markdown(audit: Audit) -> Iterator[str]:
     yield f"{len(right)} right solutions: at least {min(right):g} points. Without any work: {baselines}."
     if audit.mutants:
         yield f"Mutants: {_score(audit)}."
-    yield f"A `*` marks a mistake that can't be judged: {_UNJUDGED}.\n"
+    yield f"A `*` marks a mistake that costs {_COSTS_MORE}.\n"
     yield "| rule | points | mistake | costs | caught by |\n| --- | ---: | --- | ---: | --- |"
     for rule in audit.rules:
         name = f"**{rule.id}**: {rule.text}".replace("|", "\\|")

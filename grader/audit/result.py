@@ -94,8 +94,7 @@ class Judged:
 class BrokenRule:
     """One mistake, which breaks these `rules`: the checks that catch it, and the points that it costs.
 
-    It is not `judged` if its program ends by itself in the first scenario, or fails a check on which every other check
-    depends. Then it may cost everything.
+    `costs_more` is the author's reason why these may be more than its rules are worth; empty if they may not.
     """
 
     name: str
@@ -104,7 +103,7 @@ class BrokenRule:
     caught_by: tuple[str, ...]
     lost: float
     score: float
-    judged: bool
+    costs_more: str = ""
 
 
 @dataclass(frozen=True)

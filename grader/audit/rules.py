@@ -27,14 +27,13 @@ def rule_results(
 ) -> tuple[RuleResult, ...]:
     """Return every rule of the task with the mistakes that break it; `trials` are those of mistakes, by name."""
     rules = rules_of(exercise.task)
-    needed = set(_needed_by_all(checks))
     broken = {mistake.name: _ids(mistake.breaks, rules) for mistake in mistakes}
     results = []
     for rule in rules:
         mine = tuple(check for check in checks if rule.id in _ids(check.rules, rules))
         result = RuleResult(rule.id, rule.text, rule.line, sum(c.points for c in mine), tuple(c.name for c in mine))
         breaking = [mistake for mistake in mistakes if rule.id in broken[mistake.name]]
-        details = tuple(_broken(m, trials[m.name], broken[m.name], needed, checks) for m in breaking)
+        details = tuple(_broken(m, trials[m.name], broken[m.name], checks) for m in breaking)
         results.append(replace(result, mistakes=details))
     return tuple(results)
 
@@ -44,19 +43,10 @@ def _ids(names: tuple[str, ...], rules: tuple[Rule, ...]) -> tuple[str, ...]:
 
 
 def _broken(
-    mistake: Mistake, trial: Trial, rules: tuple[str, ...], needed: set[str], checks: tuple[AuditedCheck, ...]
+    mistake: Mistake, trial: Trial, rules: tuple[str, ...], checks: tuple[AuditedCheck, ...]
 ) -> BrokenRule:
     lost = round(sum(check.points for check in checks) - trial.score, 1)
-    unjudged = bool(trial.message) or any(name in needed and not trial.earned.get(name) for name in trial.failed)
-    return BrokenRule(mistake.name, mistake.summary, rules, trial.failed, lost, trial.score, not unjudged)
-
-
-def _needed_by_all(checks: tuple[AuditedCheck, ...]) -> list[str]:
-    """Return the checks on which every other one depends, directly or through others."""
-    above: dict[str, set[str]] = {}
-    for check in checks:
-        above[check.name] = {*check.depends, *(name for other in check.depends for name in above.get(other, ()))}
-    return [c.name for c in checks if all(c.name in above[other.name] for other in checks if other is not c)]
+    return BrokenRule(mistake.name, mistake.summary, rules, trial.failed, lost, trial.score, mistake.costs_more)
 
 
 def problems_of_rules(
@@ -100,13 +90,19 @@ def _of_mistake(
     file: Path, line: int, broken: BrokenRule, points: float, best: Judged | None
 ) -> Iterator[AuditProblem]:
     subject = f"the mistake mistakes/{broken.name} (“{broken.title}”)"
-    if not broken.judged:
+    costs = f"costs {broken.lost:g} points"
+    dear, poor = broken.lost > DEAREST * points, bool(best and broken.score < best.score)
+    if broken.costs_more:
+        if not dear and not poor:
+            text = f"{subject} has a reason to cost more than {DEAREST:g} times the {points:g} of its rules, and {costs}"
+            yield AuditProblem(file, line, text, "Remove the paragraph “Costs more:”.", about=broken.name)
         return
-    if broken.lost > DEAREST * points:
-        text = f"{subject} costs {broken.lost:g} points, more than {DEAREST:g} times the {points:g} of its rules"
-        fix = "Let fewer checks depend on what it fails, or let checks judge only their own rule."
+    if dear:
+        text = f"{subject} {costs}, more than {DEAREST:g} times the {points:g} of its rules"
+        fix = "Let fewer checks depend on what it fails, or let checks judge only their own rule. If nothing else can be "
+        fix += "judged without it, write “Costs more:” and why in its section."
         yield AuditProblem(file, line, text, fix, about=broken.name)
-    if best and broken.score < best.score:
+    if best and poor:
         text = f"{subject} gets {broken.score:g} points, fewer than {best.score:g} for {best.title}"
         fix = "Let the checks that that program passes depend on one that it fails."
         yield AuditProblem(file, line, text, fix, about=broken.name)

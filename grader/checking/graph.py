@@ -94,15 +94,20 @@ def must_be_as_declared(run: RecordedRun) -> None:
     must_have_qos(run)
 
 
-def must_have_interface(run: RecordedRun, only: bool = False) -> None:
-    """Check that the node has every topic, service and action of exercise.toml, each with its type.
+def must_have_interface(run: RecordedRun, *names: str, only: bool = False) -> None:
+    """Check that the node has every topic, service and action of exercise.toml, or those with these `names`, each with
+    its type.
 
     With `only`, it must have no others, and one endpoint of each. Of several programs, each node must have at most one.
+    Raises ValueError for a name that exercise.toml does not declare.
 
     Example: `run.must_have_interface(only=True)`
     """
     declared = [(_KINDS[topic.direction], topic.name, topic.type) for topic in run.exercise.topics]
     declared += [(_KINDS[end.role], end.name, end.type) for end in run.exercise.endpoints]
+    if unknown := set(names) - {name for _, name, _ in declared}:
+        raise ValueError(f"exercise.toml does not declare {', '.join(sorted(unknown))}")
+    declared = [end for end in declared if not names or end[1] in names]
     declared = [(kind, _in(run, kind, name, start), type_) for kind, name, type_ in declared for start in _starts(run)]
     for kind, name, type_ in declared:
         mine = end_points(run, kind, name)

@@ -9,6 +9,8 @@ in its docstring:
     Breaks: “Publish twice each number.”
 
     Caught by: test_twice_the_number, test_zero
+
+If it must cost more than its rule is worth, a further paragraph says why: `Costs more: nothing is published.`
 """
 
 from __future__ import annotations
@@ -32,8 +34,8 @@ class Mistake:
     """One usual mistake, as a whole program.
 
     `summary` says in a sentence what is wrong. `breaks` are the rules of the task that it breaks, ids or sentences;
-    most break one. `caught_by` are the checks that it names. `line`, counted from 1, is the line of `file` that names
-    them.
+    most break one. `caught_by` are the checks that it names. `costs_more` is the author's reason why it may cost more
+    than these rules are worth. `line`, counted from 1, is the line of `file` that names the checks.
     """
 
     name: str
@@ -43,6 +45,7 @@ class Mistake:
     line: int
     breaks: tuple[str, ...] = ()
     caught_by: tuple[str, ...] = ()
+    costs_more: str = ""
 
 
 class NoMistake(LookupError):
@@ -113,9 +116,15 @@ def _of_file(file: Path) -> Mistake:
 
 def _mistake(name: str, source: str, text: str, file: Path, line: int) -> Mistake:
     summary = " ".join(text.partition("\n\n")[0].split()) or name.replace("_", " ")
-    breaks = re.search(r"^Breaks: *(.+?)(?:\n\n|\Z)", text, re.MULTILINE | re.DOTALL)
+    breaks, more = (_paragraph(text, begin) for begin in ("Breaks", "Costs more"))
     caught_by = re.findall(r"\btest_\w+", text.partition("Caught by:")[2])
-    return Mistake(name, summary, source, file, line, _rules(breaks[1]) if breaks else (), tuple(caught_by))
+    return Mistake(name, summary, source, file, line, _rules(breaks) if breaks else (), tuple(caught_by), more)
+
+
+def _paragraph(text: str, begin: str) -> str:
+    """Return what follows this word and a colon, to the end of the paragraph; empty if there is no such paragraph."""
+    paragraph = re.search(rf"^{begin}: *(.+?)(?:\n\n|\Z)", text, re.MULTILINE | re.DOTALL)
+    return paragraph[1].strip() if paragraph else ""
 
 
 def _rules(text: str) -> tuple[str, ...]:

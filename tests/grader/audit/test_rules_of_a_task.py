@@ -38,7 +38,7 @@ def marked(small: SmallExercise) -> SmallExercise:
         ('hint="One publish().", depends', 'hint="One publish().", rule="once", depends'),
     ):
         small.change(CHECKS, old, new)
-    small.change(MISTAKES, "It publishes nothing.\n", "It publishes nothing.\n\nBreaks: twice\n")
+    small.change(MISTAKES, "It publishes nothing.\n", "It publishes nothing.\n\nBreaks: twice\n\nCosts more: it is silent.\n")
     small.change(MISTAKES, "It adds two.\n", "It adds two.\n\nBreaks: “twice each number”\n")
     small.change(MISTAKES, "It doubles negative numbers, too.\n", "It doubles negative numbers, too.\n\nBreaks: sign\n")
     return small
@@ -78,11 +78,10 @@ def test_each_rule_has_its_points_and_what_breaks_it_costs(
     assert (rules["twice"].points, rules["twice"].checks) == (5, ("test_publishes", "test_twice_the_number"))
     assert [mistake.name for mistake in rules["twice"].mistakes] == ["adds_two", "says_nothing"]
     adds_two, says_nothing = rules["twice"].mistakes
-    assert adds_two.judged
     assert adds_two.caught_by == ("test_twice_the_number",)
     # One of its four numbers is 2, so half of them or fewer are right, and the sign can't be judged.
     assert (adds_two.lost, adds_two.score) == (4, 6)
-    assert not says_nothing.judged, "everything depends on the check that it fails"
+    assert (says_nothing.lost, says_nothing.costs_more) == (10, "it is silent.")
 
     write_markdown([audit], tmp_path / "rules.md")
     rows = [[cell.strip() for cell in line.split(" | ")] for line in (tmp_path / "rules.md").read_text().split("\n")]
@@ -101,12 +100,16 @@ def test_rules_that_nobody_checks_or_breaks_twice(marked: SmallExercise, audited
 
 
 def test_a_mistake_that_costs_much_more_than_its_rule(marked: SmallExercise, audited: Auditing) -> None:
+    marked.change(MISTAKES, "It adds two.\n", "It adds two.\n\nCosts more: no number is right.\n")
     for hint in ("Look at the name in __init__.", "Catch what Ctrl-C raises."):
         marked.change(CHECKS, f'hint="{hint}", depends=[test_publishes]', f'hint="{hint}", depends=[test_once]')
-    found = advice(fully(audited, marked), "twice")
-    assert found == [
+    result = fully(audited, marked)
+    assert advice(result, "twice") == [
         "the mistake mistakes/twice (“It says it twice.”) costs 3 points, more than 2 times the 1 of its rules"
     ]
+    assert advice(result, "says_nothing") == [], "its reason is written"
+    reason = "the mistake mistakes/adds_two (“It adds two.”) has a reason to cost more than 2 times the 5 of its rules"
+    assert advice(result, "adds_two") == [f"{reason}, and costs 4 points"]
 
 
 def test_programs_without_any_work_must_get_little(marked: SmallExercise, audited: Auditing) -> None:

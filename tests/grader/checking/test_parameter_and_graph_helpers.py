@@ -97,6 +97,14 @@ def test_an_end_point_that_is_missing(number: int, fields: dict[str, Any], messa
     assert says(run(replace(EMPTY, end_points=ends)).must_have_interface).startswith(message)
 
 
+def test_a_check_may_ask_for_some_end_points_only() -> None:
+    mine = run(replace(EMPTY, end_points=ENDS[:1]))
+    mine.must_have_interface("/in")
+    assert says(lambda: mine.must_have_interface("/in", "/out")).startswith("Your node does not publish on /out.")
+    with pytest.raises(ValueError, match="does not declare /inn"):
+        mine.must_have_interface("/inn")
+
+
 def test_end_points_that_are_too_many() -> None:
     run(EMPTY).must_have_interface(only=True)
     more = replace(EMPTY, end_points=(*ENDS, replace(ENDS[0], topic="/clock"), replace(ENDS[0], topic="/other")))
