@@ -50,9 +50,9 @@ soak: setup   ## Run the long suites in full, and count how often the same progr
 	$(PYTEST) -m soak
 	$(BIN)/python benchmarks/determinism/determinism.py --rounds 12 --json build/determinism.json
 
-audit: setup   ## Show what every exercise's checks are worth; the report is in build/audit.html.
+audit: setup   ## Show what every exercise's checks are worth; the report is in build/audit.html, the rules are in build/audit.md.
 	@mkdir -p build
-	$(BIN)/spinbook audit --html build/audit.html --json build/audit.json
+	$(BIN)/spinbook audit --html build/audit.html --json build/audit.json --markdown build/audit.md
 
 doctor: setup   ## Say what works on this machine, and how to fix what does not.
 	$(BIN)/spinbook doctor

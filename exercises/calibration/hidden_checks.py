@@ -71,7 +71,7 @@ def test_same_joint_again(again: Run) -> None:
     points=2,
     hint="0.0 is an offset like any other. Look at success.",
     depends=OFFSET,
-    rule="success",
+    rule=("success", "offsets"),
 )
 def test_offset_of_zero(again: Run) -> None:
     """An offset of 0.0 is published, too."""

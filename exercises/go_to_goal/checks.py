@@ -29,6 +29,8 @@ def test_drives(ahead: Run) -> None:
     distances = [math.dist(point, (8.5, 7.0)) for _, point in ahead.trajectory(POSE, "x", "y")]
     if min(distances) > 0.4 * distances[0]:
         text = f"the goal was {distances[0]:.2f} m away, and the turtle never got closer than {min(distances):.2f} m."
+        if (count := len(ahead.messages_on(COMMANDS))) < len(distances) / 50:
+            text += f" Commands that your node published in 11 s: {count}. Each holds for 1 s only."
         way = [item for item in ahead.trajectory(POSE, "x", "y", "theta") if item[0] >= 0.5]
         turns = [(at, math.remainder(math.atan2(7.0 - y, 8.5 - x) - theta, math.tau)) for at, (x, y, theta) in way]
         cause = ahead.steers_away(COMMANDS, "angular.z", turns)

@@ -11,7 +11,7 @@ ACCEPTS, STEPS = ["test_accepts_a_goal"], ["test_feedback_after_each_step"]
 
 @check(
     points=5,
-    hint="Keep the position in the node, not in the goal. A step can go down, too.",
+    hint="Where does the second goal start, and does its position say where to go, or how far? A step can go down.",
     todo="The joint exists once, so its position belongs to the node: set it in __init__, and let each step "
     "change it. A local variable in execute that begins at 0.0 makes the joint jump back with each goal. "
     "A goal may be lower than the position: then each step is -0.05, and a loop with `while position < "

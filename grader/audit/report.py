@@ -47,7 +47,12 @@ def _show_programs(audit: Audit, console: Console) -> None:
     if scores := [f"{p.title} {p.score:g}" for p in audit.programs if p.kind == "baseline"]:
         console.print(Text(f"points without any work: {', '.join(scores)}", style="dim"))
     elif not audit.quick:
-        console.print(Text("task.md marks no rules, so nothing is known rule by rule", style="dim"))
+        console.print(
+            Text(
+                "task.md marks no rules: these are the sentences that checks and mistakes quote, without a verdict",
+                style="dim",
+            )
+        )
 
 
 def _show_problem(problem: AuditProblem, console: Console) -> None:
@@ -74,8 +79,8 @@ def _rules(audit: Audit) -> Table:
     for rule in audit.rules:
         for row in _rows(rule, rule.id):
             table.add_row(*row)
-    table.caption = f"* {_COSTS_MORE}"
-    table.caption_justify = "left"
+    if any(broken.costs_more for rule in audit.rules for broken in rule.mistakes):
+        table.caption, table.caption_justify = f"* {_COSTS_MORE}", "left"
     return table
 
 
@@ -106,7 +111,7 @@ def _markdown(audit: Audit) -> Iterator[str]:
     yield f"A `*` marks a mistake that costs {_COSTS_MORE}.\n"
     yield "| rule | points | mistake | costs | caught by |\n| --- | ---: | --- | ---: | --- |"
     for rule in audit.rules:
-        name = f"**{rule.id}**: {rule.text}".replace("|", "\\|")
+        name = (f"**{rule.id}**: {rule.text}" if rule.id != rule.text else rule.text).replace("|", "\\|")
         for row in _rows(rule, name):
             yield f"| {' | '.join(row)} |"
     yield ""

@@ -10,7 +10,7 @@ from grader.audit.check_list import AuditedCheck
 from grader.audit.result import AuditProblem, BrokenRule, Judged, RuleResult, Trial
 from grader.exercise.exercise import Exercise
 from grader.exercise.mistakes import Mistake
-from grader.exercise.rules import Rule, ids_used_twice, named_by, rules_of
+from grader.exercise.rules import Rule, ids_used_twice, named_by, rules_of, without_markup
 
 #: How many mistakes break each rule, at least.
 FEWEST = 2
@@ -26,7 +26,7 @@ def rule_results(
     exercise: Exercise, checks: tuple[AuditedCheck, ...], mistakes: tuple[Mistake, ...], trials: dict[str, Trial]
 ) -> tuple[RuleResult, ...]:
     """Return every rule of the task with the mistakes that break it; `trials` are those of mistakes, by name."""
-    rules = rules_of(exercise.task)
+    rules = rules_of(exercise.task) or _quoted(exercise.task, checks, mistakes)
     broken = {mistake.name: _ids(mistake.breaks, rules) for mistake in mistakes}
     results = []
     for rule in rules:
@@ -38,13 +38,22 @@ def rule_results(
     return tuple(results)
 
 
+def _quoted(task: str, checks: tuple[AuditedCheck, ...], mistakes: tuple[Mistake, ...]) -> tuple[Rule, ...]:
+    """Return the sentences that checks and mistakes quote from a task that marks no rules; each is its own id."""
+    lines = task.splitlines()
+    parts = [without_markup("\n".join(lines[:number])) for number in range(1, len(lines) + 1)]
+    quotes = (*(check.rules for check in checks), *(mistake.breaks for mistake in mistakes))
+    texts = {without_markup(quote) for each in quotes for quote in each}
+    ends = {text: next((number for number, part in enumerate(parts, start=1) if text in part), 0) for text in texts}
+    whole = [t for t in texts if ends[t] and not any(t in other for other in texts - {t})]
+    return tuple(Rule(text, text, ends[text]) for text in sorted(whole, key=lambda text: (ends[text], text)))
+
+
 def _ids(names: tuple[str, ...], rules: tuple[Rule, ...]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(rule for name in names for rule in named_by(name, rules)))
 
 
-def _broken(
-    mistake: Mistake, trial: Trial, rules: tuple[str, ...], checks: tuple[AuditedCheck, ...]
-) -> BrokenRule:
+def _broken(mistake: Mistake, trial: Trial, rules: tuple[str, ...], checks: tuple[AuditedCheck, ...]) -> BrokenRule:
     lost = round(sum(check.points for check in checks) - trial.score, 1)
     return BrokenRule(mistake.name, mistake.summary, rules, trial.failed, lost, trial.score, mistake.costs_more)
 
@@ -53,7 +62,7 @@ def problems_of_rules(
     exercise: Exercise, results: tuple[RuleResult, ...], mistakes: tuple[Mistake, ...], programs: tuple[Judged, ...]
 ) -> list[AuditProblem]:
     """Return what is wrong with the rules, their mistakes and the points; nothing if the task marks no rules."""
-    if not results:
+    if not rules_of(exercise.task):
         return []
     task = exercise.folder / "task.md"
     found = [_twice(task, rule) for rule in ids_used_twice(rules_of(exercise.task))]
@@ -94,12 +103,16 @@ def _of_mistake(
     dear, poor = broken.lost > DEAREST * points, bool(best and broken.score < best.score)
     if broken.costs_more:
         if not dear and not poor:
-            text = f"{subject} has a reason to cost more than {DEAREST:g} times the {points:g} of its rules, and {costs}"
+            text = (
+                f"{subject} has a reason to cost more than {DEAREST:g} times the {points:g} of its rules, and {costs}"
+            )
             yield AuditProblem(file, line, text, "Remove the paragraph “Costs more:”.", about=broken.name)
         return
     if dear:
         text = f"{subject} {costs}, more than {DEAREST:g} times the {points:g} of its rules"
-        fix = "Let fewer checks depend on what it fails, or let checks judge only their own rule. If nothing else can be "
+        fix = (
+            "Let fewer checks depend on what it fails, or let checks judge only their own rule. If nothing else can be "
+        )
         fix += "judged without it, write “Costs more:” and why in its section."
         yield AuditProblem(file, line, text, fix, about=broken.name)
     if best and poor:

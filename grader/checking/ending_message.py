@@ -53,7 +53,9 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
             f"{message} The module {missing[1]} is not available here. Available are Python's own modules, {available}."
         )
     if no_name := NO_NAME.search(message):
-        return f"{message} The module {no_name[2]} has no {no_name[1]}. Is the name spelled right?"
+        name = no_name[1][:1].upper() + no_name[1][1:]
+        case = f"It may have {name}: capital letters count." if name != no_name[1] else "Is the name spelled right?"
+        return f"{message} The module {no_name[2]} has no {no_name[1]}. {case}"
     for pattern, advice in ADVICE:
         if pattern.search(message):
             return f"{message} {advice}"

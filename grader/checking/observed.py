@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from itertools import pairwise
 from typing import Any
 
 from grader.checking.cause import UNKNOWN, Cause
@@ -20,7 +21,8 @@ _TINY = 64 * 5e-324
 
 def observed(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
     """Return the first cause that the run shows, in this order: an exception, messages that are never sent because a
-    lifecycle node is not active, ints in float fields, values without names, only zeros, only false.
+    lifecycle node is not active, ints in float fields, values without names, lists that pile up, only zeros, only
+    false.
     """
     seers: tuple[Callable[[Exercise, Recording, Recording], Cause], ...] = (
         _exception,
@@ -28,6 +30,7 @@ def observed(exercise: Exercise, recording: Recording, reference: Recording) -> 
         _int_as_float,
         _without_names,
         _never_filled,
+        _piles_up,
         _only_zeros,
         _only_false,
     )
@@ -112,6 +115,19 @@ def _never_filled(exercise: Exercise, recording: Recording, reference: Recording
             if mine and not any(length for (length,) in mine) and any(length for (length,) in its):
                 seen = f"{field} is empty in every message on {topic.name}."
                 return Cause(seen, *hints("never_filled", field=field))
+    return UNKNOWN
+
+
+def _piles_up(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    for topic in exercise.outputs:
+        for field in topic.units:
+            mine, its = ([length for (length,) in _lengths(run, topic, field)] for run in (recording, reference))
+            grows = len(mine) > 3 and all(before < after for before, after in pairwise(mine))
+            if grows and its and mine[-1] > 2 * max(its):
+                seen = (
+                    f"{field} on {topic.name} gets longer with each message: {mine[0]}, {mine[1]}, {mine[2]} elements."
+                )
+                return Cause(seen, *hints("piles_up"))
     return UNKNOWN
 
 

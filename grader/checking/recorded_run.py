@@ -23,8 +23,8 @@ from ros_in_python.field_path import NoSuchField, field_of, steps_of
 
 _WAITS = (
     "Your node sent {request} to {name} at {at:.2f} s, and did nothing from then on. Does a callback wait for the "
-    "answer, with call(), await or spin_until_future_complete()? No other callback runs meanwhile, not even the one "
-    "that takes the answer. Don't wait: give the future a callback with add_done_callback()."
+    "answer, with call(), get_result(), await or spin_until_future_complete()? No other callback runs meanwhile, not "
+    "even the one that takes the answer. Don't wait: give the future a callback with add_done_callback()."
 )
 
 #: A node counts as stuck if it does nothing for this long (s) after its last request while the solution does something.

@@ -51,6 +51,27 @@ _BY_TEXT = (
         "get_parameter() returns a Parameter, and its value is get_parameter(…).value.",
     ),
     (
+        r"operand type\(s\) for \S+ '(?:array\.array|list|tuple)'",
+        "A list of numbers is no number: calculate with one element of it at a time, in a loop.",
+    ),
+    (
+        r"bad argument type for built-in operation",
+        "A text field of a message takes a str only. The text of a parameter is get_parameter(…).value.",
+    ),
+    (r"_FeedbackMessage' object has no attribute '(\w+)'", r"The feedback is a message inside: message.feedback.\1."),
+    (
+        r"'Future' object has no attribute",
+        "A future is not yet the answer: give it a callback with add_done_callback(), and call future.result() there.",
+    ),
+    (
+        r"'Service' object has no attribute",
+        "create_service() makes the side that answers. The side that asks is made by create_client().",
+    ),
+    (
+        r"'Subscription' object has no attribute 'publish'",
+        "create_subscription() makes the side that receives. The side that sends is made by create_publisher().",
+    ),
+    (
         r"'(?:float|int|bool)' object is not iterable",
         "One value is where a list belongs: write [value], for a list field of a message, too.",
     ),
@@ -70,6 +91,7 @@ def advice_on(last: LastError, sources: Mapping[str, str]) -> str:
     advisers: tuple[Callable[[LastError, Mapping[str, str]], str], ...] = (
         _of_newer_ros,
         advice_on_node_attribute,
+        _before_init,
         _of_a_callback,
         _of_an_attribute,
         _by_text,
@@ -92,6 +114,14 @@ def _of_newer_ros(last: LastError, sources: Mapping[str, str]) -> str:
         f"This is ROS 2 {here}, in which rclpy.init() can't follow `with`, as in newer versions. Write rclpy.init() on "
         "a line of its own, and call rclpy.try_shutdown() at the end."
     )
+
+
+def _before_init(last: LastError, sources: Mapping[str, str]) -> str:
+    """Explain what rclpy misses in a Node whose own __init__ was not called, or is called only later."""
+    if last.raised_there or not re.search(r"AttributeError: '\w+' object has no attribute '_\w+'", last.error):
+        return ""
+    own = re.search(r"^\s*class \w+\(.*\bNode\b.*\):", sources.get(last.file, ""), re.MULTILINE)
+    return "Begin __init__ with super().__init__('name'): that makes the node." if own else ""
 
 
 def _of_a_callback(last: LastError, sources: Mapping[str, str]) -> str:

@@ -117,6 +117,14 @@ def test_advice_on_an_exception_comes_from_exercise_toml() -> None:
     assert "joint" not in message_of(Ending("crashed", message), replace(exercise, advice={}))
 
 
+def test_a_name_with_the_wrong_capital_letters_is_told_from_one_that_is_misspelt() -> None:
+    exercise = load(ROOT / "exercises" / "heartbeat")
+    message = "ImportError: cannot import name '{}' from 'std_msgs.msg'"
+    module, misspelt = (message_of(Ending("crashed", message.format(n)), exercise) for n in ("header", "Haeder"))
+    assert module.endswith("has no header. It may have Header: capital letters count.")
+    assert misspelt.endswith("has no Haeder. Is the name spelled right?")
+
+
 def test_advice_that_is_no_text_is_refused_with_its_line(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "exercises" / "joint_velocity", tmp_path / "joint_velocity")
     file = tmp_path / "joint_velocity" / "exercise.toml"

@@ -38,7 +38,9 @@ def marked(small: SmallExercise) -> SmallExercise:
         ('hint="One publish().", depends', 'hint="One publish().", rule="once", depends'),
     ):
         small.change(CHECKS, old, new)
-    small.change(MISTAKES, "It publishes nothing.\n", "It publishes nothing.\n\nBreaks: twice\n\nCosts more: it is silent.\n")
+    small.change(
+        MISTAKES, "It publishes nothing.\n", "It publishes nothing.\n\nBreaks: twice\n\nCosts more: it is silent.\n"
+    )
     small.change(MISTAKES, "It adds two.\n", "It adds two.\n\nBreaks: “twice each number”\n")
     small.change(MISTAKES, "It doubles negative numbers, too.\n", "It doubles negative numbers, too.\n\nBreaks: sign\n")
     return small

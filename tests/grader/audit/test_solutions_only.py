@@ -26,7 +26,8 @@ def test_without_mutants_it_tells_only_of_the_files(small: SmallExercise) -> Non
     done = solutions_only()
     assert done.exit_code == 0, done.stdout
     assert "tried: 1 right solutions, 7 mistakes, 3 that do nothing\n" in done.stdout
-    assert "task.md marks no rules" in done.stdout
+    assert "task.md marks no rules: these are the sentences" in done.stdout
+    assert "publishes twice" in done.stdout
     assert "\nnothing to fix\n" in done.stdout
 
 

@@ -65,6 +65,21 @@ def test_values_without_names_are_not_called_missing() -> None:
     assert found.cause == ("name is empty in every message on /out: nobody can know which wheel each speed belongs to.")
 
 
+def test_a_message_that_is_kept_and_filled_again_is_named() -> None:
+    out = Topic("/out", FLOAT, "publish", units={"speed": "m/s"}, elements=Elements("wheel", "name"))
+    exercise = replace(EXERCISE, topics=(EXERCISE.topics[0], out))
+
+    def robot(*counts: int) -> Recording:
+        fields = [{"name": ["left"] * count, "speed": [1.0] * count} for count in counts]
+        return replace(EMPTY, received=tuple(ReceivedMessage(ns(i), i, "/out", FLOAT, f) for i, f in enumerate(fields)))
+
+    found = finding(lambda: run(robot(1, 2, 3, 4), robot(1, 1, 1, 1), exercise).must_match_series("speed"))
+
+    assert found.cause == "speed on /out gets longer with each message: 1, 2, 3 elements."
+    grows = finding(lambda: run(robot(1, 2, 3, 5), robot(1, 2, 3, 4), exercise).must_match_series("speed"))
+    assert "gets longer" not in grows.cause, "so does the solution's"
+
+
 def test_numbers_that_are_all_zero_are_named() -> None:
     assert fails(published((0.1, 0.2, 0.3), (0.0, 0.0, 0.0))).cause == "data is 0 in all 3 messages on /out."
 

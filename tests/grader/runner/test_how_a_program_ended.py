@@ -252,6 +252,16 @@ def raised(line: int, error: str, *frames: str) -> str:
             "A float field needs a float: write 2.0 instead of 2, or float(value).",
         ),
         (
+            raised(
+                12,
+                "AttributeError: 'Turnstile' object has no attribute '_default_callback_group'",
+                'File "rclpy/node.py", line 1, in default_callback_group',
+                "  return self._default_callback_group",
+            ),
+            NODE,
+            "Begin __init__ with super().__init__('name'): that makes the node.",
+        ),
+        (
             raised(12, "ImportError: Cannot load backend 'TkAgg', as 'headless' is currently running"),
             NODE,
             "A node that is graded has no screen.",
@@ -287,6 +297,18 @@ def test_advice_names_what_the_student_can_change(log: str, source: str, advice:
         ),
         ("TypeError: 'float' object is not iterable", "write [value]"),
         ("TypeError: 'Twist' object is not iterable", "A Twist is not a list."),
+        (
+            "TypeError: unsupported operand type(s) for -: 'array.array' and 'array.array'",
+            "A list of numbers is no number",
+        ),
+        ("AttributeError: 'Future' object has no attribute 'success'", "A future is not yet the answer."),
+        (
+            "AttributeError: 'Push_FeedbackMessage' object has no attribute 'coins'",
+            "a message inside: message.feedback.coins.",
+        ),
+        ("TypeError: bad argument type for built-in operation", "takes a str only"),
+        ("AttributeError: 'Service' object has no attribute 'service_is_ready'", "is made by create_client()"),
+        ("AttributeError: 'Subscription' object has no attribute 'publish'", "is made by create_publisher()"),
     ],
 )
 def test_advice_on_errors_that_beginners_meet_in_rclpy(error: str, advice: str) -> None:
