@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from interface_compiler.definition import KINDS
 from spinbook.chapter.attributes import options
@@ -162,15 +162,19 @@ _HERE_DOCUMENT = re.compile(
     re.DOTALL | re.MULTILINE,
 )
 _SHELL_CELL = re.compile(r"%%(?:bash|sh|script bash)[^\n]*\n")
+_FILE_CELL = re.compile(r"%%writefile +(?P<file>[\w./~-]+) *\n")
 
 
 def _written(fence: Fence) -> Fence:
-    """Return the file that a shell fence writes and does nothing else, or the commands of a cell with `%%bash`."""
+    """Return the file that a fence writes and does nothing else, or the commands of a cell with `%%bash`."""
     match = _HERE_DOCUMENT.fullmatch(fence.code) if fence.is_shell and "<<" in fence.code else None
     if match and match["file"].endswith(_FILES):
         language = "python" if match["file"].endswith(".py") else "text"
         attributes = {"title": match["file"], **fence.attributes}
         return Fence(language, match["text"], fence.line, attributes, fence.skipped + 1)
+    if fence.is_python and (written := _FILE_CELL.match(fence.code)) and written["file"].endswith(_FILES):
+        code, attributes = fence.code[written.end() :], {"title": written["file"], **fence.attributes}
+        return replace(fence, code=code, attributes=attributes, skipped=fence.skipped + 1)
     if fence.is_python and (shell := _SHELL_CELL.match(fence.code)):
         return Fence("bash", fence.code[shell.end() :], fence.line, fence.attributes, fence.skipped + 1)
     return fence

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import jupytext
+import nbformat
 
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem
@@ -37,7 +38,7 @@ def as_markdown(file: Path) -> Path:
     try:
         text = _CONVERTERS[file.suffix](file)
     except Exception as error:  # what the libraries raise for broken files is not documented
-        words = str(error).strip().split("\n")[0] or type(error).__name__
+        words = str(error).strip().split("\n")[0].rstrip(".") or type(error).__name__
         raise SpinbookError(Problem(file, None, f"it can't be read: {words}.", "Repair it, or move it away.")) from None
     write_if_changed(target, text)
     return target
@@ -45,7 +46,7 @@ def as_markdown(file: Path) -> Path:
 
 def _from_notebook(file: Path) -> str:
     """Return a notebook's text and code; its outputs come from running it. Attached pictures become files."""
-    notebook = jupytext.read(file)
+    notebook = nbformat.read(file, as_version=4)
     notebook.metadata = {"kernelspec": notebook.metadata.get("kernelspec", {})}
     for number, cell in enumerate(notebook.cells):
         for name, content in cell.get("attachments", {}).items():

@@ -48,6 +48,7 @@ def fence(code: str, info: str = "") -> str:
     [
         fence(SERVICE, 'text title="Cosine.srv"'),
         fence(SERVICE, 'text {filename="srv/Cosine.srv"}'),
+        fence("%%writefile srv/Cosine.srv\n" + SERVICE, "python"),
         fence("cat > srv/Cosine.srv <<EOF\n" + SERVICE + "EOF\n", "bash"),
         fence("cat <<'END' >src/trig_interfaces/srv/Cosine.srv\n" + SERVICE + "END\n", "bash"),
         '=== "Cosine.srv"\n\n' + "".join(f"    {line}\n" for line in fence(SERVICE).split("\n")),
