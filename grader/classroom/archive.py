@@ -1,19 +1,24 @@
-"""The files in a class's folder or zip, without those that programs create there."""
+"""The files in a class's folder, zip or tar, without those that programs create there."""
 
 from __future__ import annotations
 
 import os
 import stat
+import tarfile
 import zipfile
-import zlib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from datetime import datetime, timezone
+from functools import partial
 from pathlib import Path, PurePosixPath
+from typing import IO, cast
 
 from grader.classroom.submissions import File, SubmissionsError
-from grader.classroom.times import Time
+from grader.classroom.times import UNKNOWN, Time
 from grader.grading.grade import Skipped
+from grader.submission.archive import BROKEN, decompressed, is_tar
+from grader.submission.file_kinds import OTHER_ARCHIVES
 from grader.submission.reader import MOST_BYTES
 
 #: Created by operating systems, editors and Python, never by a student.
@@ -26,8 +31,6 @@ MOST_BYTES_IN_ALL = 2_000_000_000
 
 #: One byte more than a submission may have, so that the reader can say that it is too large.
 MOST_BYTES_OF_ONE = max(MOST_BYTES.values()) + 1
-
-BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError, ValueError)
 
 
 def is_noise(name: str) -> bool:
@@ -52,57 +55,150 @@ def walk(root: Path) -> Iterator[File | Skipped]:
 def date_of(path: Path) -> Time:
     """Return the file's date, if any; an archive can give a file a date that does not exist."""
     try:
-        return Time(datetime.fromtimestamp(path.lstat().st_mtime, timezone.utc), "the file's date")
+        return _time(path.lstat().st_mtime, "the file's date")
+    except OSError:
+        return UNKNOWN
+
+
+def _time(seconds: float, source: str) -> Time:
+    try:
+        return Time(datetime.fromtimestamp(seconds, timezone.utc), source)
     except (OSError, ValueError, OverflowError):
-        return Time()
+        return UNKNOWN
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """One entry of an archive. `load` reads at most so many bytes; `is_link` is for symbolic links."""
+
+    name: str
+    load: Callable[[int], bytes]
+    time: Time = UNKNOWN
+    is_link: bool = False
+    fault: str = ""
 
 
 def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
-    """Yield the files in `archive`, written into the folder `into` with numbers as names.
+    """Yield the files in `archive`, a zip or a tar, written into the folder `into` with numbers as names.
 
-    Raises `SubmissionsError` if it is not a zip, or holds more than any class submits.
+    Raises `SubmissionsError` if it can't be read, or holds more than any class submits.
     """
+    names = Counter(entry.name for entry in _entries(archive))
+    left = MOST_BYTES_IN_ALL
+    for number, entry in enumerate(_entries(archive)):
+        if any(is_noise(part) for part in entry.name.split("/")):
+            yield Skipped(entry.name, WHY_NOISE)
+            continue
+        path = into / f"{number:05}{''.join(PurePosixPath(entry.name).suffixes)[-20:]}"
+        if entry.is_link:
+            path.symlink_to("nowhere")  # the reader reports it to the student
+            yield File(entry.name, path)
+            continue
+        content, fault = _loaded(entry, left)
+        if names[entry.name] > 1 and not fault:
+            fault = "the archive holds several files of this name"
+        if fault:
+            yield File(entry.name, path, fault=fault)
+            continue
+        left -= len(content)
+        if left < 0:
+            raise SubmissionsError(_too_large(archive))
+        path.write_bytes(content)
+        yield File(entry.name, path, entry.time)
+
+
+def _loaded(entry: _Entry, left: int) -> tuple[bytes, str]:
+    """Return an entry's content, or why it can't be read."""
+    if entry.fault:
+        return b"", entry.fault
     try:
-        opened = zipfile.ZipFile(archive)
+        return entry.load(min(MOST_BYTES_OF_ONE, left + 1)), ""
     except BROKEN as error:
+        return b"", f"it can't be read: {error}. Was the download cut off?"
+
+
+def _too_large(archive: Path) -> str:
+    return f"{archive}: unpacked, it is larger than {MOST_BYTES_IN_ALL // 10**9} GB."
+
+
+def _entries(archive: Path) -> Iterator[_Entry]:
+    """Yield an archive's files and links, those of a zip sorted by name."""
+    try:
+        with archive.open("rb") as file:
+            start = file.read(262)
+        yield from _limited(archive, _of_tar(archive, start) if is_tar(start) else _of_zip(archive))
+    except BROKEN as error:
+        advice = "Was the download cut off?"
+        if start.startswith(OTHER_ARCHIVES):
+            advice = "It is an archive of another kind: unpack it, and give the folder."
+        kind = "tar" if is_tar(start) else "zip"
         raise SubmissionsError(
-            f"{archive}: it is not a valid zip file: {error}. Was the download cut off? A class may also be a "
-            "folder or a .csv file."
+            f"{archive}: it is not a valid {kind} file: {error}. {advice} A class may also be a folder or a .csv file."
         ) from None
-    with opened:
-        entries = [entry for entry in opened.infolist() if not entry.is_dir()]
-        if len(entries) > MOST_FILES:
-            raise SubmissionsError(f"{archive}: it holds {len(entries):,} files, more than {MOST_FILES:,}.")
-        left, names = MOST_BYTES_IN_ALL, Counter(map(_name, entries))
-        for number, entry in enumerate(sorted(entries, key=_name)):
-            name = _name(entry)
-            if any(is_noise(part) for part in name.split("/")):
-                yield Skipped(name, WHY_NOISE)
+
+
+def _limited(archive: Path, entries: Iterator[_Entry]) -> Iterator[_Entry]:
+    for count, entry in enumerate(entries):
+        if count == MOST_FILES:
+            raise SubmissionsError(f"{archive}: it holds more than {MOST_FILES:,} files.")
+        yield entry
+
+
+def _of_zip(archive: Path) -> Iterator[_Entry]:
+    with zipfile.ZipFile(archive) as opened:
+        for entry in sorted(opened.infolist(), key=_name):
+            if not entry.is_dir():
+                fault = "it is encrypted. Was the download cut off?" if entry.flag_bits & 1 else ""
+                is_link = stat.S_ISLNK(entry.external_attr >> 16)
+                yield _Entry(_name(entry), partial(_of_zip_entry, opened, entry), _entry_date(entry), is_link, fault)
+
+
+def _of_zip_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most: int) -> bytes:
+    with archive.open(entry) as packed:
+        return packed.read(most)
+
+
+def _of_tar(archive: Path, start: bytes) -> Iterator[_Entry]:
+    """Yield a tar's entries in their order, as a compressed file can't be read backwards quickly."""
+    with (
+        archive.open("rb") as file,
+        tarfile.open(fileobj=cast("IO[bytes]", _Bounded(archive, decompressed(file, start))), mode="r|") as tar,
+    ):
+        for entry in tar:
+            if entry.isdir():
                 continue
-            path = into / f"{number:05}{''.join(PurePosixPath(name).suffixes)[-20:]}"
-            if stat.S_ISLNK(entry.external_attr >> 16):
-                path.symlink_to("nowhere")  # the reader reports it to the student
-                yield File(name, path)
-                continue
-            try:
-                with opened.open(entry) as packed:
-                    content = packed.read(min(MOST_BYTES_OF_ONE, left + 1))
-            except BROKEN as error:
-                fault = "it is encrypted" if entry.flag_bits & 1 else f"it can't be read: {error}"
-                yield File(name, path, fault=f"{fault}. Was the download cut off?")
-                continue
-            if names[name] > 1:
-                yield File(name, path, fault="the zip holds several files of this name")
-                continue
-            left -= len(content)
-            if left < 0:
-                raise SubmissionsError(f"{archive}: unpacked, it is larger than {MOST_BYTES_IN_ALL // 10**9} GB.")
-            path.write_bytes(content)
-            yield File(name, path, _entry_date(entry))
+            is_file = entry.isfile()
+            fault = "" if is_file or entry.issym() else "it is a hard link or a device in the archive, not a file"
+            time = _time(entry.mtime, "the tar file") if is_file else UNKNOWN
+            yield _Entry(_path(entry.name), partial(_of_tar_entry, tar, entry), time, entry.issym(), fault)
+
+
+def _of_tar_entry(archive: tarfile.TarFile, entry: tarfile.TarInfo, most: int) -> bytes:
+    file = archive.extractfile(entry)
+    return file.read(most) if file else b""
+
+
+class _Bounded:
+    """A stream of a class's tar that ends with an error after more bytes than any class has."""
+
+    def __init__(self, archive: Path, stream: IO[bytes]) -> None:
+        self.archive, self.stream, self.left = archive, stream, MOST_BYTES_IN_ALL
+
+    def read(self, most: int) -> bytes:
+        """Return the next bytes. Raises `SubmissionsError` beyond the limit."""
+        data = self.stream.read(most)
+        self.left -= len(data)
+        if self.left < 0:
+            raise SubmissionsError(_too_large(self.archive))
+        return data
 
 
 def _name(entry: zipfile.ZipInfo) -> str:
-    parts = PurePosixPath(_decoded(entry).replace("\\", "/")).parts
+    return _path(_decoded(entry))
+
+
+def _path(name: str) -> str:
+    parts = PurePosixPath(name.replace("\\", "/")).parts
     return "/".join(part for part in parts if part not in ("/", "..")) or "nameless"
 
 

@@ -55,7 +55,7 @@ def collect(source: Path, exercise: Exercise, unpack_into: Path, options: Collec
         found = ClassFiles(f"the files that {source.name} names", uploads, skipped, absent, together=False)
     else:
         found = _found(source, exercise, unpack_into, options)
-    if not any(can_be_read(file.name) or file.path.is_dir() for file, _ in found.uploads):
+    if not any(can_be_read(file.name) or _has_work(file.path) for file, _ in found.uploads):
         text = "".join(f"\n  {skip.file}: {skip.why}" for skip in found.skipped[:10])
         raise SubmissionsError(f"There is no submission in it.{text}")
     return Collector(unpack_into, options, found.together).submissions(found)
@@ -82,7 +82,7 @@ def _found(source: Path, exercise: Exercise, unpack_into: Path, options: Collect
     left_out = [one for one in everything if isinstance(one, Skipped)]
     if not files:
         return ClassFiles("", (), left_out)
-    root = source.resolve().name.removesuffix(".zip")
+    root = source.resolve().name if source.is_dir() else without_suffix(source.name)
     recognition = Recogniser(files, root, exercise, options.zone).recognise(options.format)
     folder = f", in {'/'.join(recognition.inside)}/" if recognition.inside else ""
     uploads = [(file, place) for file, place in recognition.understood if isinstance(place, UploadedFile)]

@@ -10,6 +10,7 @@ from datetime import tzinfo
 from functools import cache
 from pathlib import Path
 
+from grader.classroom.formats.moodle_languages import LANGUAGES, in_english
 from grader.classroom.formats.registry import PLATFORMS
 from grader.classroom.names import comparable, normal, student_id
 from grader.classroom.submissions import SubmissionsError
@@ -46,12 +47,14 @@ def read_roster(table: Path, zone: tzinfo | None) -> tuple[RosterRow, ...]:
     Raises `SubmissionsError` for a table that has none of these columns, and for a row with a mistake.
     """
     rows: dict[str, RosterRow] = {}
-    for number, row in platform_rows(table, lambda columns: _student(columns) is not None):
+    for number, row in platform_rows(table, lambda columns: _student(in_english(columns)) is not None):
+        row = in_english(row)
         student = _student(row)
         if student is None:
             raise SubmissionsError(
                 f"{table}:{number}: no column says who this is. Add a column student, or give the list of students, "
-                "grades or submissions that your platform exports (Moodle: with English as your language there)."
+                "grades or submissions that your platform exports (Moodle's worksheet: with English or one of "
+                f"{', '.join(LANGUAGES)} as your language there)."
             )
         if student.id:  # a student in two sections is listed twice
             rows.setdefault(student.id, RosterRow(student, _time(row, f"{table}:{number}", zone)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -50,7 +50,7 @@ class Budget:
         """Begin a new step."""
         self._allowance = allowance
         self._cpu_start: float | None = None
-        self._ran: int | None = None
+        self._times: ThreadTimes | None = None
         self.blocked = 0.0
 
     @property
@@ -80,8 +80,8 @@ class Budget:
         if self._cpu_start is None:
             self._cpu_start = self._student.cpu_seconds()
             return
-        before, self._ran = self._ran, ran(self._pids())
-        if self._ran is not None and self._ran == before:
+        before, self._times = self._times, thread_times(self._student.pid, self._pids())
+        if before and self._times.is_blocked_since(before):
             self.blocked += passed
         self._check()
 
@@ -104,19 +104,44 @@ class Budget:
 SUPERVISOR = b"(lockstep"
 
 
-def ran(pids: Collection[int]) -> int | None:
-    """Return how long the processes' threads have run (ns); None if one is running, ready or waiting for the disk."""
-    total = 0
-    for thread in (thread for pid in pids for thread in _threads(pid)):
-        with contextlib.suppress(OSError):  # it has just ended
-            # The state follows the program's name, which may contain any character but ends with the last bracket.
-            name, _, rest = (thread / "stat").read_bytes().rpartition(b") ")
-            if name.endswith(SUPERVISOR):
-                continue
-            if rest[:1] in (b"R", b"D"):
-                return None
-            total += int((thread / "schedstat").read_bytes().split()[0])
-    return total
+@dataclass(frozen=True)
+class ThreadTimes:
+    """How long each of a program's threads has run (ns), by its folder in /proc.
+
+    `ready` is whether anything that it needs waits for a CPU or the disk: one of its threads, or who has to report that
+    its first process has ended. `supervisors` are the threads of liblockstep that wait for a CPU. They have to hand
+    over time and messages, but also look again and again whether anything happens.
+    """
+
+    threads: Mapping[Path, int]
+    supervisors: Mapping[Path, int]
+    ready: bool
+
+    def is_blocked_since(self, before: ThreadTimes) -> bool:
+        """Return whether nothing could run since `before`, and each thread of liblockstep that waits had its turn."""
+        had_turns = all(before.supervisors.get(thread, ran) != ran for thread, ran in self.supervisors.items())
+        return had_turns and not (self.ready or before.ready) and self.threads == before.threads
+
+
+def thread_times(first: int, pids: Collection[int]) -> ThreadTimes:
+    """Read the times of the threads of processes. `first` is the one whose end the sandbox reports, 0 for none."""
+    threads: dict[Path, int] = {}
+    supervisors: dict[Path, int] = {}
+    ready, alive = False, not first
+    for pid in pids:
+        for thread in _threads(pid):
+            with contextlib.suppress(OSError):  # it has just ended
+                # The state follows the program's name, which may contain any character but ends with the last bracket.
+                name, _, rest = (thread / "stat").read_bytes().rpartition(b") ")
+                ran = int((thread / "schedstat").read_bytes().split()[0])
+                state = rest[:1]
+                alive |= pid == first and state not in (b"Z", b"X")
+                if not name.endswith(SUPERVISOR):
+                    threads[thread] = ran
+                    ready |= state in (b"R", b"D")
+                elif state == b"R":
+                    supervisors[thread] = ran
+    return ThreadTimes(threads, supervisors, ready or not alive)
 
 
 def _threads(pid: int) -> list[Path]:

@@ -76,8 +76,8 @@ class Team:
 
     @property
     def pid(self) -> int:
-        """The first program's process id, or 0 if none runs."""
-        return next((one.pid for one in self._running.values()), 0)
+        """The process id of the first program that has not ended, or 0 if all have."""
+        return next((one.pid for one in self._running.values() if one.poll() is None), 0)
 
     def pids(self) -> Collection[int]:
         """Return the ids of all the student's processes."""

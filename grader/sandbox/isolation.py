@@ -23,7 +23,8 @@ from grader.sandbox.program import IN_DOCKER, OPEN_FILES, Isolation, SandboxUnav
 from groundwork.clean_environment import module_command
 from groundwork.files import cached, write_if_changed
 
-_TRIAL_S = 30.0
+#: A trial takes a second of CPU. If a busy machine ended it, a weaker level would be chosen (s).
+_TRIAL_S = 240.0
 
 #: The files that determine whether a process may make namespaces, and which process this is: proc(5),
 #: user_namespaces(7). The first one changes at each boot.

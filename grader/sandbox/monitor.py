@@ -131,7 +131,8 @@ class Monitor:
         self._thread.start()
 
     def output(self) -> ProgramOutput:
-        """Return what has been printed so far."""
+        """Return what has been printed so far, also what nobody has read yet."""
+        self._drain_what_is_there()
         with self._lock:
             return self._buffer.output()
 
@@ -164,7 +165,7 @@ class Monitor:
         next_look_s = 0.0
         while not self.dead.is_set():
             ready = dict(poll.poll(_TICK_S * 1000))
-            if self._pipe in ready and not self._drain():
+            if self._pipe in ready and self._drain() == b"":
                 poll.unregister(self._pipe)
             if self._control.fileno() in ready:
                 self._receive()
@@ -172,22 +173,26 @@ class Monitor:
                 self._look()
                 next_look_s = time.monotonic() + _TICK_S
         self._drain_what_is_there()
-        os.close(self._pipe)
+        with self._lock:
+            os.close(self._pipe)
+            self._pipe = -1
         self._control.close()
 
-    def _drain(self) -> bool:
-        """Read a piece of the output; return False at its end."""
-        piece = os.read(self._pipe, _PIECE)
+    def _drain(self) -> bytes | None:
+        """Read a piece of the output, and return it: empty at its end, None if there is none yet."""
         with self._lock:
+            if self._pipe < 0 or not select.select([self._pipe], [], [], 0)[0]:
+                return None
+            piece = os.read(self._pipe, _PIECE)
             self._buffer.add(piece)
         if self._buffer.total > self._limits.output_bytes:
             self._kill("output")
-        return bool(piece)
+        return piece
 
     def _drain_what_is_there(self) -> None:
         """Read only what is in the pipe now: a process may still be writing."""
         for _ in range(8):
-            if not select.select([self._pipe], [], [], 0)[0] or not self._drain():
+            if not self._drain():
                 return
 
     def _receive(self) -> None:

@@ -120,7 +120,7 @@ def _watch(control: int, child: int, sandbox: namespaces.Namespaces | processes.
         if ended in ready:
             poll.unregister(ended)
             alive = False
-            _report_end(control, child)
+            _report_end(control, child, sandbox.init)
         if control in ready:
             command = _receive(control)
             if command == b"interrupt":
@@ -130,14 +130,16 @@ def _watch(control: int, child: int, sandbox: namespaces.Namespaces | processes.
                 continue
             sandbox.kill()
             if alive:
-                _report_end(control, child)
+                _report_end(control, child, sandbox.init)
             sandbox.reap()
             return
 
 
-def _report_end(control: int, child: int) -> None:
+def _report_end(control: int, child: int, init: int) -> None:
     _, status, usage = os.wait4(child, 0)
-    _report(control, {"event": "exited", "status": status, "cpu_s": usage.ru_utime + usage.ru_stime})
+    # The monitor counts what `init` has reaped: without namespaces that is this process, and so also the child.
+    cpu_s = 0.0 if init == os.getpid() else usage.ru_utime + usage.ru_stime
+    _report(control, {"event": "exited", "status": status, "cpu_s": cpu_s})
 
 
 def _receive(control: int) -> bytes:

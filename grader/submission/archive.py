@@ -21,8 +21,9 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path, PurePosixPath
+from typing import IO, cast
 
-from grader.submission.file_kinds import kind_of
+from grader.submission.file_kinds import MOST_BYTES_OF, NOT_UNPACKED, OTHER_ARCHIVES, kind_of
 from grader.submission.problems import Unreadable
 
 #: The most files that can matter. What a build left behind does not count.
@@ -47,7 +48,15 @@ _FILES = re.compile(
     re.IGNORECASE,
 )
 
-_BROKEN = (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError)
+#: What reading a damaged archive raises.
+BROKEN: tuple[type[Exception], ...] = (
+    *(zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError),
+    *(ValueError, ImportError),
+)
+with contextlib.suppress(ImportError):  # optional when Python is built
+    from lzma import LZMAError
+
+    BROKEN = (*BROKEN, LZMAError)
 
 
 @dataclass
@@ -58,12 +67,19 @@ class Contents:
     damaged: list[str] = field(default_factory=list)
     links: list[str] = field(default_factory=list)
     left: int = MOST_BYTES
+    left_for_notebooks: int = MOST_BYTES_OF["notebook"]
 
     def add(self, name: str, data: bytes) -> None:
         """Keep a file. Raises `Unreadable` if that exceeds a limit."""
-        self.left -= len(data)
+        if kind_of(name) == "notebook":  # a notebook's outputs may be large
+            self.left_for_notebooks -= len(data)
+        else:
+            self.left -= len(data)
         if self.left < 0:
             raise Unreadable(f"It holds more than {MOST_BYTES // 1_000_000} MB. {ADVICE}")
+        if self.left_for_notebooks < 0:
+            most = MOST_BYTES_OF["notebook"] // 1_000_000
+            raise Unreadable(f"Its notebooks are larger than {most} MB. Clear their outputs, and save them.")
         if len(self.files) >= MOST_FILES:
             raise Unreadable(f"It holds more than {MOST_FILES} files. {ADVICE}")
         if name in self.files:
@@ -136,7 +152,8 @@ def _keep(entries: Sequence[_Entry], prefix: str, contents: Contents, depth: int
     if len(meant) > MOST_FILES:
         raise Unreadable(f"It holds {len(meant)} files. {ADVICE}")
     for name, load in meant:
-        _add(f"{prefix}{name}", load(contents.left), contents, depth)
+        most = contents.left_for_notebooks if kind_of(name) == "notebook" else contents.left
+        _add(f"{prefix}{name}", load(most), contents, depth)
 
 
 def content_of(path: Path, most: int) -> bytes:
@@ -160,17 +177,22 @@ def content_of(path: Path, most: int) -> bytes:
 
 
 def _unpack(content: bytes, prefix: str, contents: Contents, depth: int) -> None:
-    is_tar = content.startswith((b"\x1f\x8b", b"BZh", b"\xfd7zXZ\x00")) or content[257:262] == b"ustar"
     try:
-        if is_tar:
-            with tarfile.open(fileobj=io.BytesIO(_decompressed(content)), mode="r:") as tar:
+        if is_tar(content):
+            data = _decompressed(content)
+            if b"\0" not in data[:512]:  # a single compressed file, such as node.py.gz
+                contents.add(f"{prefix}compressed", data)
+                return
+            with tarfile.open(fileobj=io.BytesIO(data), mode="r:") as tar:
                 _keep(list(_of_tar(tar, contents)), prefix, contents, depth)
         else:
             with zipfile.ZipFile(io.BytesIO(content)) as archive:
                 _keep(list(_of_zip(archive, contents)), prefix, contents, depth)
-    except (*_BROKEN, ValueError) as error:
-        why = f": {error}" if is_tar or content.startswith(b"PK") else ""
-        kind = "archive" if is_tar else "zip file" if why else "archive (.zip, .tar.gz, .tar)"
+    except BROKEN as error:
+        if content.startswith(OTHER_ARCHIVES):
+            raise Unreadable(f"It is {NOT_UNPACKED}. Hand in a .zip file.") from None
+        why = f": {error}" if is_tar(content) or content.startswith(b"PK") else ""
+        kind = "archive" if is_tar(content) else "zip file" if why else "archive (.zip, .tar.gz, .tar)"
         raise Unreadable(f"It is not a valid {kind}{why}. Was the upload cut off? Hand it in again.") from None
 
 
@@ -205,7 +227,7 @@ def _of_zip(archive: zipfile.ZipFile, contents: Contents) -> Iterator[_Entry]:
 def _of_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most: int) -> bytes | None:
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         return None
-    with contextlib.suppress(*_BROKEN, ValueError), archive.open(entry) as file:
+    with contextlib.suppress(*BROKEN), archive.open(entry) as file:
         return file.read(most + 1)
     return None
 
@@ -225,20 +247,33 @@ def _of_member(archive: tarfile.TarFile, entry: tarfile.TarInfo, most: int) -> b
     return file.read(most + 1) if file else None
 
 
+def is_tar(start: bytes) -> bool:
+    """Return whether a file that begins like this is a tar, or compressed as tars are."""
+    return start.startswith((b"\x1f\x8b", b"BZh", b"\xfd7zXZ\x00")) or start[257:262] == b"ustar"
+
+
+def decompressed(stream: IO[bytes], start: bytes) -> IO[bytes]:
+    """Return what a file that begins with `start` contains, as a stream. Raises one of `BROKEN`."""
+    if start.startswith(b"\x1f\x8b"):
+        return cast("IO[bytes]", gzip.GzipFile(fileobj=stream))
+    if start.startswith(b"BZh"):
+        return bz2.BZ2File(stream)
+    if start.startswith(b"\xfd7zXZ\x00"):
+        import lzma
+
+        return lzma.LZMAFile(stream)
+    return stream
+
+
 def _decompressed(content: bytes) -> bytes:
-    stream = io.BytesIO(content)
     try:
-        if content.startswith(b"\x1f\x8b"):
-            data = gzip.GzipFile(fileobj=stream).read(MOST_TAR_BYTES + 1)
-        elif content.startswith(b"BZh"):
-            data = bz2.BZ2File(stream).read(MOST_TAR_BYTES + 1)
-        elif content.startswith(b"\xfd7zXZ\x00"):
-            import lzma  # optional when Python is built
+        if content.startswith(b"\xfd7zXZ\x00"):
+            import lzma
 
             data = lzma.LZMADecompressor(memlimit=200_000_000).decompress(content, MOST_TAR_BYTES + 1)
         else:
-            data = content
-    except (*_BROKEN, ImportError, ValueError) as error:
+            data = decompressed(io.BytesIO(content), content).read(MOST_TAR_BYTES + 1)
+    except BROKEN as error:
         raise Unreadable(f"It is not a valid archive: {error}. Was the upload cut off? Hand it in again.") from None
     if len(data) > MOST_TAR_BYTES:
         raise Unreadable(f"It holds more than {MOST_TAR_BYTES // 1_000_000} MB. {ADVICE}")
@@ -254,4 +289,6 @@ def _path(name: str) -> str:
 def _is_meant(name: str) -> bool:
     """Return whether this is a student's file, and not one that file managers, editors or Python add."""
     *folders, file = name.split("/")
+    if "install" in folders:  # colcon's copy of a package, which matters if its source code is missing
+        folders = [folder for folder in folders if folder not in ("site-packages", "dist-packages")]
     return bool(file) and not any(map(_NOISE.fullmatch, folders)) and not _FILES.fullmatch(file)

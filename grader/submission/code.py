@@ -21,10 +21,12 @@ from grader.submission.archive import Contents, unpacked
 from grader.submission.file_choice import FileOption, ReadState, chosen, notes_on, targets
 from grader.submission.file_kinds import (
     NEITHER,
+    NOT_UNPACKED,
     OTHER_ARCHIVES,
     kind_of,
     kind_of_content,
     language_of,
+    named_by_content,
     not_graded,
 )
 from grader.submission.launch_program import MAIN, launch_file_in, program_files
@@ -43,8 +45,8 @@ NO_CPP = not_graded("C++")
 
 _INCLUDES = re.compile(rb"^[ \t]*#[ \t]*include[ \t]*[<\"]", re.MULTILINE)
 _A_CELL = (
-    "Your file has lines that only a notebook understands, such as %%node, ! or >>>. They were left out; Python itself "
-    "can't run the file."
+    "Your file has lines that only a notebook understands, such as %%node, ! or >>>, or Markdown's ```. They were left "
+    "out; Python itself can't run the file."
 )
 
 
@@ -87,7 +89,7 @@ def code_of(name: str, content: bytes, exercise: Exercise) -> Code:
         return code_of_notebook(read_notebook(content), exercise, posixpath.basename(name))
     if kind == "python":
         return code_of_python(content, exercise)
-    what = "an archive that can't be read here" if content.startswith(OTHER_ARCHIVES) else NEITHER
+    what = NOT_UNPACKED if content.startswith(OTHER_ARCHIVES) else NEITHER
     raise Unreadable(f"{posixpath.basename(name)} is {what}. Hand in a .py, .ipynb or .zip file.")
 
 
@@ -113,8 +115,17 @@ def code_of_python(content: bytes, exercise: Exercise) -> Code:
 
 def _as_a_cell(source: str) -> str:
     """Return the Python code of a file into which a notebook's cell was copied with its commands; otherwise ""."""
-    code = without_commands(cell_magic(source).code)
+    code = without_commands(cell_magic(_fenced(source)).code)
     return code if code.strip() and python_code.tree_of(code) else ""
+
+
+def _fenced(source: str) -> str:
+    """Return the only block of code between Markdown's fences, in its lines; otherwise the text unchanged."""
+    lines = source.split("\n")
+    fences = [number for number, line in enumerate(lines) if line.lstrip().startswith("```")]
+    if len(fences) != 2:
+        return source
+    return "\n".join(line if fences[0] < number < fences[1] else "" for number, line in enumerate(lines))
 
 
 def _refuse_conflict(content: bytes, where: str) -> None:
@@ -160,7 +171,7 @@ def code_of_notebook(notebook: Notebook, exercise: Exercise, name: str = "") -> 
     for content in files.values():
         _refuse_conflict(content, "the exercise's cell")
     main = next(iter(files))
-    notes = [note for choice in choices.values() for note in choice.notes]
+    notes = [*filter(None, [notebook.note]), *(note for choice in choices.values() for note in choice.notes)]
     if name.removesuffix(".ipynb").endswith("-checkpoint"):
         notes.insert(0, f"{name} is a copy that Jupyter makes by itself; your notebook may be newer.")
     for text in list(files.values()):
@@ -223,6 +234,7 @@ def _package(cell: NotebookCell) -> list[str]:
 
 def code_of_files(contents: Contents, exercise: Exercise, called: str = "") -> Code:
     """Return the program in a folder or an archive; `called` is the folder's name. Raises as `code_of`."""
+    contents = replace(contents, files=named_by_content(contents.files))
     if exercise.nodes and "notebook" not in map(kind_of, contents.files):
         return _launched(contents.files, exercise, "")
     reading = ReadState(contents, exercise, called)

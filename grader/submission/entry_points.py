@@ -34,12 +34,13 @@ _SCRIPTS = (("project", "scripts"), ("project", "entry-points", "console_scripts
 
 @dataclass(frozen=True)
 class EntryPoint:
-    """An executable that a package installs: `name` runs `function` of `module`, which is in `file`."""
+    """An executable that `package` installs: `name` runs `function` of `module`, which is in `file`."""
 
     name: str
     file: str
     function: str
     module: str = ""
+    package: str = ""
 
 
 def roots(files: Mapping[str, bytes]) -> list[str]:
@@ -62,8 +63,14 @@ def entry_points_of(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoin
     inside = {posixpath.relpath(name, root or "."): name for name in files if is_below(name, root)}
     for line in (*_of_setup(files, root), *_of_configuration(files, root), *_of_pyproject(files, root)):
         if (match := _ENTRY.fullmatch(line)) and (file := _module_file(match["module"], inside)):
-            yield EntryPoint(match["name"], file, match["function"] or "main", match["module"])
+            own = _package_name(files, root)
+            yield EntryPoint(match["name"], file, match["function"] or "main", match["module"], own)
     yield from _of_cmake(files, root)
+
+
+def _package_name(files: Mapping[str, bytes], root: str) -> str:
+    name = re.search(r"<name>\s*([\w-]+)\s*</name>", _text(files, root, "package.xml"))
+    return name[1] if name else posixpath.basename(root)
 
 
 def _module_file(module: str, inside: Mapping[str, str]) -> str:
@@ -159,6 +166,6 @@ def _of_cmake(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoint]:
     """Yield the scripts that `install(PROGRAMS …)` names."""
     for call in re.findall(r"install\s*\(\s*PROGRAMS([^)]*)\)", _text(files, root, "CMakeLists.txt"), re.IGNORECASE):
         for word in call.split():
-            file = posixpath.join(root, word)
-            if file in files:
-                yield EntryPoint(posixpath.basename(word), file, "")
+            for file in (posixpath.join(root, word), posixpath.join(root, f"{word}.py")):  # see `named_by_content`
+                if file in files:
+                    yield EntryPoint(posixpath.basename(word), file, "", "", _package_name(files, root))

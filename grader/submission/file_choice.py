@@ -10,11 +10,19 @@ from grader.exercise.exercise import Exercise, ProgramFile
 from grader.submission import packages, python_code
 from grader.submission.archive import Contents
 from grader.submission.entry_points import EntryPoint, entry_points
-from grader.submission.file_kinds import kind_of, language_of, not_graded, original_name
+from grader.submission.file_kinds import (
+    NOT_UNPACKED,
+    OTHER_ARCHIVES,
+    kind_of,
+    language_of,
+    not_graded,
+    original_name,
+)
 from grader.submission.launch_files import launch_settings, launched
 from grader.submission.notebook import Notebook, read_notebook
 from grader.submission.problems import AmbiguousProgram, Unreadable
 from grader.submission.program_choice import Choice, choose, digest_of, is_program
+from grader.submission.unreadable import text_of
 
 
 @dataclass(frozen=True)
@@ -88,7 +96,7 @@ def _language(reading: ReadState) -> str:
 
 
 def _of_python(name: str, reading: ReadState) -> FileOption:
-    source = reading.files[name].decode("utf-8", errors="replace")
+    source = text_of(reading.files[name])
     entries = [entry for entry in reading.entries if entry.file == name]
     title = f"{name}, the executable {entries[0].name}" if entries else name
     return FileOption(title, source, name, entries[0].function if entries else "")
@@ -134,8 +142,8 @@ def _decided(options: Sequence[FileOption], reading: ReadState, target: ProgramF
         for name, digest in (cell.checked or {}).items()
         if name == reading.exercise.name and digest
     }
-    names = {one.executable for one in launched(reading.files)}
-    entries = [entry for entry in reading.entries if entry.name in names]
+    nodes = launched(reading.files)
+    entries = [entry for entry in reading.entries if any(node.starts(entry) for node in nodes)]
     rules: tuple[tuple[str, Callable[[FileOption], bool]], ...] = (
         ("", lambda one: True),
         ("it is the one that %check judged", lambda one: digest_of(one.source) in checked),
@@ -168,7 +176,10 @@ def notes_on(option: FileOption, reading: ReadState) -> tuple[str, ...]:
         notes.append(f"Taken: {option.title}{why and ', because '}{why}.")
     if settings := launch_settings(reading.files, option.file):
         found = ", ".join(settings)
-        notes.append(f"Not applied from your launch file: {found}. The grader starts the program as the task says.")
+        notes.append(
+            f"Not applied from your launch file: {found}. The grader starts the program as `ros2 run` does, without a "
+            "launch file: the names and values that the task gives belong into the program."
+        )
     return tuple(notes)
 
 
@@ -201,8 +212,16 @@ def _nothing(reading: ReadState, target: ProgramFile) -> str:
         return reading.problems[0]
     if language := _language(reading):
         return not_graded(language)
+    if packed := [name for name, data in reading.files.items() if data.startswith(OTHER_ARCHIVES)]:
+        return f"{packed[0]} in it is {NOT_UNPACKED}. Hand in your code itself, or a .zip file."
+    if "[Content_Types].xml" in reading.files or reading.files.get("mimetype", b"").startswith(
+        b"application/vnd.oasis"
+    ):
+        return "It is a document of an office program. Hand in your code as a .py file or a notebook."
     if lost := [*reading.contents.links, *reading.contents.damaged]:
-        what = "is a symbolic link" if reading.contents.links else "can't be read"
+        what = (
+            "is a symbolic link" if reading.contents.links else "can't be read (is it damaged, or has it a password?)"
+        )
         return (
             f"{lost[0]} in it {what}, and there is no other code for {reading.exercise.name}. Hand in the file itself."
         )

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Literal
+
+from grader.submission.script_notebook import SAVED_AS_PYTHON
 
 Kind = Literal["python", "notebook", "archive", "other language", "other"]
 
@@ -40,10 +43,13 @@ MOST_BYTES_OF: dict[Kind, int] = {
 }
 
 _ARCHIVES = (b"PK\x03\x04", b"PK\x05\x06", b"\x1f\x8b", b"BZh", b"\xfd7zXZ\x00")
-#: RAR and 7z, which Python can't unpack.
-OTHER_ARCHIVES = (b"Rar!\x1a\x07", b"7z\xbc\xaf\x27\x1c")
+#: RAR, 7z and Zstandard, which Python can't unpack.
+OTHER_ARCHIVES = (b"Rar!\x1a\x07", b"7z\xbc\xaf\x27\x1c", b"\x28\xb5\x2f\xfd")
+NOT_UNPACKED = "an archive that can't be read here"
 
-_IMPORTS_ROS = re.compile(rb"^(?:import|from)[ \t]+rclpy\b", re.MULTILINE)
+_IS_PYTHON = re.compile(rb"\A#!.*python|^(?:import|from)[ \t]+rclpy\b", re.MULTILINE)
+#: A web page, rich text or Markdown may quote a program, but is not one.
+_IS_DOCUMENT = re.compile(rb"\A\s*(?:<|\{\\rtf)|^[ \t]*```", re.MULTILINE)
 
 NEITHER = "neither Python, nor a notebook, nor an archive"
 
@@ -97,6 +103,35 @@ def kind_of_content(content: bytes, kind: Kind) -> Kind:
     is_json = content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{")
     if kind in ("python", "other") and is_json and re.search(rb'"(?:cells|worksheets)"\s*:', content):
         return "notebook"
-    if kind in ("notebook", "other") and not is_json and _IMPORTS_ROS.search(content):
-        return "python"
-    return kind
+    if (
+        kind in ("notebook", "other")
+        and not is_json
+        and _IS_PYTHON.search(content)
+        and not _IS_DOCUMENT.search(content)
+    ):
+        kind = "python"
+    return "notebook" if kind == "python" and SAVED_AS_PYTHON.search(content) else kind
+
+
+def named_by_content(files: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Return the files of a submission under names that say what they are, as a lone file is read by its content.
+
+    A program without a suffix counts, one in a text file only if there is nothing else.
+    """
+    has_work = any(kind_of(name) in ("python", "notebook", "other language") for name in files)
+    named = dict(files)
+    for name, content in files.items():
+        before = kind_of(name)
+        kind = kind_of_content(content, before)
+        is_meant = before != "other" or "." not in name.rpartition("/")[2] or not has_work
+        if kind not in ("python", "notebook") or not is_meant:
+            continue
+        bare = name if kind != before else name.rpartition("/")[0] + "/" * ("/" in name) + without_additions(name)
+        new = bare if bare.endswith(_SUFFIX_OF[kind]) else re.sub(r"(?i)\.(?:py|ipynb)$", "", bare) + _SUFFIX_OF[kind]
+        if new not in named:
+            del named[name]
+            named[new] = content
+    return named
+
+
+_SUFFIX_OF = {"python": ".py", "notebook": ".ipynb"}

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from grader.submission import python_code
-from grader.submission.entry_points import entry_points
+from grader.submission.entry_points import EntryPoint, entry_points
 
 
 @dataclass(frozen=True)
@@ -23,6 +23,11 @@ class LaunchFileNode:
     name: str
     settings: tuple[str, ...] = ()
     """What the launch file sets for it, by its keywords: see `SETTINGS`."""
+    package: str = ""
+
+    def starts(self, entry: EntryPoint) -> bool:
+        """Return whether this is the node of an executable."""
+        return self.executable == entry.name and (self.package or entry.package) == entry.package
 
 
 #: What a launch file can set for a node, as "Node" in the documentation of launch_ros has it, and in words.
@@ -45,9 +50,10 @@ def launched(files: Mapping[str, bytes]) -> list[LaunchFileNode]:
             found += _launched_by_python(text)
         elif LAUNCH_FILE.search(name):
             for node in re.findall(r"<node\b[^>]*>|^\s*-\s*node:.*?(?=^\s*-|\Z)", text, re.DOTALL | re.MULTILINE):
-                values = dict(re.findall(r"""\b(exec|name)\s*[=:]\s*["']?([\w.-]+)""", node))
+                values = dict(re.findall(r"""\b(exec|name|pkg)\s*[=:]\s*["']?([\w.-]+)""", node))
                 keys = [key for key in SETTINGS if re.search(rf"\b{key}\b\s*[=:]|<{key}\b", _element(text, node))]
-                found.append(LaunchFileNode(values.get("exec", ""), values.get("name", ""), _in_words(keys)))
+                names = (values.get("exec", ""), values.get("name", ""))
+                found.append(LaunchFileNode(*names, _in_words(keys), values.get("pkg", "")))
     return [one for one in found if one.executable]
 
 
@@ -61,7 +67,8 @@ def _launched_by_python(text: str) -> Iterator[LaunchFileNode]:
                 if isinstance(keyword.value, ast.Constant) and isinstance(keyword.value.value, str)
             }
             keys = [keyword.arg or "" for keyword in node.keywords]
-            yield LaunchFileNode(values.get("executable", ""), values.get("name", ""), _in_words(keys))
+            names = (values.get("executable", ""), values.get("name", ""))
+            yield LaunchFileNode(*names, _in_words(keys), values.get("package", ""))
 
 
 def _element(text: str, tag: str) -> str:

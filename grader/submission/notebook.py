@@ -11,6 +11,7 @@ from typing import Any
 
 from grader.submission.magics import Magic, cell_magic, without_commands
 from grader.submission.problems import Unreadable, merge_conflict
+from grader.submission.script_notebook import SAVED_AS_PYTHON, cells_in
 
 #: The key in the metadata of `%check`'s output: {"exercise": NAME, "code": DIGEST}.
 RECORD = "spinbook"
@@ -75,15 +76,24 @@ class NotebookCell:
 
 @dataclass(frozen=True)
 class Notebook:
-    """A notebook: its code cells in their order, its language, and the version of Python that saved it, if known."""
+    """A notebook: its code cells in their order, its language, and the version of Python that saved it, if known.
+
+    `text` is that of its other cells; `note` says how it was read, if that is unusual.
+    """
 
     cells: tuple[NotebookCell, ...]
     python: str = ""
     language: str = ""
+    text: str = ""
+    note: str = ""
 
 
 def read_notebook(content: bytes) -> Notebook:
-    """Read a notebook's file. Raises `Unreadable`."""
+    """Read a notebook's file, or one that was saved as Python. Raises `Unreadable`."""
+    if SAVED_AS_PYTHON.search(content):
+        sources = cells_in(content.decode("utf-8-sig", errors="replace").replace("\r\n", "\n"))
+        note = f"Your file is a notebook that was saved as Python. It was read as its {len(sources)} code cells."
+        return Notebook(tuple(NotebookCell(number, one) for number, one in enumerate(sources, start=1)), note=note)
     data = _json(content)
     cells = _cells(data)
     version, language = (_of_language(data.get("metadata"), key) for key in ("version", "name"))
@@ -91,6 +101,7 @@ def read_notebook(content: bytes) -> Notebook:
         tuple(_cell(number, cell) for number, cell in enumerate(cells, start=1)),
         version if re.fullmatch(r"3\.\d{1,2}(\.\w{1,8})?", version) else "",
         language[:20],
+        "\n".join(_text(cell.get("source")) for cell in _cells(data, code=False)),
     )
 
 
@@ -143,14 +154,14 @@ def _not_json(content: bytes, error: json.JSONDecodeError) -> str:
     )
 
 
-def _cells(data: Mapping[str, Any]) -> list[dict[str, Any]]:
+def _cells(data: Mapping[str, Any], code: bool = True) -> list[dict[str, Any]]:
     cells = data.get("cells")
     if cells is None and isinstance(data.get("worksheets"), list):  # nbformat 3
         sheets = [sheet.get("cells") for sheet in data["worksheets"] if isinstance(sheet, dict)]
         cells = [cell for sheet in sheets if isinstance(sheet, list) for cell in sheet]
     if not isinstance(cells, list):
         raise Unreadable("It is not a valid notebook: its file holds no cells. Hand in the .ipynb that Jupyter saves.")
-    return [cell for cell in cells if isinstance(cell, dict) and cell.get("cell_type") == "code"]
+    return [cell for cell in cells if isinstance(cell, dict) and (cell.get("cell_type") == "code") == code]
 
 
 def _cell(number: int, cell: dict[str, Any]) -> NotebookCell:

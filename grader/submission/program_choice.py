@@ -196,6 +196,8 @@ def _no_cell(notebook: Notebook, target: ProgramFile) -> str:
         return (
             f"{conflict.title} holds the marks of a merge conflict from git. Choose one version, and delete the marks."
         )
+    if is_program(notebook.text, target):
+        return f"The {what} is in a text cell of the notebook, which is not run. Make it a code cell, and run %check."
     return (
         f"None of the notebook's {len(notebook.cells)} code cells is the exercise's. Write the {what} in the cell that "
         f"the chapter gives for it; it begins with %%node {stem}."

@@ -8,11 +8,22 @@ import re
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
+def text_of(code: bytes) -> str:
+    """Return a file's text: UTF-8, or UTF-16 if it begins with such a mark."""
+    return code.decode("utf-16" if code.startswith(UTF_16) else "utf-8", errors="replace")
+
+
 def not_python(code: bytes) -> str:
     """Return why Python can't read a file, if Python's own message is unclear; otherwise an empty text."""
     if code.startswith(UTF_16):
         return (
             "Your file is saved as UTF-16, which Python can't read. Save it as UTF-8: in VS Code, click UTF-16 below."
+        )
+    if re.match(rb"\s*<(?:!doctype|html)\b", code, re.IGNORECASE):
+        return "Your file is a web page, not Python. Download the file itself: on GitHub, with Download raw file."
+    if code.startswith(b"{\\rtf"):
+        return (
+            "Your file is rich text, not Python. Save it as plain text: in TextEdit, choose Format > Make Plain Text."
         )
     if b"\0" in code:
         line = code[: code.index(b"\0")].count(b"\n") + 1

@@ -235,6 +235,12 @@ def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
     )
 
 
+#: The time that the hand-in has to write its file after its self-check was stopped, and then after SIGTERM (s).
+_HAND_IN_GRACE = (60.0, 5.0)
+
+_NOT_HANDED_IN = "Nothing was handed in: it was stopped before the file was written. Run {command} again."
+
+
 def submit_cell(session: Session, shell: Any, name: str, course: str, student: str | None, seconds: float) -> None:
     """Write the upload for the exercise `name`. Raises CellFailed if there is nothing to hand in, or if it fails."""
     notebook = notebook_file(shell.user_ns, os.environ)
@@ -253,4 +259,15 @@ def submit_cell(session: Session, shell: Any, name: str, course: str, student: s
         command += [os.fspath(notebook)] if notebook else []
         command += ["--code", os.fspath(file if is_single else Path(folder, exercise.name))]
         command += ["--student", student] if student is not None else []
-        session.run_command(command, {}, Path.cwd(), DisplayLimit(seconds), f"%submit {name}")
+        shown_as = f"%submit {name}"
+        try:
+            status = session.run_command(command, {}, Path.cwd(), DisplayLimit(seconds), shown_as, _HAND_IN_GRACE)
+        except KeyboardInterrupt:
+            raise CellFailed(_NOT_HANDED_IN.format(command=shown_as)) from None
+    if status.ended_by and status.exit != 0:
+        raise CellFailed(_NOT_HANDED_IN.format(command=shown_as))
+    if status.ended_by:
+        print(
+            f"The self-check was stopped, by you or because it took longer than {seconds:g} s; the file to upload has "
+            f"none. To wait longer: {shown_as} --seconds {2 * seconds:g}"
+        )

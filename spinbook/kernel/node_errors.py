@@ -27,15 +27,17 @@ _LOGGED = re.compile(
     r"|The following exception was never retrieved: (?P<lost>.*)"
 )
 _COLOURS = re.compile(r"\x1b\[[0-9;]*m")
-_TRACEBACK = "Traceback (most recent call last):"
+_TRACEBACK = re.compile(r"(?<!Group )Traceback \(most recent call last\):\s*$")
 _FRAME = re.compile(r'\s*File "([^"]+)", line (\d+)(, in <module>)?')
-_RAISED = re.compile(r"[A-Za-z_][\w.]*(Error|Exception|Interrupt|Exit|Warning|Iteration)?(: .*)?$")
+_RAISED = re.compile(r"[A-Za-z_][\w.<>]*(Error|Exception|Interrupt|Exit|Warning|Iteration)?(: .*)?$")
 _CHAINED = ("During handling of the above exception", "The above exception was the direct cause")
 #: How programs end, and what they say then, when they are interrupted: Ctrl-C itself shuts rclpy's context down, below
-#: callbacks that still run in other threads.
+#: callbacks that still run in other threads. If the program shuts it down, too, chance decides who is first, and so
+#: which of its calls fails.
 _ON_CTRL_C = re.compile(
     r"(\w+\.)*(KeyboardInterrupt|ExternalShutdownException|InvalidHandle)\b"
-    r"|.*(rcl_shutdown already|context is |(publisher|subscription|service|client|node|implementation) is invalid)"
+    r"|.*(rcl_shutdown already|must be initialized before it can be shutdown|context is "
+    r"|(publisher|subscription|service|client|node|implementation) is invalid)"
 )
 _FROM_US = frozenset({-signal.SIGINT, -signal.SIGTERM, -signal.SIGKILL, 128 + signal.SIGINT, 128 + signal.SIGTERM})
 
@@ -88,19 +90,27 @@ class _Raised:
 
 @dataclass
 class NodeLog:
-    """Reads a node's output as it arrives, and collects what went wrong in it."""
+    """Reads a node's output as it arrives, and collects what went wrong in it.
+
+    Other threads may write anything into a traceback, also below Python: a line of the middleware, or half of one.
+    """
 
     logged: list[str] = field(default_factory=list)
     raised: list[_Raised] = field(default_factory=list)
     last: deque[str] = field(default_factory=lambda: deque(maxlen=_QUOTED_LINES))
-    was_interrupted: bool = False
-    """Whether an exception says that Ctrl-C ended the program."""
+    _says_ctrl_c: bool = False
     _frames_shown: ReaderFrames = field(default_factory=ReaderFrames)
     _part: str = ""
     _chain: list[_Raised] = field(default_factory=list)
     _frames: list[tuple[str, int]] | None = None
     _uncaught: bool = False
     _ignored: bool = False
+    _is_chained: bool = False
+
+    @property
+    def was_interrupted(self) -> bool:
+        """Whether the output says that Ctrl-C ended the program, and nothing else did."""
+        return self._says_ctrl_c and not self.raised
 
     @property
     def is_ending(self) -> bool:
@@ -109,21 +119,28 @@ class NodeLog:
 
     def add(self, text: str, *, stopping: bool = False) -> None:
         """Add output. While a node is `stopping`, the exceptions of an interrupted program are no errors."""
-        *lines, self._part = (self._part + text).split("\n")
+        text = self._part + text
+        # However the traceback came out: its exit code alone would look like an error.
+        self._says_ctrl_c |= stopping and bool(_ON_CTRL_C.search(text))
+        *lines, self._part = text.split("\n")
         for line in lines:
             self.last.extend(shortened(shown.rstrip()) for shown in self._frames_shown.shown([line]) if line.strip())
             self._line(_LAUNCHED.sub("", _COLOURS.sub("", line), count=1), stopping)
         self._end_chain(stopping)
 
     def _line(self, line: str, stopping: bool) -> None:
-        if line.strip() == _TRACEBACK:
-            self._frames, self._uncaught = [], False
+        if _TRACEBACK.search(line):
+            if not self._is_chained:
+                self._end_chain(stopping)
+            self._frames, self._uncaught, self._is_chained = [], False, False
         elif self._frames is not None and not is_log_line(line):
             self._in_traceback(line, self._frames)
         elif self._frames is not None:
             # Another thread logs while Python prints the traceback.
             self._log(line, stopping)
-        elif line.startswith(_CHAINED) or not line.strip():
+        elif line.startswith(_CHAINED):
+            self._is_chained = True
+        elif not line.strip():
             return
         else:
             self._end_chain(stopping)
@@ -138,9 +155,8 @@ class NodeLog:
         if frame := _FRAME.match(line):
             frames.append((frame[1], int(frame[2])))
             self._uncaught = self._uncaught or bool(frame[3])
-        elif line.strip() and not line[0].isspace():
-            quoted = "\n".join(self.last)
-            self._chain += [_Raised(line.strip(), tuple(frames), self._uncaught, quoted)] if _RAISED.match(line) else []
+        elif _RAISED.match(line):
+            self._chain.append(_Raised(line.strip(), tuple(frames), self._uncaught, "\n".join(self.last)))
             self._frames = None
 
     def _end_chain(self, stopping: bool) -> None:
@@ -148,7 +164,6 @@ class NodeLog:
         if self._frames is not None or not self._chain:
             return
         errors = [item for item in self._chain if not (stopping and _ON_CTRL_C.match(item.text))]
-        self.was_interrupted = self.was_interrupted or not errors
         self.raised += [] if self._ignored else errors[-1:]
         self._chain, self._ignored = [], False
 

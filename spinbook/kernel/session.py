@@ -21,7 +21,7 @@ from spinbook.kernel.environment import Domain
 from spinbook.kernel.long_lines import whole_in
 from spinbook.kernel.node_errors import AS_EXPECTED, NodeError, how_it_ended
 from spinbook.kernel.node_registry import NodeRegistry, RunningNode, StopResult
-from spinbook.kernel.process import CellFailed, KeptProcess
+from spinbook.kernel.process import CellFailed, KeptProcess, Status
 from spinbook.kernel.reader_frames import readable
 from spinbook.kernel.timeline_cell import TimelineProcess
 from spinbook.package.files import Module
@@ -268,9 +268,18 @@ class Session:
             raise CellFailed(f"{node.name} {how_it_ended(status.exit)} Its last output is above.")
 
     def run_command(
-        self, argv: list[str], settings: dict[str, str], cwd: Path, bound: DisplayLimit, shown_as: str
-    ) -> None:
-        """Run a command in the cell, and end it as Ctrl-C would when its time is up. Raises CellFailed if it fails."""
+        self,
+        argv: list[str],
+        settings: dict[str, str],
+        cwd: Path,
+        bound: DisplayLimit,
+        shown_as: str,
+        grace: tuple[float, float] = COMMAND_GRACE,
+    ) -> Status:
+        """Run a command in the cell, and end it as Ctrl-C would when its time is up. Raises CellFailed if it fails.
+
+        Then it has `grace` to end by itself (see `KeptProcess.stop`). Return how it ended.
+        """
         process = KeptProcess(argv, {**os.environ, **settings}, cwd)
         try:
             try:
@@ -279,8 +288,8 @@ class Session:
             except KeyboardInterrupt:
                 bounded = True
             if bounded:
-                process.stop(COMMAND_GRACE)
-                show_rest(process, sum(COMMAND_GRACE) + 1)
+                process.stop(grace)
+                show_rest(process, sum(grace) + 1)
         finally:
             process.close()
         status = process.status
@@ -290,6 +299,7 @@ class Session:
             if not bound.expects_error:
                 raise CellFailed(f"{shown_as}: {how_it_ended(status.exit or 0)}")
             print(f"{AS_EXPECTED}{shown_as} {how_it_ended(status.exit or 0)} —")
+        return status
 
     def wait_for(self, name: str, bound: DisplayLimit) -> None:
         """Wait until a node's log contains the limit's text, or time is up. Raises CellFailed for an unknown name."""

@@ -24,6 +24,7 @@ from grader.submission.file_kinds import can_be_read, kind_of
 from grader.submission.reader import NoSubmission, read
 from grader.submission.submission import Submission
 from grader.submission.upload import pack
+from grader.workers.pool import HostFault
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem
 from spinbook import __version__
@@ -122,8 +123,8 @@ def self_check(exercise: Exercise, submission: Submission) -> SelfCheck:
         return SelfCheck(None, "It was interrupted.")
     except ExerciseError as error:
         return SelfCheck(None, f"The checks can't run here: {error.problem.problem} ({error.problem.file.name}).")
-    except SandboxUnavailable as error:
-        return SelfCheck(None, str(error))
+    except (SandboxUnavailable, HostFault) as error:
+        return SelfCheck(None, f"The machine or the grader is at fault, not your code: {str(error).rstrip('.')}.")
     except Exception as error:
         return SelfCheck(None, f"{type(error).__name__}: {error}")
     if not grade.has_score:

@@ -14,6 +14,7 @@ from datetime import datetime
 from html import escape
 
 from grader.classroom.formats.format import Export, ExportTable, Format, Interpretation, Parts, UploadedFile, person
+from grader.classroom.formats.moodle_languages import COLUMNS, LANGUAGE, LANGUAGES
 from grader.classroom.tables import Cell, csv_text, number
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Entry, Student
@@ -56,15 +57,14 @@ def of_row(row: Mapping[str, str]) -> Student | None:
 
 
 def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None) -> str:
-    """Return Moodle's offline grading worksheet, ready to upload.
+    """Return Moodle's offline grading worksheet, ready to upload, in the language of the worksheet that was read.
 
     Moodle finds students by Identifier, "Participant 1234567", which is only in Moodle's own download or a table: it is
     empty if neither had it, and Moodle then does not find the student. Moodle ignores rows whose grade is above the
     maximum, so extra credit is cut off, and the comment says so. It also ignores rows without a grade, so a fault of
     ours changes nothing. Columns of a worksheet that was read are returned unchanged.
     """
-    columns = ["Identifier", "Full name", "Email address", "Status", "Grade", "Maximum Grade"]
-    columns += ["Grade can be changed", "Last modified (submission)", "Last modified (grade)", "Feedback comments"]
+    language = next((one for entry in entries if (one := entry.student.lms.get(LANGUAGE))), "")
     rows: list[list[Cell]] = []
     for entry in entries:
         final, points = entry.final, entry.grade.points
@@ -76,13 +76,13 @@ def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = N
             "Grade can be changed": "Yes",
             "Last modified (submission)": "-",
             "Last modified (grade)": "-",
-            **{name: value for name, value in entry.student.lms.items() if name in columns},
+            **{name: value for name, value in entry.student.lms.items() if name in COLUMNS},
             "Grade": None if final is None else min(final, points),
             "Maximum Grade": points,
             "Feedback comments": _comment(entry),
         }
-        rows.append([cells[column] for column in columns])
-    return csv_text(columns, rows)
+        rows.append([cells[column] for column in COLUMNS])
+    return csv_text([LANGUAGES.get(language, {}).get(column, column) for column in COLUMNS], rows)
 
 
 def unknown_to_moodle(entries: Sequence[Entry]) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import stat
+import tarfile
 import zipfile
 from datetime import datetime, timezone
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from grader.classroom.archive import MOST_FILES
+from grader.classroom.archive import MOST_FILES, unpacked
 from grader.classroom.collector import CollectOptions, collect
 from grader.classroom.submissions import Submissions, SubmissionsError
 from grader.exercise import load
@@ -36,9 +37,9 @@ def zipped(file: Path, *names: str) -> Path:
 
 
 def taken(source: Path, tmp_path: Path, **options: Any) -> Submissions:
-    unpacked = tmp_path / "unpacked"
-    unpacked.mkdir(exist_ok=True)
-    return collect(source, load(ROOT / "exercises" / EXERCISE), unpacked, CollectOptions(**options))
+    into = tmp_path / "unpacked"
+    into.mkdir(exist_ok=True)
+    return collect(source, load(ROOT / "exercises" / EXERCISE), into, CollectOptions(**options))
 
 
 def files(collected: Submissions) -> dict[str, str]:
@@ -192,10 +193,39 @@ def test_a_student_named_twice_in_a_table_is_a_question(tmp_path: Path) -> None:
 def test_no_name_in_a_zip_leads_out_of_its_folder(tmp_path: Path) -> None:
     source = zipped(tmp_path / "class.zip", "../../evil.py", "/etc/evil2.py", "a\\..\\..\\evil3.py", "fine.py")
     collected = taken(source, tmp_path)
-    unpacked = (tmp_path / "unpacked").resolve()
-    assert {one.file.path.resolve().parent for one in collected.handed_in} == {unpacked}
+    into = (tmp_path / "unpacked").resolve()
+    assert {one.file.path.resolve().parent for one in collected.handed_in} == {into}
     assert "fine" in files(collected)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["class.zip", "unpacked"]
+
+
+@pytest.mark.parametrize("kind", ["gz", "bz2", "xz", ""])
+def test_a_tar_is_read_as_a_zip_is(tmp_path: Path, kind: str) -> None:
+    source = tmp_path / f"class.tar.{kind}"
+    with tarfile.open(source, f"w:{kind}") as archive:  # type: ignore[call-overload]
+        for name in ("./anna.py", "bert/node.py", "../../evil.py", "__MACOSX/._x.py", "dora.py", "dora.py"):
+            archive.addfile(tarfile.TarInfo(name), io.BytesIO())
+        for name, sort in (("link.py", tarfile.SYMTYPE), ("hard.py", tarfile.LNKTYPE), ("device.py", tarfile.CHRTYPE)):
+            entry = tarfile.TarInfo(name)
+            entry.type, entry.linkname, entry.mtime = sort, "/etc/passwd", 10**14
+            archive.addfile(entry)
+    collected = taken(source, tmp_path)
+    assert files(collected) == {"anna": "anna.py", "bert": "bert/node.py", "evil": "evil.py", "link": "link.py"}
+    assert [one.file.path.parent == tmp_path / "unpacked" for one in collected.handed_in] == [True] * 4
+    assert [one.student.id for one in collected.questions] == ["device", "dora", "hard"]
+    source.write_bytes(source.read_bytes()[: 100 if kind else 1000])
+    with pytest.raises(SubmissionsError, match=r"it is not a valid tar file: .* Was the download cut off"):
+        list(unpacked(source, tmp_path))
+
+
+def test_a_bomb_in_a_tar_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("grader.classroom.archive.MOST_BYTES_IN_ALL", 1_000_000)
+    with tarfile.open(tmp_path / "class.tgz", "w:gz") as archive:
+        entry = tarfile.TarInfo("bomb.py")
+        entry.size = 5_000_000
+        archive.addfile(entry, io.BytesIO(bytes(entry.size)))
+    with pytest.raises(SubmissionsError, match="unpacked, it is larger than"):
+        taken(tmp_path / "class.tgz", tmp_path)
 
 
 def test_links_and_encrypted_files_in_a_zip_are_named_and_have_a_row(tmp_path: Path) -> None:
@@ -221,6 +251,12 @@ def test_links_and_encrypted_files_in_a_zip_are_named_and_have_a_row(tmp_path: P
     assert [str(question) for question in collected.questions] == [
         "secret handed in secret.py: it is encrypted. Was the download cut off?"
     ]
+
+
+def test_an_archive_of_another_kind_is_to_be_unpacked(tmp_path: Path) -> None:
+    (tmp_path / "class.rar").write_bytes(b"Rar!\x1a\x07\x01\x00")
+    with pytest.raises(SubmissionsError, match="an archive of another kind: unpack it, and give the folder"):
+        taken(tmp_path / "class.rar", tmp_path)
 
 
 def test_a_bomb_in_a_zip_is_cut_off_and_judged_too_large(tmp_path: Path) -> None:

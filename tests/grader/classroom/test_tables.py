@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import csv
+from datetime import datetime, timezone
 from pathlib import Path
 
+import plain_grades as plain
 import pytest
 
+from grader.classroom.formats import moodle
+from grader.classroom.formats.moodle_languages import COLUMNS, LANGUAGES
 from grader.classroom.groups import read_groups
 from grader.classroom.roster import read_roster
 from grader.classroom.submissions import SubmissionsError
@@ -46,9 +51,9 @@ REFUSED = {
     "a column twice": (b"student,student\nanna,bert\n", "1: two columns are called 'student'"),
     "no student": (b"name,points\nAnna,3\n", "2: no column says who this is. Add a column student"),
     "a time": (b"student,submitted\nanna,11/12/2026 10:00\n", "2: submitted = '11/12/2026 10:00'. Write it as"),
-    "Moodle in German": (
-        "ID;Vollständiger Name\nTeilnehmer/in7;Anna\n".encode(),
-        "with English as your language there",
+    "Moodle in another language": (
+        b"Identyfikator;Nazwa;Status\nUczestnik 7;Anna;x\n",
+        "with English or one of ca, de, es, fr, it, ja, nl, pt, ru, sv, zh_cn as your language there",
     ),
 }
 
@@ -59,6 +64,46 @@ def test_a_roster_that_would_lose_somebody_is_refused(content: bytes, message: s
     with pytest.raises(SubmissionsError) as refused:
         read_roster(tmp_path / "roster.csv", None)
     assert message in str(refused.value)
+
+
+TIMES = {
+    "ca": "diumenge, 22 de novembre 2026, 23:59",
+    "de": "Sonntag, 22. November 2026, 23:59",
+    "es": "domingo, 22 de noviembre de 2026, 23:59",
+    "fr": "dimanche 22 novembre 2026, 23:59",
+    "it": "domenica, 22 novembre 2026, 23:59",
+    "ja": "2026年 11月 22日(日曜日) 23:59",
+    "nl": "zondag, 22 november 2026, 23:59",
+    "pt": "domingo, 22 de novembro de 2026 às 23:59",
+    "ru": "воскресенье, 22 ноября 2026, 23:59",
+    "sv": "söndag, 22 november 2026, 23:59",
+    "zh_cn": "2026年11月22日 星期日 23:59",
+}
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_moodles_worksheet_may_be_in_another_language(language: str, tmp_path: Path) -> None:
+    with (tmp_path / "roster.csv").open("w", encoding="utf-8-sig") as file:
+        columns = [LANGUAGES[language][name] for name in COLUMNS]
+        csv.writer(file).writerows(
+            [columns, ["X 77", "Anna Lee", "a@x.org", "x", "", 50, "x", TIMES[language], "-", ""]]
+        )
+    (row,) = read_roster(tmp_path / "roster.csv", timezone.utc)
+    assert (row.student.id, row.student.name, row.student.email) == ("Anna Lee_77", "Anna Lee", "a@x.org")
+    assert row.time.at == datetime(2026, 11, 22, 23, 59, tzinfo=timezone.utc)
+    # Moodle reads its own table back only in the same language.
+    back = next(csv.reader(moodle.table(plain.exercise(), [plain.entry(plain.RIGHT, row.student)]).splitlines()))
+    assert back == columns
+
+
+@pytest.mark.parametrize(
+    ("time", "fault"), [("22. Fevruar 2026, 23:59", "Last modified"), ("30. Februar 2026, 23:59", "Last modified")]
+)
+def test_a_time_in_it_that_can_not_be_read_is_an_error(time: str, fault: str, tmp_path: Path) -> None:
+    names = [LANGUAGES["de"][name] for name in ("Identifier", "Full name", "Status", "Last modified (submission)")]
+    (tmp_path / "roster.csv").write_text(";".join(names) + f"\nTeilnehmer/in 7;Anna;x;{time}\n", encoding="utf-8")
+    with pytest.raises(SubmissionsError, match=fault):
+        read_roster(tmp_path / "roster.csv", None)
 
 
 def test_columns_of_our_own_tables_may_be_in_any_case(tmp_path: Path) -> None:

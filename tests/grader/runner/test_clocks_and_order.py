@@ -117,7 +117,7 @@ def test_of_several_processes_the_node_decides() -> None:
 def test_a_machine_that_was_frozen_is_found_to_have_been(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [100.0]
     monkeypatch.setattr(time, "monotonic", lambda: now[0])
-    student = SimpleNamespace(poll=lambda: None, cpu_seconds=lambda: 0.0, at_limit=lambda: False)
+    student = SimpleNamespace(pid=0, poll=lambda: None, cpu_seconds=lambda: 0.0, at_limit=lambda: False)
     budget = Budget(student, tuple, Allowance("busy", "blocked"))  # type: ignore[arg-type]
     for _ in range(50):
         now[0] += 0.02

@@ -194,18 +194,21 @@ def test_an_interrupt_is_what_ctrl_c_is(any_runner: Runner) -> None:
     assert text.rstrip().endswith("KeyboardInterrupt")
 
 
-def watch_cpu(fork_server: ForkServer, level: Isolation) -> tuple[float, int, int]:
-    busy = ProgramSpec("n.py", {"n.py": b"print('ready')\nwhile True: pass"})
+def watch_cpu(fork_server: ForkServer, level: Isolation) -> tuple[float, float, int, int]:
+    busy = ProgramSpec("n.py", {"n.py": b"import time\nwhile time.process_time() < 0.5: pass"})
     with fork_server.start(busy, level, core=0) as student:
         while student.cpu_seconds() < 0.3:
             assert student.wait(0.001) is None
-        return student.cpu_seconds(), student.processes(), student.pid
+        running, processes = student.cpu_seconds(), student.processes()
+        student.wait(60.0)
+        return running, student.cpu_seconds(), processes, student.pid
 
 
 def test_the_rig_sees_what_the_program_uses(any_runner: Runner) -> None:
-    cpu_s, processes, pid = any_runner.do(watch_cpu)
+    running_s, ended_s, processes, pid = any_runner.do(watch_cpu)
 
-    assert cpu_s >= 0.3
+    assert running_s >= 0.3
+    assert 0.5 <= ended_s < 0.95, "not twice what it used"
     assert processes == 1
     assert pid > 1
 

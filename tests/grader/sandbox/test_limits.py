@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
+import os
+import socket
+import subprocess
 from typing import Any
 
 import pytest
 from sandbox_runner import Runner
 
 from grader.sandbox import Isolation, Limits
-from grader.sandbox.monitor import OutputBuffer
+from grader.sandbox.monitor import Monitor, OutputBuffer
 
 MIB = 1024 * 1024
 SMALL = Limits(cpu_s=20.0, memory_bytes=1024 * MIB, processes=64, file_bytes=4 * MIB, output_bytes=MIB, wall_s=240.0)
@@ -123,6 +126,22 @@ def test_the_first_and_the_last_part_of_much_output_is_kept(any_runner: Runner) 
     assert text.endswith("line 39999\nlast\n")
     assert "bytes of output are not shown" in text
     assert len(text) < 140_000
+
+
+def test_what_was_printed_is_known_at_once() -> None:
+    control, supervisor = socket.socketpair()
+    output, printed = os.pipe()
+    program = subprocess.Popen(["sleep", "60"])
+    monitor = Monitor(control, output, SMALL, program.pid, program.pid, frozenset())
+    known = []
+    for _ in range(300):  # the monitor's own thread reads it, too, but needs a moment
+        os.write(printed, b"x")
+        known.append(len(monitor.output().data))
+    supervisor.close()  # the monitor then kills the program
+    os.close(printed)
+    program.wait()
+    monitor.join()
+    assert known == list(range(1, 301))
 
 
 def test_all_output_is_counted_whatever_the_pieces() -> None:

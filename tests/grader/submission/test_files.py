@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import sys
 from pathlib import Path
@@ -43,6 +44,16 @@ NAMES = {
     "all.zip.zip": zipped({"heartbeat.py.txt": PROGRAM}),
     "week3.zip.txt": zipped({"week3.IPYNB": notebook(NODE)}),
     "renamed.py": zipped({"heartbeat.py": PROGRAM}),
+    "heartbeat.py.gz": gzip.compress(PROGRAM.encode()),
+    "of names without a suffix.zip": zipped({"bin/heartbeat": PROGRAM, "README": "mine"}),
+    "of text.zip": zipped({"heartbeat.txt": PROGRAM, "report.pdf": "%PDF"}),
+    "of JSON.zip": zipped({"week3.json": notebook(NODE)}),
+    "of a notebook as .py.zip": zipped({"week3.py": notebook(NODE)}),
+    "of a program as .ipynb.zip": zipped({"week3.ipynb": PROGRAM}),
+    "of a large notebook.zip": zipped(
+        {"week3.ipynb": notebook(cell(NODE, outputs=[{"output_type": "stream", "text": "x" * 5_000_000}]))}
+    ),
+    "from a chat.py": f"Here is the code:\n\n```python\n{PROGRAM}```\n\nIt beats.\n".encode(),
 }
 
 
@@ -52,7 +63,7 @@ def test_any_suffix_in_any_case_is_read(name: str, tmp_path: Path, exercise: Exe
     submission = read(str(tmp_path / name), exercise)
     assert submission.program, submission.problem
     assert digest_of(submission.source) == digest_of(PROGRAM)
-    assert can_be_read(name) or name in ("week3.json", "heartbeat.txt", "heartbeat")
+    assert can_be_read(name) or name in ("week3.json", "heartbeat.txt", "heartbeat", "heartbeat.py.gz")
 
 
 SAVED = notebook(NODE)
@@ -69,6 +80,11 @@ BROKEN = {
     "a web page": (b"<!DOCTYPE html>\n<html></html>", "a web page. Download the notebook's own file"),
     "a comma": (SAVED.replace(b'"cells":', b'"cells",'), "line 1 of the file can't be read"),
     "another JSON": (b'{"exercise": "heartbeat"}', "holds no cells. Hand in the .ipynb that Jupyter saves."),
+    "a page with a program": (f"<html>\n{PROGRAM}".encode(), "a web page. Download the notebook's own file"),
+    "a program as text": (
+        json.dumps({"cells": [{"cell_type": "raw", "source": NODE}]}).encode(),
+        "The class Heartbeat is in a text cell of the notebook, which is not run. Make it a code cell",
+    ),
     "a list": (b"[1]", "It is not a valid notebook"),
     "deeply nested": (b"[" * 100_000, "It is not a valid notebook"),
     "deeply nested cells": (b'{"cells": ' + b"[" * 100_000, "It is not a valid notebook"),
@@ -143,9 +159,34 @@ def test_a_merge_conflict_in_the_program_is_named(exercise: Exercise) -> None:
     assert of_content("heartbeat.py", shown.encode(), exercise).program
 
 
-@pytest.mark.parametrize("content", [b"Rar!\x1a\x07\x01", b"7z\xbc\xaf\x27\x1c"], ids=["RAR", "7z"])
+@pytest.mark.parametrize(
+    "content", [b"Rar!\x1a\x07\x01", b"7z\xbc\xaf\x27\x1c", b"\x28\xb5\x2f\xfd"], ids=["RAR", "7z", "Zstandard"]
+)
 def test_an_archive_that_python_can_not_unpack_is_named_as_one(content: bytes, exercise: Exercise) -> None:
     assert "is an archive that can't be read here" in of_content("work.rar", content, exercise).problem
+    assert "is an archive that can't be read here" in of_content("work.zip", content, exercise).problem
+    inside = of_content("work.zip", zipped({"work.rar": content, "README.md": ""}), exercise).problem
+    assert inside.startswith("work.rar in it is an archive that can't be read here.")
+
+
+OTHER_KINDS = {
+    "week3.md": (f"# Mine\n```python\n{PROGRAM}```\n".encode(), "week3.md is neither Python, nor a notebook"),
+    "week3.html": (f"<!DOCTYPE html>\n<pre>\n{PROGRAM}".encode(), "week3.html is neither Python, nor a notebook"),
+    "heartbeat.docx": (
+        zipped({"[Content_Types].xml": "", "word/document.xml": f"<w:t>\n{PROGRAM}"}),
+        "of an office program.",
+    ),
+    "page.py": (b"\n<!DOCTYPE html>\n", "Your file is a web page, not Python."),
+    "rich.py": (b"{\\rtf1 import rclpy}", "Your file is rich text, not Python."),
+    "wide.py": (PROGRAM.encode("utf-16"), "Your file is saved as UTF-16, which Python can't read."),
+    "wide.zip": (zipped({"mine.py": PROGRAM.encode("utf-16"), "rates.py": ""}), "Your file is saved as UTF-16"),
+}
+
+
+@pytest.mark.parametrize("name", OTHER_KINDS)
+def test_a_file_that_only_quotes_a_program_is_named_for_what_it_is(name: str, exercise: Exercise) -> None:
+    content, problem = OTHER_KINDS[name]
+    assert problem in of_content(name, content, exercise).problem
 
 
 @pytest.mark.parametrize("name", ["essay.docx", "notes.txt", "video.mp4", "nameless"])

@@ -69,6 +69,8 @@ LEFT_BEHIND = {
     "ws/.venv/lib/python3.12/site-packages/x.py": "x = 1\n",
     "__MACOSX/ws/src/my_robot/my_robot/._beat_node.py": b"\0\5\26\7",
 }
+#: The same package in an earlier state.
+OLDER = {name: content.replace("self.beat)", "self.beat, None)") for name, content in PACKAGE.items()}
 NO_ENTRIES = {name: content for name, content in PACKAGE.items() if name != "setup.py"}
 UPLOADS = {
     "a package": ("beat.zip", zipped(inside("my_robot"))),
@@ -113,6 +115,40 @@ UPLOADS = {
                 "p/my_robot/rates.py": RATES,
                 "p/scripts/beat.py": IN_PACKAGE,
                 "p/src/main.cpp": "int main() {}\n",
+            }
+        ),
+    ),
+    "installed by CMake without a suffix": (
+        "beat.zip",
+        zipped(
+            {
+                "p/CMakeLists.txt": "install(PROGRAMS scripts/beat scripts/old.py DESTINATION lib/${PROJECT_NAME})\n",
+                "p/scripts/beat": f"#!/usr/bin/env python3\n{IN_PACKAGE.replace('my_robot.rates', 'rates')}",
+                "p/scripts/rates.py": RATES,
+                "p/scripts/old.py": "print(1)\n",
+            }
+        ),
+    ),
+    "what colcon installed, without its source": (
+        "install.zip",
+        zipped(
+            {
+                f"install/my_robot/lib/python3.12/site-packages/{name}": content
+                for name, content in PACKAGE.items()
+                if name.startswith("my_robot/")
+            }
+        ),
+    ),
+    "the package that the launch file starts": (
+        "ws.zip",
+        zipped(
+            {
+                **inside("src/my_robot"),
+                **{
+                    name.replace("my_robot", "older"): content
+                    for name, content in inside("src/my_robot", OLDER).items()
+                },
+                "src/my_robot/launch/all.launch.py": "Node(package='my_robot', executable='beat')",
             }
         ),
     ),
@@ -400,4 +436,4 @@ def test_what_a_launch_file_sets_is_said_not_to_be_applied(
     files = {**inside("src/my_robot"), f"src/my_robot/launch/{name}": text}
     notes = [note for note in of_content("ws.zip", zipped(files), exercise).notes if "launch file" in note]
     assert len(notes) == bool(words)
-    assert all(note.startswith(f"Not applied from your launch file: {words}.") for note in notes)
+    assert all(note.startswith(f"Not applied from your launch file: {words}. The grader starts the") for note in notes)

@@ -14,7 +14,7 @@ from typing import Any
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
 from jupyter_client.manager import KernelManager
 
-CELL_LIMIT_S = 90
+CELL_LIMIT_S = 240
 
 
 class ThisPython(KernelSpecManager):

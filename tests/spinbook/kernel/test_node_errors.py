@@ -68,19 +68,41 @@ def test_other_lines_are_no_errors(text: str) -> None:
     assert report(text) is None
 
 
-@pytest.mark.parametrize("text", [CTRL_C, CTRL_C + AGAIN + SHUT_DOWN, SHUT_DOWN])
+TWICE = SHUT_DOWN.replace("failed to shutdown: rcl_shutdown already called on the given context", "").replace(
+    "rclpy._rclpy_pybind11.RCLError: ", "RuntimeError: Context must be initialized before it can be shutdown"
+)
+
+
+@pytest.mark.parametrize("text", [CTRL_C, CTRL_C + AGAIN + SHUT_DOWN, SHUT_DOWN, TWICE])
 def test_a_program_that_ctrl_c_ends_has_no_error_when_it_is_stopped(text: str) -> None:
     assert report(text, stopping=True) is None
     assert report(text) is not None, "nobody stopped it"
 
 
-def test_a_line_of_the_log_in_a_traceback_does_not_end_it() -> None:
+@pytest.mark.parametrize(
+    "disturbed",
+    [
+        SHUT_DOWN.replace("rclpy._rclpy", "[INFO] [arm]: bye\nrclpy._rclpy"),
+        SHUT_DOWN.replace("rclpy._rclpy", "2026-01-01 10:00:00.000 [RTPS_TRANSPORT Error] full\nrclpy._rclpy"),
+        SHUT_DOWN.replace(".RCLError", ".2026-01-01 10:00:00.000 [RTPS_TRANSPORT Error] full\nRCLError"),
+        "50 %" + SHUT_DOWN,
+        "Exception ignored in: <f>\n" + RAISED + SHUT_DOWN,
+    ],
+    ids=["a log's line", "the middleware's line", "in the last line", "after half a line", "after an ignored one"],
+)
+def test_however_the_traceback_of_ctrl_c_comes_out_it_is_no_error(disturbed: str) -> None:
     log = NodeLog()
-    first, *rest = SHUT_DOWN.splitlines(keepends=True)
-    log.add("".join([first, *rest[:1], "[INFO] [arm]: bye\n", *rest[1:]]), stopping=True)
+    log.add(disturbed, stopping=True)
 
     assert log.was_interrupted
     assert describe("arm", log, "", find_line) is None
+
+
+def test_a_line_of_the_middleware_in_a_traceback_does_not_hide_its_error() -> None:
+    error = report(RAISED.replace("ValueError", "2026-01-01 [RTPS Error] full\nValueError"))
+
+    assert error is not None
+    assert (error.what, error.line) == ("ValueError: no grip.", 9)
 
 
 def test_an_exception_while_a_program_is_stopped_is_an_error() -> None:

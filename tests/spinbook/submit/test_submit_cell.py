@@ -42,3 +42,14 @@ def test_the_cell_is_checked_and_handed_in_as_it_was_run(kernel: Kernel) -> None
     assert upload.faults == ()
     assert upload.files["joint_velocity.py"].decode().strip() == CODE.strip()
     assert (upload.record["student"], upload.record["self_check"]["score"]) == ("Ada L", 0)
+
+
+def test_when_it_is_stopped_it_says_whether_anything_was_handed_in(kernel: Kernel) -> None:
+    upload = kernel.folder / "joint_velocity-submission.zip"
+    upload.unlink()
+    shown = kernel.run("%submit joint_velocity", kernel.pressing_stop(lambda shown: "Handed in" in shown.text))
+    if upload.exists():
+        assert "No self-check: It was interrupted." in shown.text
+        assert "To wait longer: %submit joint_velocity --seconds 240" in shown.text
+    else:
+        assert shown.error.startswith("Nothing was handed in: it was stopped before the file was written."), shown
