@@ -162,9 +162,11 @@ def _of_tar(archive: Path, start: bytes) -> Iterator[_Entry]:
     """Yield a tar's entries in their order, as a compressed file can't be read backwards quickly."""
     with (
         archive.open("rb") as file,
-        tarfile.open(fileobj=cast("IO[bytes]", _Bounded(archive, decompressed(file, start))), mode="r|") as tar,
+        tarfile.open(
+            fileobj=cast("IO[bytes]", bounded := _Bounded(archive, decompressed(file, start))), mode="r|"
+        ) as tar,
     ):
-        for entry in tar:
+        for entry in _whole(tar, bounded):
             if entry.isdir():
                 continue
             is_file = entry.isfile()
@@ -178,16 +180,24 @@ def _of_tar_entry(archive: tarfile.TarFile, entry: tarfile.TarInfo, most: int) -
     return file.read(most) if file else b""
 
 
+def _whole(tar: tarfile.TarFile, stream: _Bounded) -> Iterator[tarfile.TarInfo]:
+    """Yield the entries. Raises EOFError if the zeros at the end are missing, which `tarfile` does not say."""
+    yield from tar
+    if stream.last.strip(b"\0"):
+        raise EOFError("it ends in the middle")
+
+
 class _Bounded:
-    """A stream of a class's tar that ends with an error after more bytes than any class has."""
+    """A stream of a class's tar that ends with an error after more bytes than any class has. `last` ends it so far."""
 
     def __init__(self, archive: Path, stream: IO[bytes]) -> None:
-        self.archive, self.stream, self.left = archive, stream, MOST_BYTES_IN_ALL
+        self.archive, self.stream, self.left, self.last = archive, stream, MOST_BYTES_IN_ALL, b""
 
     def read(self, most: int) -> bytes:
         """Return the next bytes. Raises `SubmissionsError` beyond the limit."""
         data = self.stream.read(most)
         self.left -= len(data)
+        self.last = data[-512:] or self.last
         if self.left < 0:
             raise SubmissionsError(_too_large(self.archive))
         return data

@@ -183,6 +183,8 @@ def _unpack(content: bytes, prefix: str, contents: Contents, depth: int) -> None
             if b"\0" not in data[:512]:  # a single compressed file, such as node.py.gz
                 contents.add(f"{prefix}compressed", data)
                 return
+            if data[-512:].strip(b"\0"):
+                raise EOFError("it ends in the middle")
             with tarfile.open(fileobj=io.BytesIO(data), mode="r:") as tar:
                 _keep(list(_of_tar(tar, contents)), prefix, contents, depth)
         else:

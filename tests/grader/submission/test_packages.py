@@ -368,6 +368,7 @@ HOSTILE = {
     "a broken zip beside": zipped({"x.zip": b"PK\3\4rubbish", "heartbeat.py": PROGRAM}),
     "a bomb in a tar": tarred({"x.py": bytes(70_000_000), "heartbeat.py": PROGRAM}),
     "a truncated tar": tarred({"heartbeat.py": PROGRAM})[:100],
+    "a tar that ends before its end": tarred({"heartbeat.py": PROGRAM, "rates.py": RATES}, "")[:1800],
     "not an archive": b"PK\3\4",
     "a setup.py without end": zipped({"setup.py": "(" * 100_000, "package.xml": "<", "heartbeat.py": PROGRAM}),
     "a setup.py whose strings double": zipped(
