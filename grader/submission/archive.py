@@ -145,7 +145,9 @@ def _file(path: Path, most: int) -> bytes | None:
 
 def _keep(entries: Sequence[_Entry], prefix: str, contents: Contents, depth: int) -> None:
     """Read the entries that a student can have written."""
-    meant = [(name, load) for name, load in entries if _is_meant(name)]
+    environments = {name[: -len("pyvenv.cfg")] for name, _ in entries if name.rpartition("/")[2] == "pyvenv.cfg"}
+    environments.discard("")
+    meant = [one for one in entries if _is_meant(one[0]) and not one[0].startswith(tuple(environments))]
     own = [(name, load) for name, load in meant if not set(name.split("/")[:-1]) & set(_BUILT)]
     # What colcon built matters only if its source code is missing.
     meant = own if any(kind_of(name) in ("python", "notebook", "other language") for name, _ in own) else meant

@@ -18,6 +18,7 @@ from grader.exercise.exercise import Exercise
 from grader.exercise.starter import MarkerError, starter
 from grader.submission import packages, python_code
 from grader.submission.archive import Contents, unpacked
+from grader.submission.entry_points import is_below
 from grader.submission.file_choice import FileOption, ReadState, chosen, notes_on, targets
 from grader.submission.file_kinds import (
     NEITHER,
@@ -36,7 +37,7 @@ from grader.submission.problems import Unreadable, merge_conflict
 from grader.submission.program_choice import choose, digest_of
 from grader.submission.python_version import newer_syntax
 from grader.submission.several_files import MOST_FILES, files_in, joined, parts
-from grader.submission.unreadable import not_python
+from grader.submission.unreadable import not_python, text_of
 
 #: The starter's file in a web page's copy of an exercise.
 STARTER = "starter.py"
@@ -255,7 +256,8 @@ def _of_one(option: FileOption, reading: ReadState) -> Code:
     notes = notes_on(option, reading)
     if option.choice:
         code = code_of_notebook(reading.notebooks[option.file], exercise, posixpath.basename(option.file))
-        return replace(code, notes=(*notes, *code.notes))
+        files = {**_beside(code.source, posixpath.dirname(option.file), reading.files), **code.files}
+        return replace(code, files=files, notes=(*notes, *code.notes))
     files = _files_of(option, reading, exercise.file_name)
     main = exercise.file_name
     if main not in files:
@@ -281,6 +283,20 @@ def _files_of(option: FileOption, reading: ReadState, file: str) -> dict[str, by
     elif reading.exercise.programs and layout.main != file:
         files[file] = packages.launcher(layout.main.removesuffix(".py"), "")
     return files
+
+
+def _beside(source: str, folder: str, files: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Return the modules and packages in a notebook's folder that its program imports, directly or not."""
+    here = {posixpath.relpath(name, folder or "."): data for name, data in files.items() if is_below(name, folder)}
+    found: dict[str, bytes] = {}
+    todo = [source]
+    while todo:
+        tops = {module.partition(".")[0] for module in python_code.imported(todo.pop())}
+        for name, data in here.items():
+            if name.endswith(".py") and name not in found and name.partition("/")[0].removesuffix(".py") in tops:
+                found[name] = data
+                todo.append(text_of(data))
+    return found
 
 
 def starters(exercise: Exercise) -> frozenset[str]:

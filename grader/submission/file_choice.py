@@ -74,10 +74,31 @@ def chosen(reading: ReadState, target: ProgramFile, handed_out: frozenset[str]) 
     if not (named or its_own) and reading.questions:
         raise AmbiguousProgram(reading.questions[0])
     only_program = [] if reading.exercise.programs else _by_content(options, _language(reading))
-    for tier in (named, its_own, _by_executable(reading, options, target), *only_program):
+    lost = [name for name in reading.contents.damaged if kind_of(name) in ("python", "notebook", "archive")]
+    if its_own and not named and any(_is_called(name, target.file) for name in lost):
+        raise AmbiguousProgram(
+            f"{target.file} in it can't be read, and {its_own[0].title} may be an older version of it."
+        )
+    for tier in (named, its_own, *([] if lost else [_by_executable(reading, options, target), *only_program])):
         if tier:
-            return _decided(tier, reading, target)
+            return _starting(_decided(tier, reading, target), options)
     raise Unreadable(_nothing(reading, target))
+
+
+def _starting(option: FileOption, options: Sequence[FileOption]) -> FileOption:
+    """Return the program that starts what `option` only defines, if a single other one imports it and starts."""
+    if option.choice or option.function or python_code.starts(option.source):
+        return option
+    if "main" in python_code.definitions(option.source):
+        return option
+    module = option.file.rpartition("/")[2].removesuffix(".py")
+    users = [
+        one
+        for one in options
+        if python_code.starts(one.source)
+        and any(module in name.split(".") for name in python_code.imported(one.source, relative=True))
+    ]
+    return replace(users[0], why=f"it starts what {option.file} defines") if len(users) == 1 else option
 
 
 def _by_content(options: list[FileOption], language: str) -> list[list[FileOption]]:

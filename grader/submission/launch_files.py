@@ -46,7 +46,7 @@ def launched(files: Mapping[str, bytes]) -> list[LaunchFileNode]:
     found: list[LaunchFileNode] = []
     for name in sorted(files):
         text = files[name].decode("utf-8", errors="replace")
-        if name.endswith("launch.py"):
+        if name.endswith("launch.py") or (name.endswith(".py") and "def generate_launch_description" in text):
             found += _launched_by_python(text)
         elif LAUNCH_FILE.search(name):
             for node in re.findall(r"<node\b[^>]*>|^\s*-\s*node:.*?(?=^\s*-|\Z)", text, re.DOTALL | re.MULTILINE):

@@ -15,6 +15,9 @@ from grader.submission.notebook import Notebook, NotebookCell
 from grader.submission.places import without_marks
 from grader.submission.problems import AmbiguousProgram, Unreadable
 
+#: No person writes more versions of a program into a notebook; comparing them takes time.
+MOST_CANDIDATES = 50
+
 
 @dataclass(frozen=True)
 class Choice:
@@ -43,6 +46,8 @@ def choose(notebook: Notebook, exercise: Exercise, target: ProgramFile, starters
         if "python" not in (notebook.language or "python").lower():
             raise Unreadable(not_graded(notebook.language.capitalize()))
         raise Unreadable(_no_cell(notebook, target))
+    if len(begun) > MOST_CANDIDATES:
+        raise AmbiguousProgram(f"{len(begun)} cells of the notebook can be {target.file}. Delete or empty the others.")
     # A piece that an editor split from the cell keeps the cell's metadata.
     numbers = {one.number for one in begun if one.name or is_program(one.code, target)}
     programs = [(one, assemble(one, notebook.cells, exercise, numbers - {one.number})) for one in begun]

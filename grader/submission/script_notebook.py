@@ -16,15 +16,20 @@ from grader.submission.problems import Unreadable
 
 #: What only such a file has. A script with `# %%` alone is a script: Python runs it as it is.
 SAVED_AS_PYTHON = re.compile(
-    rb"^(?:[\w, \t]*=)?[ \t]*get_ipython\(\)\.|^# ?%%(?:node|part)[ \t]|^app = marimo\.App\(", re.M
+    rb"^(?:[\w, \t]*=)?[ \t]*get_ipython\(\)\.|^# ?%%(?:node|part)[ \t]|^app = marimo\.App\("
+    rb"|^%%(?:node|part)[ \t](?s:.*)^%%(?:node|part)[ \t]",  # several cells in one file
+    re.MULTILINE,
 )
 
 _BEGINS = re.compile(
     r"# In ?\[[\d ]*\]:\s*|# ?%%(?:[ \t].*)?|# ?\+(?: .*)?|# -|# Commented out IPython magic to ensure .*"
 )
 _IS_TEXT = re.compile(r"# ?%%.*\[(?:markdown|md|raw)\]")
-_MAGIC = re.compile(r"# ?%%\w")
-_CELL_CALL = re.compile(r"get_ipython\(\)\.run_cell_magic(\(.*\))\s*")
+_MAGIC = re.compile(r"(?:# ?)?%%\w")
+_TEXT = r"""('(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*")"""
+_CELL_CALL = re.compile(rf"get_ipython\(\)\.run_cell_magic\({_TEXT}, {_TEXT}, {_TEXT}\)\s*")
+#: Longer lines (characters) are not searched for a command: the pattern would take too long.
+_LONGEST = 500
 _CALL = re.compile(r"(?P<before>[ \t]*(?:[\w, \t]+=)?)[ \t]*get_ipython\(\)\..*")
 
 
@@ -48,7 +53,7 @@ def _pieces(lines: list[str]) -> Iterator[list[str]]:
             piece = []
         elif _MAGIC.match(line):
             yield piece
-            commented = list(takewhile(lambda one: one.startswith("#") and not _BEGINS.fullmatch(one), lines[number:]))
+            commented = list(takewhile(_continues, (lines[below] for below in range(number, len(lines)))))
             body = [re.sub(r"^# ?", "", one) for one in commented]
             skipped, piece = False, [line]
             if python_code.imports("\n".join(body)) or python_code.definitions("\n".join(body)):
@@ -63,14 +68,20 @@ def _pieces(lines: list[str]) -> Iterator[list[str]]:
     yield piece
 
 
+def _continues(line: str) -> bool:
+    """Return whether a line may belong to a cell that is commented as a whole."""
+    return line.startswith("#") and not (_BEGINS.fullmatch(line) or _MAGIC.match(line))
+
+
 def _cell_call(line: str) -> str:
     """Return the cell of `get_ipython().run_cell_magic('node', 'heartbeat', '…')`; "" for another line."""
-    match = _CELL_CALL.fullmatch(line)
-    try:
-        name, rest, body = ast.literal_eval(match[1]) if match else ("", "", "")
-    except (ValueError, SyntaxError, RecursionError, MemoryError):
+    if not (match := _CELL_CALL.fullmatch(line)):
         return ""
-    return f"%%{name} {rest}\n{body}" if name else ""
+    try:
+        name, rest, body = map(ast.literal_eval, match.groups())
+    except (ValueError, SyntaxError):  # a broken escape
+        return ""
+    return f"%%{name} {rest}\n{body}"
 
 
 def _restored(lines: list[str]) -> str:
@@ -81,7 +92,7 @@ def _restored(lines: list[str]) -> str:
 
 
 def _without_call(line: str) -> str:
-    if not (match := _CALL.fullmatch(line)):
+    if len(line) > _LONGEST or not (match := _CALL.fullmatch(line)):
         return line
     return f"{match['before']} None" if "=" in match["before"] else f"{match['before']}pass"
 
@@ -91,6 +102,7 @@ def _of_marimo(source: str) -> Iterator[str]:
     tree = python_code.tree_of(source)
     if tree is None:
         raise Unreadable("It is a marimo notebook that can't be read as Python. Open it in marimo, and save it again.")
+    lines = source.split("\n")
     for one in tree.body:
         if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
             if not any(_of_app(decorator) for decorator in one.decorator_list):
@@ -102,7 +114,7 @@ def _of_marimo(source: str) -> Iterator[str]:
         else:
             continue
         if body:
-            text = "\n".join(source.split("\n")[body[0].lineno - 1 : body[-1].end_lineno])
+            text = "\n".join(lines[body[0].lineno - 1 : body[-1].end_lineno])
             yield text if body == [one] else re.sub(r"^ {1,4}", "", text, flags=re.MULTILINE)
 
 

@@ -67,6 +67,8 @@ LEFT_BEHIND = {
     "ws/src/.DS_Store": b"\0",
     "ws/src/my_robot/.vscode/settings.json": "{}",
     "ws/.venv/lib/python3.12/site-packages/x.py": "x = 1\n",
+    "ws/ros_env/pyvenv.cfg": "home = /usr\n",
+    "ws/ros_env/bin/activate_this.py": OLD,
     "__MACOSX/ws/src/my_robot/my_robot/._beat_node.py": b"\0\5\26\7",
 }
 #: The same package in an earlier state.
@@ -357,6 +359,38 @@ def test_the_whole_handout_in_a_zip_is_read_by_the_notebook_in_it(exercise: Exer
     assert digest_of(submission.source) == digest_of(PROGRAM)
 
 
+def damaged(files: dict[str, str | bytes], name: str) -> bytes:
+    """Return a zip in which this file can't be read."""
+    content = bytearray(zipped(files))
+    content[content.find(name.encode()) + len(name) + 5] ^= 0xFF
+    return bytes(content)
+
+
+def test_a_program_that_is_damaged_is_not_replaced_by_another_file_in_silence(exercise: Exercise) -> None:
+    files: dict[str, str | bytes] = {"heartbeat.py": PROGRAM, "old.py": OLD.partition("\n")[2]}
+    question = of_content("all.zip", damaged(files, "heartbeat.py"), exercise).question
+    assert question == "heartbeat.py in it can't be read, and old.py may be an older version of it."
+    files["old.py"] = "print(1)\n"
+    problem = of_content("all.zip", damaged(files, "heartbeat.py"), exercise).problem
+    assert problem.startswith("heartbeat.py in it can't be read (is it damaged, or has it a password?)")
+
+
+@pytest.mark.parametrize("name", ["heartbeat.py", "beat_node.py"])
+def test_a_file_that_starts_the_node_of_another_is_the_program(name: str, exercise: Exercise) -> None:
+    start = f"import rclpy\nfrom {name[:-3]} import Heartbeat\n\nrclpy.init()\nrclpy.spin(Heartbeat())\n"
+    submission = of_content("all.zip", zipped({name: PROGRAM.partition("def main")[0], "main.py": start}), exercise)
+    assert submission.source == start
+    assert submission.notes == (f"Taken: main.py, because it starts what {name} defines.",)
+
+
+def test_a_notebooks_program_brings_the_modules_beside_it(exercise: Exercise) -> None:
+    files = {"w/week3.ipynb": notebook(f"%%node heartbeat\n{IN_PACKAGE}"), "w/other.py": "x = 1\n"}
+    files |= {f"w/my_robot/{name}.py": PACKAGE[f"my_robot/{name}.py"].encode() for name in ("__init__", "rates")}
+    submission = of_content("w.zip", zipped(files), exercise)
+    assert submission.program
+    assert sorted(submission.program.files) == ["heartbeat.py", "my_robot/__init__.py", "my_robot/rates.py"]
+
+
 HOSTILE = {
     "a file that is also a folder": zipped({"a": "x", "a/heartbeat.py": PROGRAM}),
     "names that lead elsewhere": zipped({"../../etc/heartbeat.py": PROGRAM, "/tmp/x.py": "x = 1\n"}),
@@ -369,6 +403,8 @@ HOSTILE = {
     "a bomb in a tar": tarred({"x.py": bytes(70_000_000), "heartbeat.py": PROGRAM}),
     "a truncated tar": tarred({"heartbeat.py": PROGRAM})[:100],
     "a tar that ends before its end": tarred({"heartbeat.py": PROGRAM, "rates.py": RATES}, "")[:1800],
+    "a notebook of many versions": zipped({"a.ipynb": notebook(*[NODE + f"# {n}\n" for n in range(60)])}),
+    "magics without end": zipped({"heartbeat.py": "# %%n\n" * 5_000 + f"# {NODE}"}),
     "not an archive": b"PK\3\4",
     "a setup.py without end": zipped({"setup.py": "(" * 100_000, "package.xml": "<", "heartbeat.py": PROGRAM}),
     "a setup.py whose strings double": zipped(
@@ -418,6 +454,7 @@ def test_messages_of_their_own_are_a_question_unless_they_are_the_courses(
         ("a.launch.py", "Node(executable='beat', remappings=[('a', 'b')], namespace='x')", "remappings, namespace"),
         ("a.launch.py", "Node(executable='beat', parameters=[{'rate': 4.0}])", "parameters"),
         ("a.launch.py", "Node(executable='another', namespace='x')", ""),
+        ("start.py", "def generate_launch_description():\n    Node(executable='beat', namespace='x')", "namespace"),
         ("a.launch.py", "Node(executable='beat', name='mine')", "the node's name"),
         ("a.launch.py", "Node(executable='beat', name='heartbeat')", ""),
         ("a.launch.py", "SetRemap('a', 'b'); Node(executable='beat')", "what it sets for a group"),
