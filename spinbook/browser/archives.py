@@ -44,6 +44,7 @@ _SPINBOOK = (
     "browser",
     "graph",
     "chapter/__init__.py",
+    "chapter/bindings.py",
     "chapter/interface_fields.py",
     "chapter/node_classes.py",
     "chapter/syntax.py",

@@ -130,9 +130,10 @@ def _watched_html(rule: Any) -> Any:
 
 @functools.lru_cache(maxsize=8)
 def _parsed(text: str) -> tuple[list[Token], dict[str, Any]]:
-    """Return the blocks of a chapter's text, and its definitions."""
+    """Return the blocks of a chapter's text, and its definitions; a footnote, `[^1]: text`, is not one."""
     env: dict[str, Any] = {}
-    return _parser().parse(text, env), env.get("references", {})
+    tokens = _parser().parse(text, env)
+    return tokens, {label: to for label, to in env.get("references", {}).items() if not label.startswith("^")}
 
 
 def references_in(text: str) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from spinbook.chapter.bindings import attributes_of_self, bindings, is_self
 from spinbook.chapter.interface_fields import PARTS, InterfaceFields, fields_of
 from spinbook.chapter.syntax import descendants, dotted_name, last_name
 
@@ -80,7 +81,7 @@ class ProgramTypes:
         self._module = self._add(tree, None)
         self._imported = _imported(everything)
         self._is_dotted = any("." in name for name in self._imported)
-        self._attributes = _attributes(everything)
+        self._attributes = attributes_of_self(everything)
         self._callbacks()
 
     def value_of(self, expression: ast.expr, function: Function) -> TypedValue | None:
@@ -95,7 +96,7 @@ class ProgramTypes:
 
     def _add(self, node: ast.AST, owner: ast.ClassDef | None) -> Function:
         function = Function(node, owner)
-        function.bound = _bindings(function)
+        function.bound = bindings(function.own_nodes)
         self.functions.append(function)
         for inner in function.own_nodes:
             if isinstance(inner, ast.ClassDef):
@@ -151,7 +152,7 @@ class ProgramTypes:
     def _attribute(self, item: ast.Attribute, function: Function) -> TypedValue | None:
         if self._is_dotted and (known := self._imported.get(dotted_name(item))) is not None:
             return known
-        if _is_self(item.value) and function.owner is not None:
+        if is_self(item.value) and function.owner is not None:
             places = self._attributes.get((function.owner.name, item.attr))
             makers = [(value, self._method_of(node)) for value, node in places or ()]
             kinds = {self._type(value, maker) if value and maker else None for value, maker in makers}
@@ -213,7 +214,7 @@ class ProgramTypes:
             name = getattr(item.node, "name", "")
             if isinstance(callback, ast.Name) and item.owner is None and name == callback.id:
                 return item
-            is_own = isinstance(callback, ast.Attribute) and _is_self(callback.value)
+            is_own = isinstance(callback, ast.Attribute) and is_self(callback.value)
             if is_own and item.owner is not None and item.owner is function.owner and name == last_name(callback):
                 return item
         return None
@@ -290,10 +291,6 @@ def _answer(of: TypedValue | None, method: str) -> TypedValue | None:
     return replace(of, role="future" if method == "call_async" else "value", part="Response")
 
 
-def _is_self(expression: ast.expr) -> bool:
-    return isinstance(expression, ast.Name) and expression.id == "self"
-
-
 def _imported(everything: Sequence[ast.AST]) -> Mapping[str, TypedValue]:
     """Map names, also dotted ones, to the interfaces that a program imports; not those that it binds otherwise."""
     known: dict[str, TypedValue] = {}
@@ -323,48 +320,3 @@ def _imported(everything: Sequence[ast.AST]) -> Mapping[str, TypedValue]:
             known[written] = TypedValue("class", f"{package}/{kind}/{name}")
     defined = {i.name for i in everything if isinstance(i, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)}
     return {name: kind for name, kind in known.items() if name not in defined}
-
-
-def _bindings(function: Function) -> dict[str, list[ast.expr | None]]:
-    """Map each name that a function binds to the values that it gets; None for one that is not a plain value."""
-    bound: dict[str, list[ast.expr | None]] = {}
-    plain: set[int] = set()
-    for item in function.own_nodes:
-        targets: list[ast.expr] = item.targets if isinstance(item, ast.Assign) else []
-        targets = [item.target] if isinstance(item, ast.AnnAssign) and item.value is not None else targets
-        for target in (target for target in targets if isinstance(target, ast.Name)):
-            assert isinstance(item, ast.Assign | ast.AnnAssign)
-            plain.add(id(target))
-            bound.setdefault(target.id, []).append(item.value)
-        if isinstance(item, ast.For | ast.comprehension) and isinstance(item.target, ast.Name):
-            plain.add(id(item.target))
-            bound.setdefault(item.target.id, []).append(ast.Subscript(item.iter, ast.Constant(0)))
-    for item in function.own_nodes:
-        if isinstance(item, ast.Name) and not isinstance(item.ctx, ast.Load) and id(item) not in plain:
-            bound.setdefault(item.id, []).append(None)
-        elif isinstance(item, ast.Global | ast.Nonlocal):
-            for name in item.names:
-                bound.setdefault(name, []).append(None)
-        elif isinstance(item, ast.ExceptHandler | ast.MatchAs) and item.name:
-            bound.setdefault(item.name, []).append(None)
-    return bound
-
-
-def _attributes(everything: Sequence[ast.AST]) -> dict[tuple[str, str], list[tuple[ast.expr | None, ast.AST]]]:
-    """Map (class, attribute of `self`) to the values that it gets, each with its method.
-
-    An attribute that the program also sets on something else than `self` is not in it.
-    """
-    values: dict[tuple[str, str], list[tuple[ast.expr | None, ast.AST]]] = {}
-    plain: set[int] = set()
-    for owner in (item for item in everything if isinstance(item, ast.ClassDef)):
-        for method in (item for item in owner.body if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef)):
-            for item in descendants(method):
-                targets = item.targets if isinstance(item, ast.Assign) else []
-                for target in targets:
-                    if isinstance(target, ast.Attribute) and _is_self(target.value):
-                        plain.add(id(target))
-                        values.setdefault((owner.name, target.attr), []).append((item.value, method))  # type: ignore[attr-defined]
-    stored = (i for i in everything if isinstance(i, ast.Attribute) and isinstance(i.ctx, ast.Store | ast.Del))
-    unsure = {item.attr for item in stored if id(item) not in plain}
-    return {key: given for key, given in values.items() if key[1] not in unsure}

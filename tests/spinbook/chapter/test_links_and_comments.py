@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from spinbook.chapter.comments import without_comments
-from spinbook.chapter.links import linked
+from spinbook.chapter.links import linked, links_in
 from spinbook.site.prose import terms_of
 
 
@@ -28,6 +28,10 @@ def to_notebook(target: str, is_image: bool) -> str | None:
 )
 def test_the_target_of_a_link_is_replaced(markdown: str, expected: str) -> None:
     assert linked(markdown, to_notebook) == expected
+
+
+def test_a_footnote_is_no_link() -> None:
+    assert links_in("One[^1] and [two](b.md).\n\n[^1]: Really\n") == (("b.md", 1),)
 
 
 @pytest.mark.parametrize(

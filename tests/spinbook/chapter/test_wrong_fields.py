@@ -80,6 +80,7 @@ def node(setup: str, method: str) -> str:
             "`String` has no field `dta`.",
             "Did you mean `data`?",
         ),
+        (f"{MSGS}for i, p in enumerate(PoseArray().poses):\n    p.place", "`Pose` has no field `place`.", "Its fields"),
         (f"{MSGS}for p in PoseArray().poses:\n    p.place", "`Pose` has no field `place`.", "Its fields: `position`"),
         (
             SRV
