@@ -11,6 +11,7 @@ from grader.checking.created import Created, created, texts
 from grader.exercise.exercise import Exercise, ExerciseError, Qos
 from grader.exercise.exercise_toml import line_of
 from grader.exercise.starter import hidden_blocks
+from grader.submission import python_code
 
 #: The name of each kind in a sentence.
 _WORDS = {
@@ -50,6 +51,8 @@ def disagreements(exercise: Exercise) -> Iterator[ExerciseError]:
     if file is None or not file.exists() or exercise.nodes:  # a launch file creates nothing itself
         return
     source = file.read_text(encoding="utf-8", errors="replace")
+    if python_code.tree_of(source) is None:
+        return
     hidden = {number for block in hidden_blocks(source) for number, _ in block}
     declared, made = tuple(_declared(exercise)), created(source, exercise.node_name)
     for call in made:

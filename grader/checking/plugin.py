@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import inspect
+import signal
+import sys
 import tempfile
 from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Literal
+from typing import Any, Literal, NoReturn
 
 import pytest
 
@@ -19,6 +21,9 @@ from grader.checking.run import Run
 from grader.checking.verdict import CheckOptions, Finding, Verdict, Wrong, check_options
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.modules import error_in
+
+#: How long one check may compute (s). They take milliseconds.
+LONGEST_CPU_S = 10.0
 
 #: Of a hint that says what to do: students don't read more.
 MOST_WORDS = 160
@@ -175,6 +180,19 @@ class Checks:
         return tuple(blocking)
 
     @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_call(self, item: pytest.Item) -> Any:
+        """End a check that computes for too long, in the line at which it is."""
+        if sys.platform == "emscripten":  # a page can be closed
+            return (yield)
+        before = signal.signal(signal.SIGVTALRM, _too_long)
+        signal.setitimer(signal.ITIMER_VIRTUAL, LONGEST_CPU_S)
+        try:
+            return (yield)
+        finally:
+            signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+            signal.signal(signal.SIGVTALRM, before)
+
+    @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Any:
         """Turn pytest's outcome into a verdict."""
         report: pytest.TestReport = yield
@@ -201,6 +219,10 @@ class Checks:
             finding = wrong.finding.shortened()
             return replace(verdict, status="failed", finding=finding, share=wrong.share, partial=mark.partial)
         return replace(verdict, status="error", error=_describe(error, item.path))
+
+
+def _too_long(number: int, frame: object) -> NoReturn:
+    raise TimeoutError(f"it computed for {LONGEST_CPU_S:g} s: is there an endless loop?")
 
 
 def _is_defined_here(item: pytest.Item) -> bool:

@@ -6,6 +6,8 @@
 from __future__ import annotations
 
 import ast
+import difflib
+import importlib
 import json
 import os
 import re
@@ -18,12 +20,14 @@ from grader.checking.agreement import disagreements
 from grader.checking.judge import Listed, listed
 from grader.checking.misspellings import misspellings
 from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.imported_files import with_modules
 from grader.exercise.loading import load
 from grader.exercise.mistakes import each_mistake
 from grader.exercise.rules import named_by, rules_of, without_markup
 from grader.exercise.starter import MarkerError, starter
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Scenario
+from grader.submission import python_code
 from groundwork.child_process import run_program
 from groundwork.clean_environment import module_command, without_foreign
 from groundwork.problem import Problem
@@ -58,6 +62,7 @@ def faults(folder: Path) -> Iterator[ExerciseError]:
         return
     yield from _of_solution(exercise)
     yield from disagreements(exercise)
+    yield from undefined_names(with_modules([exercise.scenarios_file, *exercise.check_files]))
     scenarios: tuple[Scenario, ...] = ()
     try:
         scenarios = declared(exercise, seed=0)
@@ -87,6 +92,26 @@ def same_name_twice(file: Path) -> Iterator[ExerciseError]:
                     file, problem, "Give each its own name: Python keeps only the last one.", node.lineno
                 )
             first.setdefault(node.name, node.lineno)
+
+
+def undefined_names(files: Iterable[Path]) -> Iterator[ExerciseError]:
+    """Yield names that a file uses and nothing in it defines. Python notices it only when it comes to such a line."""
+    for file in files:
+        tree = _parsed(file)
+        names = [node for node in ast.walk(tree) if isinstance(node, ast.Name)]
+        imports_all = any(isinstance(node, ast.alias) and node.name == "*" for node in ast.walk(tree))
+        for name in sorted(python_code.missing(ast.unparse(tree))) if not imports_all else ():
+            line = next((node.lineno for node in names if node.id == name), None)
+            yield ExerciseError(file, f"there is no {name} in this file", _remedy_for(name, tree), line)
+
+
+def _remedy_for(name: str, tree: ast.Module) -> str:
+    for module in ("grader.checking", "grader.scenario"):
+        if hasattr(importlib.import_module(module), name):
+            return f"Import it: from {module} import {name}"
+    known = python_code.bound(tree.body) | {node.arg for node in ast.walk(tree) if isinstance(node, ast.arg)}
+    near = difflib.get_close_matches(name, sorted(known), n=1)
+    return f"Did you mean {near[0]}?" if near else "Define it, or import it."
 
 
 def rules_that_the_task_lacks(task: str, check_files: Iterable[Path]) -> Iterator[ExerciseError]:
@@ -151,7 +176,11 @@ def _of_solution(exercise: Exercise) -> Iterator[ExerciseError]:
         yield ExerciseError(file, "there is no such file", "The checks compare with the solution; write it here.")
         return
     try:
-        starter(file.read_text(encoding="utf-8"))
+        text = file.read_text(encoding="utf-8")
+        ast.parse(text)
+        starter(text)
+    except SyntaxError as error:
+        yield ExerciseError(file, f"it is not valid Python: {error.msg}", "Fix it, and grade it.", error.lineno)
     except MarkerError as error:
         yield ExerciseError(
             file, str(error).partition(": ")[2], "Fix the markers; the starter is made from them.", error.line

@@ -100,7 +100,9 @@ def _read(file: Path) -> dict[str, Any]:
     except FileNotFoundError:
         raise ExerciseError(file, "there is no such file", "An exercise is a folder with an exercise.toml.") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ExerciseError(file, f"it can't be read: {error}", "Write it as TOML, in UTF-8.") from None
+        place = re.search(r"at line (\d+)", str(error))
+        line = int(place[1]) if place else None
+        raise ExerciseError(file, f"it can't be read: {error}", "Write it as TOML, in UTF-8.", line) from None
 
 
 def _text(top: TomlTable, key: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -51,6 +52,18 @@ def _see_import(exercise: Exercise, file: Path, line: int, name: str) -> None:
         raise ExerciseError(file, problem, "Import only files next to this one: put the module there.", line)
 
 
+def _remedy(error: BaseException, folder: Path) -> str:
+    """Return what to do about an error that authors often make; "" for any other."""
+    if isinstance(error, ModuleNotFoundError) and error.name:
+        near = difflib.get_close_matches(error.name, [file.stem for file in folder.glob("*.py")], n=1)
+        return f"Did you mean {near[0]}?" if near else f"Put {error.name}.py next to this file, or install it."
+    if isinstance(error, FileNotFoundError):
+        return 'Is it there? Write its path from this file: Path(__file__).parent / "…".'
+    if isinstance(error, TypeError) and "check() missing" in str(error):
+        return 'Each check has points and a hint: @check(points=5, hint="…").'
+    return ""
+
+
 def error_in(
     error: BaseException, folder: Path, file: Path, subject: str = "", fix: str = "Fix it.", line: int | None = None
 ) -> ExerciseError:
@@ -61,4 +74,5 @@ def error_in(
     text = (str(error).strip().splitlines() or [""])[0]
     problem = f"{type(error).__name__}: {text}" if text else type(error).__name__
     place, line = place_of(error, folder) or (file, line)
+    fix = _remedy(error, folder) or fix
     return ExerciseError(place, f"{subject}: {problem}" if subject else problem, fix, line)

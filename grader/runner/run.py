@@ -65,7 +65,7 @@ def run(
     with Hub(limits=limits) as hub:
         student: RunningProgram
         if programs or companions:
-            student = Team(hub, task.scenario, programs or {task.file_name: start}, companions)
+            student = Team(hub, task, programs or {task.file_name: start}, companions)
         else:
             student = start(hub.add_program())
         try:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 
+from grader.exercise.exercise import ExerciseError
 from grader.recording.events import ProgramExit
-from grader.runner.program import ExitStatus, PrintedOutput, RunningProgram
-from grader.scenario.scenario import Scenario
+from grader.runner.program import ExitStatus, PrintedOutput, RunningProgram, Task
+from grader.runner.tracebacks import last_error
 from rmw_lockstep.hub import Hub
 
 #: Starts a program, which has to connect to the hub through this inherited socket.
@@ -25,10 +26,9 @@ class ProgramsTogether:
 class Team:
     """All programs of a run, as one program. It ends when one of the student's programs ends by itself."""
 
-    def __init__(
-        self, hub: Hub, scenario: Scenario, programs: Mapping[str, Start], companions: Sequence[Start]
-    ) -> None:
+    def __init__(self, hub: Hub, task: Task, programs: Mapping[str, Start], companions: Sequence[Start]) -> None:
         """Start the companions, and those programs that run from the beginning."""
+        self._task, scenario = task, task.scenario
         self._hub, self._programs = hub, programs
         self._sockets = {name: hub.add_program() for name in programs}
         self._listeners = {name: number for number, name in enumerate(programs)}
@@ -67,6 +67,17 @@ class Team:
         """Make the hub wait for each program's processes."""
         self._hub.mains = {one.pid for one in (*self._running.values(), *self._companions)}
 
+    def _see_companions(self) -> None:
+        """Raise `ExerciseError` if one of the author's programs has ended."""
+        for companion, program in zip(self._task.scenario.companions, self._companions, strict=False):
+            if exit_ := program.poll():
+                file = self._task.exercise.folder / companion.file
+                last = last_error(program.output().text, {companion.file: companion.text})
+                why = last.error if last else exit_.limit or f"exit code {exit_.code}"
+                problem = f"it ended in the scenario {self._task.scenario.name}: {why}"
+                fix = "A companion must go on to the end, whatever the student's program sends it."
+                raise ExerciseError(file, problem, fix, last.line if last else None)
+
     def is_companions(self, process: int) -> bool:
         """Return whether a process, by its number on the hub, is one of the author's own."""
         first = len(self._programs)
@@ -90,6 +101,7 @@ class Team:
 
     def poll(self) -> ExitStatus | None:
         """Return how a student's program ended by itself; once they were asked to end, how the last one did."""
+        self._see_companions()
         found: ExitStatus | None = None
         for name, student in self._running.items():
             exit_ = student.poll()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterable
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.imported_files import importable, imported
@@ -21,8 +21,6 @@ def declared(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
         raise ExerciseError(file, "there is no such file", "Declare in scenarios(seed) what the node is run against.")
     see_modules(exercise)
     found = _returned(exercise, seed)
-    if not found or not all(isinstance(scenario, Scenario) for scenario in found):
-        raise ExerciseError(file, "scenarios(seed) returns something else", "Return a tuple of Scenario, at least one.")
     names: list[str] = []
     for scenario in found:
         if scenario.name in names or not scenario.name.isidentifier():
@@ -33,10 +31,18 @@ def declared(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
     return tuple(resolved(exercise, scenario) for scenario in found)
 
 
-def _returned(exercise: Exercise, seed: int) -> tuple[Any, ...]:
+def _returned(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
     file, folder = exercise.scenarios_file, exercise.folder
     try:
         with importable(folder):
-            return tuple(imported(file, f"scenarios_of_{exercise.name}").scenarios(seed))
+            module = imported(file, f"scenarios_of_{exercise.name}")
+            found = module.scenarios(seed) if hasattr(module, "scenarios") else ()
     except Exception as error:
         raise error_in(error, folder, file, fix="It must run.") from None
+    several = tuple(found) if isinstance(found, Iterable) else ()
+    if not several or not all(isinstance(scenario, Scenario) for scenario in several):
+        line = module.scenarios.__code__.co_firstlineno if hasattr(module, "scenarios") else None
+        returned = found and type(found).__name__
+        problem = f"scenarios(seed) returns {returned}, and not scenarios" if line else "there is no scenarios(seed)"
+        raise ExerciseError(file, problem, "Return a tuple of at least one: return (Scenario(…),)", line)
+    return several

@@ -8,7 +8,7 @@ import pytest
 from prepared_python import run_prepared
 from small_exercise import SmallExercise
 
-from grader.checking.proofreader import rules_that_the_task_lacks
+from grader.checking.proofreader import faults, rules_that_the_task_lacks
 
 #: A sentence of the small exercise on which a hidden check is based.
 RULE = "Publish nothing on /numbers or /clock."
@@ -76,3 +76,26 @@ def test_the_task_of_each_exercise_states_the_rules_of_its_checks(folder: Path) 
     task = (folder / "task.md").read_text(encoding="utf-8")
     faults = rules_that_the_task_lacks(task, [folder / "checks.py", folder / "hidden_checks.py"])
     assert [str(fault) for fault in faults] == []
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "place", "fix"),
+    [
+        ("hidden_checks.py", "check, fail", "check", "hidden_checks.py:19", "from grader.checking import fail"),
+        ("checks.py", "positive.nodes != ", "positiv.nodes != ", "checks.py:28", "Did you mean positive?"),
+        ("checks.py", 'hint="Multiply.", ', "", "checks.py:13", "points and a hint"),
+        ("checks.py", "from grader", "import mazes\nfrom grader", "checks.py:3", "Put mazes.py next to"),
+        ("scenarios.py", "    return tuple(", "    every = tuple(", "scenarios.py:9", "return (Scenario(…),)"),
+        ("scenarios.py", "def scenarios(", "def all_scenarios(", "scenarios.py", "return (Scenario(…),)"),
+        ("scenarios.py", "    chance", '    open("data/map")\n    chance', "scenarios.py:10", "Path(__file__).parent"),
+        ("exercise.toml", "points = 10", "points = 10 10", "exercise.toml:3", "as TOML"),
+        ("../../solutions/doubler/solution.py", "2 * ", "2 * * ", "solution.py:18", "Fix it"),
+    ],
+)  # fmt: skip
+def test_a_usual_slip_has_its_line_and_its_remedy(
+    small: SmallExercise, file: str, old: str, new: str, place: str, fix: str
+) -> None:
+    small.change(f"exercises/doubler/{file}", old, new)
+    problem = next(faults(small.course / "exercises" / "doubler")).problem
+    assert problem.place.endswith(place)
+    assert fix in problem.fix

@@ -11,14 +11,14 @@ from typing import TypeAlias
 import pytest
 from scripted_programs import EXERCISE, program
 
-from grader.exercise.exercise import ProgramFile
+from grader.exercise.exercise import ExerciseError, ProgramFile
 from grader.grading.scenario_runner import arguments
 from grader.recording import Recording
 from grader.runner.program import Task
 from grader.runner.run import run
 from grader.sandbox import ForkServer, Limits, SandboxedProgram, choose
 from grader.sandbox import ProgramSpec as Sandboxed
-from grader.scenario import Program, Scenario, at
+from grader.scenario import Companion, Program, Scenario, at
 from grader.scenario.resolver import resolved
 from grader.scenario.scenario import SECOND, START
 from grader.workers.pool import STUDENT_ENVIRONMENT
@@ -57,6 +57,7 @@ def together(fork_server: ForkServer) -> Together:
         starts = {name: partial(start, name) for name in files}
         task = Task(exercise, complete, "listener.py", LISTENER)
         if companion:
+            task = replace(task, scenario=replace(complete, companions=(Companion("talker.py", text=talker),)))
             return run(task, starts["listener.py"], companions=[starts["talker.py"]])
         return run(task, starts["listener.py"], programs=starts)
 
@@ -94,3 +95,8 @@ def test_the_authors_own_program_is_heard_and_not_recorded_as_the_students(toget
     assert heard(recording) == [0.0, 0.1, 0.2]
     assert recording.nodes == ("/listener",)
     assert {one.node for one in recording.end_points} == {"/listener"}
+
+
+def test_an_authors_program_that_ends_is_the_authors_error(together: Together) -> None:
+    with pytest.raises(ExerciseError, match=r"talker\.py:1: it ended in the scenario s: NameError"):
+        together(Scenario("s", "t", duration=0.2), "no_such_name", companion=True)
