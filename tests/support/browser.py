@@ -12,7 +12,16 @@ from typing import Any
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, Request, expect, sync_playwright
+from playwright.sync_api import (
+    Browser,
+    BrowserContext,
+    ConsoleMessage,
+    Locator,
+    Page,
+    Request,
+    expect,
+    sync_playwright,
+)
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 LOCAL = ("file:", "data:", "blob:", "about:")
@@ -119,29 +128,48 @@ def chromium() -> Iterator[Browser]:
 
 @contextmanager
 def opened(
-    browser: Browser, where: Path | str, *, width: int = 1280, height: int = 900, dark: bool = False
+    browser: Browser | BrowserContext,
+    where: Path | str,
+    *,
+    width: int = 1280,
+    height: int = 900,
+    dark: bool = False,
 ) -> Iterator[Opened]:
-    """Yield the page at a file's path or a URL, loaded, in a window of `width` pixels."""
+    """Yield the page at a file's path or a URL, loaded, in a window of `width` pixels.
+
+    In a browser it is the first visit ever. In a context it is not: what was downloaded there is, and nothing else.
+    """
     url = _url(where)
-    context = browser.new_context(viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light")
+    context = browser if isinstance(browser, BrowserContext) else browser.new_context()
     context.set_default_timeout(DEADLINE_MS)
+    page = context.new_page()
     try:
-        shown = Opened(context.new_page())
-        origin = "/".join(url.split("/")[:3])
-
-        def hear(message: ConsoleMessage) -> None:
-            # Without a graphics card, Chromium itself warns that its pictures are slow.
-            if message.type in ("error", "warning") and "GL Driver Message" not in message.text:
-                shown.console.append(f"{message.type}: {message.text}")
-
-        def see(request: Request) -> None:
-            if not request.url.startswith((*LOCAL, origin)):
-                shown.outside.append(request.url)
-
-        shown.page.on("console", hear)
-        shown.page.on("pageerror", lambda error: shown.console.append(f"page error: {error}"))
-        shown.page.on("request", see)
-        shown.page.goto(url, wait_until="load")
+        page.set_viewport_size({"width": width, "height": height})
+        page.emulate_media(color_scheme="dark" if dark else "light")
+        shown = Opened(page)
+        _watch(shown, "/".join(url.split("/")[:3]))
+        page.goto(url, wait_until="load")
         yield shown
     finally:
-        context.close()
+        _forget(page) if context is browser else context.close()
+
+
+def _watch(shown: Opened, origin: str) -> None:
+    def hear(message: ConsoleMessage) -> None:
+        # Without a graphics card, Chromium itself warns that its pictures are slow.
+        if message.type in ("error", "warning") and "GL Driver Message" not in message.text:
+            shown.console.append(f"{message.type}: {message.text}")
+
+    def see(request: Request) -> None:
+        if not request.url.startswith((*LOCAL, origin)):
+            shown.outside.append(request.url)
+
+    shown.page.on("console", hear)
+    shown.page.on("pageerror", lambda error: shown.console.append(f"page error: {error}"))
+    shown.page.on("request", see)
+
+
+def _forget(page: Page) -> None:
+    """Close the page, and leave nothing that was written in it."""
+    page.evaluate("try { localStorage.clear() } catch { /* a test forbids it */ }")
+    page.close()

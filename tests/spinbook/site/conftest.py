@@ -10,6 +10,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from course_folder import CourseFolder
+from playwright.sync_api import Browser, BrowserContext
+from program_chapters import PIECES, TERMINALS
 from small_course import ROOT, SmallCourse, served, write_course
 
 
@@ -27,6 +30,24 @@ def address(built: SmallCourse) -> Iterator[str]:
     """Where the site is served."""
     with served(built.site) as url:
         yield url
+
+
+@pytest.fixture(scope="session")
+def programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Where a site of two chapters is served, whose programs and commands tests run."""
+    folder = CourseFolder(tmp_path_factory.mktemp("programs")).write(pieces=PIECES, terminals=TERMINALS)
+    made = folder.spinbook("site")
+    assert made.returncode == 0, made.stdout + made.stderr
+    with served(folder.root / "build" / "site") as url:
+        yield url
+
+
+@pytest.fixture(scope="session")
+def reader(browser: Browser) -> Iterator[BrowserContext]:
+    """A browser in which somebody has run a node before: Pyodide starts in a quarter of the time."""
+    context = browser.new_context()
+    yield context
+    context.close()
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from browser import Opened, choose, code_in, open_editor, opened, write_code
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Browser, BrowserContext, Locator, Page, expect
 
 from spinbook.browser.files import can_run
 
@@ -26,8 +26,8 @@ FORBIDDEN = (
 
 
 @pytest.fixture(scope="module")
-def shown(browser: Browser, address: str) -> Iterator[Opened]:
-    with opened(browser, f"{address}/chapters/01-talk.html") as window:
+def shown(reader: BrowserContext, address: str) -> Iterator[Opened]:
+    with opened(reader, f"{address}/chapters/01-talk.html") as window:
         window.page.add_init_script(WITHOUT_PYTHON)
         yield window
 

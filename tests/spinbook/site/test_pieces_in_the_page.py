@@ -6,9 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 from browser import Opened, opened
-from course_folder import CourseFolder
-from playwright.sync_api import Browser, expect
-from small_course import served
+from playwright.sync_api import BrowserContext, expect
 
 from spinbook.browser.files import can_run
 
@@ -16,60 +14,12 @@ pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Py
 
 #: Pyodide starts in a few seconds; on a busy machine, in many.
 DEADLINE_MS = 60_000
-CHAPTER = """\
-# Pieces
-
-```text title="msg/Count.msg"
-int64 number 7
-```
-
-```python
-import rclpy
-from rclpy.node import Node
-from robot_interfaces.msg import Count
-```
-
-```python title="counter.py" seconds=20 until="counted 7"
-class Counter(Node):
-    def __init__(self):
-        super().__init__("counter")
-        self.create_subscription(Count, "count", self.heard, 10)
-        self.publisher = self.create_publisher(Count, "count", 10)
-        self.create_timer(0.1, lambda: self.publisher.publish(Count()))
-
-    def heard(self, count):
-        self.get_logger().info(f"counted {count.number}")
-```
-
-```bash
-ros2 run arm counter_node
-```
-"""
-SETUP = """
-```python title="setup.py"
-from setuptools import setup
-
-setup(name="arm", entry_points={"console_scripts": ["counter_node = arm.counter:main"]})
-```
-"""
-DEMOS = """
-```bash until="World: 2"
-ros2 run demo_nodes_cpp talker
-```
-
-```bash seconds=20 until="heard"
-ros2 run demo_nodes_py listener --ros-args -r __node:=ear
-```
-"""
 
 
 @pytest.fixture(scope="module")
-def shown(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Opened]:
+def shown(reader: BrowserContext, programs: str) -> Iterator[Opened]:
     """The page of one chapter, in which all tests run their cells: Pyodide starts once."""
-    root = tmp_path_factory.mktemp("course")
-    made = CourseFolder(root).write(pieces=CHAPTER + SETUP + DEMOS).spinbook("site", "--strict")
-    assert made.returncode == 0, made.stdout + made.stderr
-    with served(root / "build" / "site") as address, opened(browser, f"{address}/chapters/pieces.html") as page:
+    with opened(reader, f"{programs}/chapters/pieces.html") as page:
         yield page
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 from browser import Opened, opened
-from playwright.sync_api import Browser, Locator, expect
+from playwright.sync_api import BrowserContext, Locator, expect
 from test_what_a_page_can_not_do import DEADLINE_MS, run
 
 from ros_in_python.robot.description import description_text
@@ -40,9 +40,9 @@ rclpy.spin(node)
 
 
 @pytest.fixture(scope="module")
-def shown(browser: Browser, address: str) -> Iterator[Opened]:
+def shown(reader: BrowserContext, address: str) -> Iterator[Opened]:
     """A page in which an arm moves."""
-    with opened(browser, f"{address}/chapters/01-talk.html") as page:
+    with opened(reader, f"{address}/chapters/01-talk.html") as page:
         expect(run(page.page.locator(".cell-node").first, ARM)).to_contain_text("moves", timeout=DEADLINE_MS)
         yield page
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from browser import Opened, choose, code_in, opened, write_code
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, BrowserContext, expect
 from small_course import SmallCourse
 
 from grader.exercise import load
@@ -42,8 +42,8 @@ def test_nothing_is_loaded_before_run(browser: Browser, address: str) -> None:
         assert shown.faults == []
 
 
-def test_a_page_runs_its_nodes(browser: Browser, address: str) -> None:
-    with opened(browser, f"{address}/chapters/01-talk.html") as shown:
+def test_a_page_runs_its_nodes(reader: BrowserContext, address: str) -> None:
+    with opened(reader, f"{address}/chapters/01-talk.html") as shown:
         page = shown.page
         cell = page.locator(".cell-node")
         log, bar = cell.get_by_role("log"), page.get_by_role("region", name="Running nodes")
@@ -146,9 +146,9 @@ def test_a_failure_of_the_network_is_called_that(browser: Browser, address: str)
         expect(shown.page.locator("#said")).to_contain_text("this course's website does not answer")
 
 
-def test_an_exercise_is_checked_in_its_page(browser: Browser, address: str, tmp_path: Path) -> None:
+def test_an_exercise_is_checked_in_its_page(reader: BrowserContext, address: str, tmp_path: Path) -> None:
     solutions = ROOT / "solutions" / "joint_velocity"
-    with opened(browser, f"{address}/exercises/joint_velocity.html", width=390) as shown:
+    with opened(reader, f"{address}/exercises/joint_velocity.html", width=390) as shown:
         page = shown.page
         page.get_by_role("button", name="Edit and check the starter here").click()
         total = page.locator(".check-total")

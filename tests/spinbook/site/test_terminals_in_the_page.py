@@ -6,9 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 from browser import Opened, opened
-from course_folder import CourseFolder
-from playwright.sync_api import Browser, Locator, expect
-from small_course import served
+from playwright.sync_api import BrowserContext, Locator, expect
 
 from spinbook.browser.files import can_run
 
@@ -17,81 +15,11 @@ pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Py
 #: Pyodide starts in a few seconds; on a busy machine, in many.
 DEADLINE_MS = 120_000
 
-_TALKER = """
-```python title="talker.py"
-import rclpy
-from rclpy.node import Node
-
-
-def main():
-    rclpy.init()
-    node = Node('talker')
-    node.get_logger().info('version {version}')
-    try:
-        rclpy.spin(node)
-    except KeyboardInterrupt:
-        pass
-
-
-if __name__ == '__main__':
-    main()
-```
-"""
-CHAPTER = f"""\
-# Terminals
-
-{_TALKER.format(version="one")}
-
-{_TALKER.format(version="two")}
-
-```bash
-ros2 run robot talker
-```
-
-```bash seconds=60
-ros2 topic pub /count std_msgs/msg/Int32 "data: 5"
-```
-
-```bash seconds=60 until="data: 5"
-ros2 topic echo /count
-```
-
-```python title="launch/talkers.launch.py"
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, LogInfo, RegisterEventHandler, TimerAction
-from launch.event_handlers import OnProcessStart
-from launch_ros.actions import Node
-
-
-def generate_launch_description():
-    a = Node(package='robot', executable='talker', name='a')
-    return LaunchDescription([
-        DeclareLaunchArgument('rate', choices=['slow', 'fast'], default_value='slow'),
-        a,
-        RegisterEventHandler(OnProcessStart(target_action=a, on_start=[LogInfo(msg='a has started')])),
-        TimerAction(period=0.2, actions=[Node(package='robot', executable='talker', name='b')]),
-    ])
-```
-
-```bash
-ros2 launch robot talkers.launch.py
-```
-
-```bash
-ros2 launch robot talkers.launch.py rate:=sideways
-```
-
-{_TALKER.format(version="three").replace("talker.py", "better_talker.py")}
-"""
-
 
 @pytest.fixture(scope="module")
-def shown(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Opened]:
+def shown(reader: BrowserContext, programs: str) -> Iterator[Opened]:
     """The page of one chapter, for all tests."""
-    root = tmp_path_factory.mktemp("course")
-    made = CourseFolder(root).write(terminals=CHAPTER).spinbook("site")
-    assert made.returncode == 0, made.stdout + made.stderr
-    with served(root / "build" / "site") as address, opened(browser, f"{address}/chapters/terminals.html") as page:
+    with opened(reader, f"{programs}/chapters/terminals.html") as page:
         yield page
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 from browser import Opened, opened, write_code
-from playwright.sync_api import Browser, Locator, Route, expect
+from playwright.sync_api import Browser, BrowserContext, Locator, Route, expect
 
 from spinbook.browser.files import can_run
 
@@ -60,9 +60,9 @@ FORGOT = re.compile(
 
 
 @pytest.fixture(scope="module")
-def shown(browser: Browser, address: str) -> Iterator[Opened]:
+def shown(reader: BrowserContext, address: str) -> Iterator[Opened]:
     """One page for all tests: its plain cells share one process."""
-    with opened(browser, f"{address}/chapters/01-talk.html") as page:
+    with opened(reader, f"{address}/chapters/01-talk.html") as page:
         yield page
 
 
