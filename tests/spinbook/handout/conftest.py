@@ -113,6 +113,13 @@ def copy_exercises(root: Path, names: Sequence[str]) -> None:
             shutil.copytree(ROOT / folder / name, root / folder / name, ignore=ignored)
 
 
+def write_small_course(root: Path) -> CourseFolder:
+    """Write a course with one small chapter and the real exercise."""
+    course = CourseFolder(root)
+    copy_exercises(root, ["joint_velocity"])
+    return course.write(**{"01-small": SMALL_CHAPTER})
+
+
 def append(file: Path, text: str) -> None:
     """Add `text` at the end of `file`."""
     file.write_text(file.read_text(encoding="utf-8") + text, encoding="utf-8")
@@ -128,17 +135,18 @@ def hand_out(course: CourseFolder) -> HandedOut:
 
 @pytest.fixture(scope="session")
 def real(tmp_path_factory: pytest.TempPathFactory) -> HandedOut:
-    """The handout of the real course."""
-    return hand_out(copy_course(tmp_path_factory.mktemp("real") / "course"))
+    """The handout of the real course, made over an older one."""
+    course = copy_course(tmp_path_factory.mktemp("real") / "course")
+    left = course.root / "build" / "handout" / "humanoid-robotics-with-ros-2" / "old" / "notebook.ipynb"
+    left.parent.mkdir(parents=True)
+    left.write_text("{}")
+    return hand_out(course)
 
 
 @pytest.fixture(scope="session")
-def again(real: HandedOut, tmp_path_factory: pytest.TempPathFactory) -> HandedOut:
-    """The same course's handout, made in another folder, with the solution run again, over an older handout."""
+def again(tmp_path_factory: pytest.TempPathFactory) -> HandedOut:
+    """The same course's handout, made in another folder, with the solution run again."""
     course = copy_course(tmp_path_factory.mktemp("again") / "another" / "place")
-    left = course.root / "build" / "handout" / real.folder.name / "old" / "notebook.ipynb"
-    left.parent.mkdir(parents=True)
-    left.write_text("{}")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SPINBOOK_CACHE", str(tmp_path_factory.mktemp("cache")))
         return hand_out(course)
@@ -147,9 +155,7 @@ def again(real: HandedOut, tmp_path_factory: pytest.TempPathFactory) -> HandedOu
 @pytest.fixture(scope="session")
 def small_course(tmp_path_factory: pytest.TempPathFactory) -> CourseFolder:
     """A course with one small chapter and the real exercise."""
-    course = CourseFolder(tmp_path_factory.mktemp("small") / "course")
-    copy_exercises(course.root, ["joint_velocity"])
-    return course.write(**{"01-small": SMALL_CHAPTER})
+    return write_small_course(tmp_path_factory.mktemp("small") / "course")
 
 
 @pytest.fixture(scope="session")

@@ -21,7 +21,7 @@ from course_folder import CourseFolder
 import spinbook
 from grader.exercise import load
 from grader.exercise.mistakes import Mistake, mistake_of, mistakes_of
-from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course
+from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course, write_small_course
 from interface_compiler.wheel_file import zipped
 from spinbook.chapter.comments import without_comments
 from spinbook.handout.leaks import Secret, hidden_names, leaks, secrets
@@ -123,16 +123,14 @@ def test_the_same_course_gives_the_same_bytes_wherever_it_lies(real: HandedOut, 
     assert again.archive.read_bytes() == real.archive.read_bytes()
 
 
-def test_folder_and_zip_hold_the_same_and_the_folder_nothing_else(again: HandedOut) -> None:
-    outer = f"{again.archive.name}/{again.folder.name}/"
-    in_zip = {name.removeprefix(outer): content for name, content in again.files() if ".whl/" not in name}
+def test_folder_and_zip_hold_the_same_and_the_folder_nothing_else(real: HandedOut) -> None:
+    outer = f"{real.archive.name}/{real.folder.name}/"
+    in_zip = {name.removeprefix(outer): content for name, content in real.files() if ".whl/" not in name}
     in_folder = {
-        file.relative_to(again.folder).as_posix(): file.read_bytes()
-        for file in again.folder.rglob("*")
-        if file.is_file()
+        file.relative_to(real.folder).as_posix(): file.read_bytes() for file in real.folder.rglob("*") if file.is_file()
     }
     assert in_folder == in_zip
-    assert not (again.folder / "old").exists()
+    assert not (real.folder / "old").exists()
 
 
 def test_the_means_to_install_are_there_and_can_be_read(real: HandedOut) -> None:
@@ -222,8 +220,8 @@ def test_the_students_exercise_is_the_authors_without_what_is_not_for_them(real:
 
 
 def test_a_chapter_or_a_task_that_gives_something_away_is_refused(tmp_path: Path) -> None:
-    course = copy_course(tmp_path / "course")
-    chapter = course.root / "chapters" / CHAPTER
+    course = write_small_course(tmp_path / "course")
+    chapter = course.root / "chapters" / "01-small.md"
     lines = (SOLUTIONS / "solution.py").read_text(encoding="utf-8").split("\n")
     begin = next(i for i, line in enumerate(lines) if "is not None and stamp >" in line)
     append(chapter, "\n```text\n" + "\n".join(lines[begin : begin + 3]) + "\n```\n")
@@ -237,9 +235,7 @@ def test_a_chapter_or_a_task_that_gives_something_away_is_refused(tmp_path: Path
     assert re.search(
         r"task\.md:\d+: error: the hidden check test_lost_messages of joint_velocity would be", done.stderr
     )
-    assert re.search(
-        r"\(chapters/03-nodes-and-topics\.md:\d+, the same as solutions/joint_velocity/solution\.py", done.stderr
-    )
+    assert re.search(r"\(chapters/01-small\.md:\d+, the same as solutions/joint_velocity/solution\.py", done.stderr)
     assert "the same as exercises/joint_velocity/hidden_checks.py:" in done.stderr
     assert "Take it out of the chapter" in done.stderr
     assert "Traceback" not in done.stderr
@@ -339,9 +335,9 @@ def test_a_file_that_is_named_after_a_hidden_check_is_found(known: list[Secret])
 
 
 def test_what_an_editor_put_into_a_built_notebook_does_not_get_out(tmp_path: Path) -> None:
-    course = copy_course(tmp_path / "course")
+    course = write_small_course(tmp_path / "course")
     assert course.spinbook("build").returncode == 0
-    built = course.root / "build" / "notebooks" / CHAPTER.replace(".md", ".ipynb")
+    built = course.root / "build" / "notebooks" / "01-small.ipynb"
     notebook = json.loads(built.read_text(encoding="utf-8"))
     secret = SECRET_LINES["a part of the solution"]
     notebook["metadata"]["note"] = secret
