@@ -21,6 +21,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import warnings
 from functools import cache
 from pathlib import Path
@@ -186,13 +187,39 @@ def _become(request: dict[str, Any]) -> None:
 
 
 def main() -> None:
-    """Serve; in a fork, run the command, and end as Python ends."""
+    """Serve; in a fork, run the command."""
     # Ctrl-C is for the commands; this process ends when nobody can ask it for anything any more.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.path.remove(os.fspath(Path(__file__).parent))
     request = _serve(socket.socket(fileno=int(sys.argv[1])))
     _become(request)
-    runpy.run_module(request["module"], run_name="__main__", alter_sys=True)
+    _end(_code_of(request["module"]))
+
+
+def _code_of(module: str) -> int:
+    """Run the module as a program; return its exit code."""
+    try:
+        runpy.run_module(module, run_name="__main__", alter_sys=True)
+    except SystemExit as stop:
+        if isinstance(stop.code, str):
+            print(stop.code, file=sys.stderr)
+        return stop.code if isinstance(stop.code, int) else int(stop.code is not None)
+    except Exception:
+        sys.excepthook(*sys.exc_info())
+        return 1
+    return 0
+
+
+def _end(code: int) -> None:
+    """End as Python ends, but let the kernel clear the memory: Python would first copy each page that the fork shares.
+
+    That is nine tenths of what a short command takes.
+    """
+    threading._shutdown()  # type: ignore[attr-defined]  # waits for threads
+    atexit._run_exitfuncs()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code)
 
 
 if __name__ == "__main__":

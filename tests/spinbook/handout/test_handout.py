@@ -21,7 +21,7 @@ from course_folder import CourseFolder
 import spinbook
 from grader.exercise import load
 from grader.exercise.mistakes import Mistake, mistake_of, mistakes_of
-from handout.conftest import CHAPTER, NOTE, ROOT, HandedOut, append, copy_course, write_small_course
+from handout.conftest import NOTE, ROOT, HandedOut, append, copy_course, write_small_course
 from interface_compiler.wheel_file import zipped
 from spinbook.chapter.comments import without_comments
 from spinbook.handout.leaks import Secret, hidden_names, leaks, secrets
