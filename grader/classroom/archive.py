@@ -35,7 +35,7 @@ MOST_BYTES_OF_ONE = max(MOST_BYTES.values()) + 1
 
 def is_noise(name: str) -> bool:
     """Return whether a file or folder of this name can be ignored."""
-    return name in NOISE or name.startswith(".")
+    return name in NOISE or name.startswith((".", "~$")) or (name.startswith("#") and name.endswith("#"))
 
 
 def walk(root: Path) -> Iterator[File | Skipped]:

@@ -14,6 +14,7 @@ SUFFIX = re.compile(r"(\.py\.txt|\.ipynb\.(json|txt)|\.tar\.\w+|\.[^.]+)$", re.I
 
 #: Instructors' own tables and notes, next to the submissions.
 NOT_WORK = (".csv", ".tsv", ".xls", ".xlsx", ".ods", ".md", ".yml", ".yaml", ".toml", ".html")
+README = re.compile(r"(?:readme|licen[sc]e)(?:\.txt)?", re.IGNORECASE)
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation]:
@@ -25,11 +26,11 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
     originals = list(names.values())
 
     def understand(parts: Parts) -> Interpretation:
-        if len(parts) == 1 and parts[0].lower().endswith(NOT_WORK):
+        if len(parts) == 1 and (parts[0].lower().endswith(NOT_WORK) or README.fullmatch(parts[0])):
             return "a table, a note or a page, not a submission"
         name = _name(parts)
-        if names[name] in names or originals.count(names[name]) == 1:
-            name = names[name]
+        while names.get(name, name) != name and (names[name] in names or originals.count(names[name]) == 1):
+            name = names[name]  # a copy may be one of a copy
         file = export.files.get(parts)
         student = person(name, name if name != student_id(name) else "")
         return UploadedFile((student,), parts[1:] or parts, time=file.time if file else UNKNOWN)

@@ -106,6 +106,11 @@ def test_a_copy_beside_a_students_file_is_not_another_student(tmp_path: Path) ->
     assert found.handed_in[0].file.path.is_dir()
 
 
+def test_a_copy_of_a_file_with_its_owner_before_it_is_that_owners(tmp_path: Path) -> None:
+    names = ["Anna Lee - node.py", "Bert K - node.py", "Bert K - node (1).py", "#anna.py#", "~$x.docx", "README.txt"]
+    assert list(files(collected(folder(tmp_path / "class", names)))) == ["Anna_Lee", "Bert_K"]
+
+
 def test_a_class_that_handed_in_another_language_has_its_rows(tmp_path: Path) -> None:
     found = collected(folder(tmp_path / "class", {"anna.cpp": "", "bert.rs": "", "carl.txt": "import rclpy\n"}))
     assert list(files(found)) == ["anna", "bert", "carl"]
@@ -149,4 +154,4 @@ def test_of_two_files_of_one_name_in_a_zip_none_replaces_the_other(tmp_path: Pat
         for name in ("anna.py", "anna.py", "bert.py"):
             out.writestr(name, "")
     (question,) = collected(tmp_path / "class.zip").questions
-    assert str(question) == "anna handed in anna.py: the zip holds several files of this name"
+    assert str(question) == "anna handed in anna.py: the archive holds several files of this name"
