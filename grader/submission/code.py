@@ -33,7 +33,7 @@ from grader.submission.file_kinds import (
 from grader.submission.launch_program import MAIN, launch_file_in, program_files
 from grader.submission.magics import cell_magic, without_commands
 from grader.submission.notebook import Notebook, NotebookCell, read_notebook
-from grader.submission.problems import Unreadable, merge_conflict
+from grader.submission.problems import AmbiguousProgram, Unreadable, merge_conflict
 from grader.submission.program_choice import choose, digest_of
 from grader.submission.python_version import newer_syntax
 from grader.submission.several_files import MOST_FILES, files_in, joined, parts
@@ -243,9 +243,17 @@ def code_of_files(contents: Contents, exercise: Exercise, called: str = "") -> C
     options = {one.file: chosen(reading, one, handed_out) for one in targets(exercise)}
     if not exercise.programs:
         return _of_one(next(iter(options.values())), reading)
+    if len({option.file for option in options.values()}) == 1 and not any(one.choice for one in options.values()):
+        return code_of_python(contents.files[next(iter(options.values())).file], exercise)
     files: dict[str, bytes] = {}
     for file, option in options.items():
-        files |= _files_of(option, reading, file)
+        theirs = _files_of(option, reading, file)
+        if both := [name for name in theirs if name.endswith(".py") and files.get(name, theirs[name]) != theirs[name]]:
+            raise AmbiguousProgram(
+                f"{both[0]} is there in several versions, for {file} and for another program. Put each program with "
+                "its modules into a package of its own, a folder with an __init__.py."
+            )
+        files |= theirs
     notes = tuple(dict.fromkeys(note for option in options.values() for note in notes_on(option, reading)))
     shown = {file: files[file] for file in options} | files
     return Code(files, next(iter(options)), joined({k: v for k, v in shown.items() if k.endswith(".py")}), notes)

@@ -81,7 +81,8 @@ def chosen(reading: ReadState, target: ProgramFile, handed_out: frozenset[str]) 
         )
     for tier in (named, its_own, *([] if lost else [_by_executable(reading, options, target), *only_program])):
         if tier:
-            return _starting(_decided(tier, reading, target), options)
+            option = _decided(tier, reading, target)
+            return option if reading.exercise.programs else _starting(option, options)
     raise Unreadable(_nothing(reading, target))
 
 

@@ -16,7 +16,7 @@ from grader.submission.problems import Unreadable
 
 #: What only such a file has. A script with `# %%` alone is a script: Python runs it as it is.
 SAVED_AS_PYTHON = re.compile(
-    rb"^(?:[\w, \t]*=)?[ \t]*get_ipython\(\)\.|^# ?%%(?:node|part)[ \t]|^app = marimo\.App\("
+    rb"^(?:[\w, \t]*=)?[ \t]*get_ipython\(\)\.|^# ?%%(?:node|part)[ \t]|^app = marimo\.App\(|^#%% md[ \t]*$"
     rb"|^%%(?:node|part)[ \t](?s:.*)^%%(?:node|part)[ \t]",  # several cells in one file
     re.MULTILINE,
 )
@@ -24,7 +24,7 @@ SAVED_AS_PYTHON = re.compile(
 _BEGINS = re.compile(
     r"# In ?\[[\d ]*\]:\s*|# ?%%(?:[ \t].*)?|# ?\+(?: .*)?|# -|# Commented out IPython magic to ensure .*"
 )
-_IS_TEXT = re.compile(r"# ?%%.*\[(?:markdown|md|raw)\]")
+_IS_TEXT = re.compile(r"# ?%%(?: md\s*$|.*\[(?:markdown|md|raw)\])")
 _MAGIC = re.compile(r"(?:# ?)?%%\w")
 _TEXT = r"""('(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*")"""
 _CELL_CALL = re.compile(rf"get_ipython\(\)\.run_cell_magic\({_TEXT}, {_TEXT}, {_TEXT}\)\s*")

@@ -307,6 +307,23 @@ def test_several_programs_keep_their_own_lines(pair: Exercise) -> None:
     assert submission.program.files == {"counter.py": COUNTER.encode(), "doubler.py": DOUBLER.encode()}
 
 
+def test_modules_of_one_name_that_differ_are_a_question(pair: Exercise) -> None:
+    files = {
+        f"{name}/{name}.py": f"import rates\n{text}" for name, text in (("counter", COUNTER), ("doubler", DOUBLER))
+    }
+    same = {**files, "counter/rates.py": RATES, "doubler/rates.py": RATES}
+    assert of_content("p.zip", zipped(same), pair).program
+    question = of_content("p.zip", zipped({**same, "doubler/rates.py": "RATE = 1.0\n"}), pair).question
+    assert question.startswith("rates.py is there in several versions, for doubler.py and for another program.")
+
+
+def test_one_file_with_all_programs_is_read_in_a_zip_as_alone(pair: Exercise) -> None:
+    alone = of_content("both.py", f"{COUNTER}{DOUBLER}".encode(), pair)
+    assert of_content("p.zip", zipped({"both.py": f"{COUNTER}{DOUBLER}"}), pair).problem == alone.problem
+    marked = f"# file: counter.py\n{COUNTER}# file: doubler.py\n{DOUBLER}"
+    assert of_content("p.zip", zipped({"both.py": marked}), pair).program
+
+
 def test_a_program_that_is_missing_is_named(pair: Exercise) -> None:
     submission = of_content("one.zip", zipped({"counter.py": COUNTER}), pair)
     assert (

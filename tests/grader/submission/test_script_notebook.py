@@ -39,6 +39,7 @@ SAVED = {
     "jupytext, light": f"# # Week 3\n\n# +\n{commented(NODE)}# -\n\n# Text\n",
     "Colab": f'"""Untitled0.ipynb"""\n\n!pip install rclpy\n\n{MAGIC}{commented(NODE)}\n{MAGIC}# %check heartbeat\n',
     "Colab with another node": f"{MAGIC}{commented(f'%%node pulse{chr(10)}{OTHER}')}\n{MAGIC}{commented(NODE)}",
+    "PyCharm": f"#%% md\n# Week 3\nIt *beats*.\n#%%\n%%node heartbeat\n{PROGRAM}#%%\n%check heartbeat\n",
     "cells below each other": f"%%node pulse\n{OTHER}\n{NODE}",
     "line ends of Windows": of_nbconvert(NODE).replace("\n", "\r\n"),
 }
