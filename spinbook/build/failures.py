@@ -104,7 +104,8 @@ def _node_error(
         (cell for cell in reversed(before) if (_about(cell).get("node") == module if module else _starts(cell, node))),
         shown_in,
     )
-    line = _line(made) + max(about["line"] - 1, 0)
+    # The first line of its cell is the magic's.
+    line = _line(made) + max(about["line"] - 2, 0)
     quoted = "\n".join(row.removeprefix("    | ") for row in about["words"].split("\n")[1:])
     return CellFailure(chapter, line, f"{about['node']} went wrong: {about['what']}", quoted)
 
@@ -143,7 +144,8 @@ def _failure(chapter: Path, cell: dict[str, Any], error: dict[str, Any]) -> Cell
     traceback = _ANSI.sub("", "\n".join(error["traceback"]))
     printed = _printed(cell)
     line = _line(cell)
-    node, above = _about(cell).get("node"), _about(cell).get("above", 0)
+    node = _about(cell).get("node")
+    above = _about(cell).get("above", 1 if node else 0)
     if node:
         inside = re.findall(_IN_MODULE.format(module=re.escape(node)), printed)
         line += max(int(inside[-1]) - above, 1) - 1 if inside else 0

@@ -145,6 +145,7 @@ class SpinbookMagics(Magics):
             parts = arguments.after if arguments.after or arguments.usual_imports else None
             start = NodeStart(tuple(arguments.classes), arguments.main, tuple(arguments.known_as))
             bound = DisplayLimit(arguments.seconds, arguments.until, arguments.expect_error)
+            self.session.head = self._lines_above(cell)
             self.session.replace_node(arguments.replaces)
             if arguments.of:
                 self.session.save_node(name, cell, start)
@@ -153,6 +154,12 @@ class SpinbookMagics(Magics):
                 self.session.keep_node(name, cell, start, parts)
             else:
                 self.session.run_node(name, cell, bound, start, parts)
+
+    def _lines_above(self, code: str) -> int:
+        """Return how many lines the current cell has above this code: that of its magic, and empty ones."""
+        typed = self.shell.history_manager.input_hist_raw[-1] if self.shell and self.shell.history_manager else ""
+        above, same, _ = typed.partition(f"\n{code.rstrip()}")
+        return above.count("\n") + 1 if same else 1
 
     @no_var_expand
     @cell_magic

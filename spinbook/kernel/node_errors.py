@@ -47,7 +47,8 @@ FindLine = Callable[[str, int], "tuple[str, int] | None"]
 
 @dataclass(frozen=True)
 class NodeError:
-    """Something that went wrong in a node. `file` and `line` (of the cell's code) are where, if that is known.
+    """Something that went wrong in a node. `file` and `line` (of its cell, whose first line is `%%node`) are where,
+    if that is known.
 
     `meant` says that the author expects it (`expect-error`).
     """

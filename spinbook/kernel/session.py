@@ -79,8 +79,10 @@ class Session:
     """Whether the node that starts now ran before with other code."""
     starts: dict[str, tuple[Path, NodeStart]] = field(default_factory=dict)
     """The file of each node and how it is started, by the node's name."""
+    head: int = 1
+    """How many lines the current cell has above its code: that of its magic, and empty ones."""
     above: dict[Path, int] = field(default_factory=dict)
-    """How many lines of each node's file are not from its own cell, but above it."""
+    """How many lines of each node's file are above its cell: 0 if its lines have the cell's numbers."""
     expects_error: bool = False
     """Whether a command of the current cell says that errors of nodes are meant."""
     timeline: TimelineProcess | None = None
@@ -153,14 +155,18 @@ class Session:
         self.ran[name] = code
         self.ran_at[name] = time.time()
         whole = code if after is None else self._whole(name, code, after)
+        if whole == code:
+            # Below its magic, code has the numbers that the notebook shows next to its lines.
+            whole = "\n" * (self.head - 1) + f"# %%node {name}\n{code}"
         module = Module(name, whole.rstrip("\n") + "\n", executables)
         file = add_module(self.workspace, package, module)
         self.starts[name] = (file, start)
-        self.above[file] = whole[: -len(code)].count("\n") if whole.endswith(code) else 0
+        own = whole[: -len(code)].count("\n") if whole.endswith(code) else 0
+        self.above[file] = own - self.head
         return file
 
     def line_of_cell(self, file: str, line: int) -> tuple[str, int] | None:
-        """Return (file name, line of its cell's code) of a line of a node's file; None if no cell made it."""
+        """Return (file name, line of its cell) of a line of a node's file; None if no cell made it."""
         tail = Path(file).parts[-2:]
         # `colcon build` copies a file into other folders.
         above = next((count for known, count in self.above.items() if known.parts[-2:] == tail), None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Any
 from spinbook.build.failures import node_errors
 from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.classify import CellKind
+from spinbook.kernel.node_errors import ERROR
 from spinbook.site.drawings import smaller, still_of
 from spinbook.site.page import Repository, exercise_page
 from spinbook.site.repetition import Repetition, repetitions
@@ -74,7 +76,10 @@ def chapter_notebook(
     """
     cells: list[dict[str, Any]] = []
     repeated = repetitions(chapter.cells)
+    above: dict[str, int] = {}
     for cell in chapter.cells:
+        if cell.kind is CellKind.NODE:
+            above[cell.module] = cell.before.count("\n")
         if cell.kind is CellKind.PROSE:
             cells.append(_prose(cell, prose[cell.id]))
         elif cell.kind is CellKind.EXERCISE:
@@ -82,6 +87,7 @@ def chapter_notebook(
         else:
             code = _code(cell, ran, repository.link(chapter.file, cell.line), downloads.get(cell.id, ""))
             code["metadata"]["spinbook"]["repeats"] = asdict(repeated.get(cell.id, Repetition()))
+            code["outputs"] = [_numbered(output, above) for output in code["outputs"]]
             cells.append(code)
     if graph:
         cells.append({**_prose(chapter.cells[-1], graph), "id": "nodes-as-seen"})
@@ -171,6 +177,30 @@ def _published(output: dict[str, Any]) -> dict[str, Any]:
     if "image/png" in data:
         data["image/png"] = smaller(data["image/png"])
     return {**output, "data": data}
+
+
+#: A line of a node's file: in a traceback with its path, in a report without.
+_LINE = re.compile(r'\b(?P<file>\w+\.py)(?P<quote>"?), line (?P<line>\d+)')
+
+
+def _numbered(output: dict[str, Any], above: Mapping[str, int]) -> dict[str, Any]:
+    """Return an output with lines counted as in the page's editor, in which `%%node` is no line.
+
+    `above` is how many lines complete each node, by its file: its tracebacks count those, too.
+    """
+
+    def in_page(place: re.Match[str]) -> str:
+        file, quote = place["file"], place["quote"]
+        added = above.get(file, 1)
+        shift = (0 if added else -1) if quote else added - 1
+        return f"{file}{quote}, line {max(int(place['line']) + shift, 1)}"
+
+    if "text" in output:
+        return {**output, "text": _LINE.sub(in_page, "".join(output["text"]))}
+    if ERROR in output.get("metadata", {}):
+        plain = _LINE.sub(in_page, "".join(output["data"]["text/plain"]))
+        return {**output, "data": {**output["data"], "text/plain": plain}}
+    return output
 
 
 _SHOWN = ("image/svg+xml", "image/png", "text/plain")

@@ -179,7 +179,7 @@ def test_the_notebook_shows_the_error_in_the_next_cell_that_runs(built: BuiltCou
     cells = [cell for cell in built.folder.notebook("callback", "executed").cells if node_errors(cell)]
 
     assert [cell.source.split("\n")[0] for cell in cells] == ["import time"]
-    assert node_errors(cells[0])[0]["words"].startswith("✗ valve: valve.py, line 21: ValueError: 42.")
+    assert node_errors(cells[0])[0]["words"].startswith("✗ valve: valve.py, line 22: ValueError: 42."), "as in the cell"
 
 
 def test_the_site_marks_the_chapter_and_the_output(built: BuiltCourse) -> None:
@@ -189,6 +189,6 @@ def test_the_site_marks_the_chapter_and_the_output(built: BuiltCourse) -> None:
 
     assert re.search(r'✗ Something went wrong when this chapter ran: <a href="#(wrong-code-\w+)">see its output', page)
     assert re.search(r'id="wrong-code-\w+">✗ Output: something went wrong</p>', page)
-    assert "✗ valve: valve.py, line 21: ValueError: 42." in page
+    assert "✗ valve: valve.py, line 21: ValueError: 42." in page, "as in the page's editor, without %%node"
     assert home.count("✗ Something went wrong when this chapter ran.") == 7
     assert "went-wrong" not in (site / "chapters" / "plain.html").read_text()

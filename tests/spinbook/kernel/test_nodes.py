@@ -43,7 +43,7 @@ def test_a_node_runs_unmodified_and_goes_on_behind_the_cell(kernel: Kernel) -> N
     assert "[INFO] [talker]: talking" in shown.text
     assert "talker continues in the background" in shown.text
     assert re.search(r"^talker +running", kernel.run("%nodes").text)
-    assert (kernel.folder / "robot_ws/src/robot/robot/talker.py").read_text() == TALKER
+    assert (kernel.folder / "robot_ws/src/robot/robot/talker.py").read_text() == f"# %%node talker\n{TALKER}"
 
 
 def test_running_a_cell_again_restarts_its_node(kernel: Kernel) -> None:
@@ -79,10 +79,10 @@ def test_a_node_that_ends_badly_on_ctrl_c_shows_its_words(kernel: Kernel) -> Non
 
 
 def test_a_node_that_crashes_fails_its_cell_with_its_own_words(kernel: Kernel) -> None:
-    shown = kernel.run("%%node crash\nimport rclpy\nprint('hello')\nrclpy.no_such_thing()\n")
+    shown = kernel.run("\n%%node crash\nimport rclpy\nprint('hello')\nrclpy.no_such_thing()\n")
 
     assert shown.text.startswith("hello\nTraceback")
-    assert 'robot_ws/src/robot/robot/crash.py", line 3' in shown.text
+    assert 'robot_ws/src/robot/robot/crash.py", line 5' in shown.text, "as in the cell, its empty first line included"
     assert shown.error == "crash ended with exit code 1. Its last output is above."
 
 

@@ -69,9 +69,11 @@ def test_a_program_that_can_not_start_is_reported_with_its_line(kernel: Kernel) 
 def test_lines_are_those_of_the_cell_files_have_their_own_names_and_what_was_printed_is_shown(kernel: Kernel) -> None:
     broken = solution().replace("def main():\n", "def main():\n    print('one two three')\n    1 / 0\n", 1)
 
-    text, html = texts(shown_of(kernel, broken))
+    log = kernel.run(node_cell(broken)).text
+    text, html = texts(kernel.run(CHECK))
 
     line = 1 + next(i for i, line in enumerate(broken.split("\n"), start=1) if "1 / 0" in line)
+    assert f'joint_velocity.py", line {line}, in main' in log, "the node's own log counts in the same way"
     for message in (text, html.replace("&#34;", '"')):
         assert "What your program printed" in message
         assert "one two three" in message
