@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from markupsafe import Markup
@@ -171,8 +171,10 @@ class Panel:
     wrong_at: str
 
 
-def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
+def feedback_plot(grade: Grade, exercise: Exercise, *, judged: bool = True) -> str | None:
     """Return the plot as SVG text; None if nothing was recorded, or the node published nothing that can be drawn.
+
+    Without `judged`, no value is marked as wrong.
 
     Return None also for a node that fails checks although its curves agree with the solution's: its fault is not in the
     picture. The plot shows the scenario of the first public check that failed, otherwise the first scenario, which all
@@ -189,13 +191,14 @@ def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
         return None
     if not grade.full_marks and not any(curve.first_wrong for curve in drawn):
         return None
+    drawn = drawn if judged else tuple(replace(curve, first_wrong=None) for curve in drawn)
     times = [at for curve in drawn for line in (curve.expected, curve.got) for at, _ in line]
     start, end = min(times), max(times)
     panels = [_panel(i, curve, start, end) for i, curve in enumerate(drawn)]
     return template("report/feedback_plot.svg.j2").render(
         title=quantity.field,
         unit=quantity.unit,
-        description=_description(drawn, quantity.field, quantity.element, end),
+        description=_description(drawn, quantity.field, quantity.element, end, judged),
         panels=panels,
         width=WIDTH,
         left=LEFT,
@@ -207,13 +210,13 @@ def feedback_plot(grade: Grade, exercise: Exercise) -> str | None:
     )
 
 
-def picture(grade: Grade, exercise: Exercise) -> str | None:
+def picture(grade: Grade, exercise: Exercise, *, judged: bool = True) -> str | None:
     """Return the plot, or None if there is nothing to draw or it can't be drawn.
 
     The numbers come from a student's node and may be anything: a page without a picture is better than no page.
     """
     try:
-        return feedback_plot(grade, exercise)
+        return feedback_plot(grade, exercise, judged=judged)
     except Exception:
         return None
 
@@ -264,7 +267,7 @@ def _marks(start: float, end: float) -> list[float]:
     return [round((first + i) * step, 6) for i in range(int((end - first * step) / step + 1e-9) + 1)]
 
 
-def _description(drawn: tuple[Curve, ...], field: str, called: str, end: float) -> str:
+def _description(drawn: tuple[Curve, ...], field: str, called: str, end: float, judged: bool) -> str:
     """Describe the plot in words."""
     wrong = [curve for curve in drawn if curve.first_wrong]
     alone = drawn[0].element == field
@@ -272,7 +275,7 @@ def _description(drawn: tuple[Curve, ...], field: str, called: str, end: float) 
     of = "" if alone else f" of {len(drawn)} {names}"
     begin = f"The {field}{of} over {end:.3g} s, yours drawn over the solution's. "
     if not wrong:
-        return begin + "They agree everywhere."
+        return begin + ("They agree everywhere." if judged else "")
     times = [(curve.first_wrong[0], curve.element) for curve in wrong if curve.first_wrong]
     at, element = min(times)
     if alone:

@@ -37,6 +37,7 @@ _SPINBOOK = (
     "kernel/entry.py",
     "kernel/recorder_lines.py",
     "kernel/robot_recorder.py",
+    "kernel/surroundings.py",
     "kernel/timeline.py",
     "kernel/timeline_picture.py",
     "kernel/timeline_recorder.py",

@@ -49,8 +49,8 @@ def span_of(lanes: Iterable[Lane]) -> tuple[float, float]:
     return min(times), max(times)
 
 
-def moving_timeline(lanes: Sequence[Lane], title: str = "") -> str:
-    """Return an SVG of lanes, at least one of which has a mark."""
+def moving_timeline(lanes: Sequence[Lane], title: str = "", *, moves: bool = True) -> str:
+    """Return an SVG of lanes, at least one of which has a mark. While events are still arriving, it must not move."""
     start, end = span_of(lanes)
     across = Scale(start, max(end, start + 0.1), _LEFT, _WIDTH - _RIGHT)
     words = in_words(lanes, start)
@@ -67,12 +67,15 @@ def moving_timeline(lanes: Sequence[Lane], title: str = "") -> str:
     grid, bottom = _axis(across, _TOP, y), y + 22
     legend, bottom = _legend(lanes, bottom + 16)
     faster = max(1, math.ceil((end - start) / LONGEST_S))
-    moving = _moving(Cycle(key, max(end - start, 0.1) / faster), y)
+    moving = _moving(Cycle(key, max(end - start, 0.1) / faster), y) if moves else ""
     pointer = f'<path class="{key}x" d="M{_LEFT} {_TOP}V{coord(y)}" stroke="{_GREY}" opacity="0"/>'
+    window = f' clip-path="url(#{key}c)"' if moves else ""
     content = (
         f'{moving}<g class="{key}i" font-size="12">{grid}{"".join(labels)}'
-        f'<g clip-path="url(#{key}c)">{"".join(drawn)}</g>{pointer}{legend}</g>'
+        f"<g{window}>{''.join(drawn)}</g>{pointer}{legend}</g>"
     )
+    if not moves:
+        return on_paper(content, _WIDTH, math.ceil(bottom), key, name, words)
     pace = "as fast as it happened" if faster == 1 else f"{faster} times as fast as it happened"
     return on_paper(content, _WIDTH, math.ceil(bottom), key, name, f"{words}\nIt is drawn {pace}, again and again.")
 

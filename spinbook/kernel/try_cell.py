@@ -15,11 +15,10 @@ from IPython.display import display
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.grading.grade import Grade
 from grader.grading.public import playable, read_public
-from grader.recording.events import Goal
 from grader.recording.recording import Recording, from_json
 from grader.report.plot import figure
 from grader.scenario.command_line import arguments
-from grader.scenario.scenario import SECOND, Scenario
+from grader.scenario.scenario import Scenario
 from groundwork.clean_environment import module_command
 from ros_in_python.robot import drawing, still, urdf
 from spinbook.kernel.check_cell import exercise_of, notebook_file
@@ -27,7 +26,7 @@ from spinbook.kernel.environment import EXECUTING
 from spinbook.kernel.plot.picture import as_png
 from spinbook.kernel.process import STOP_GRACE, CellFailed
 from spinbook.kernel.session import Session
-from spinbook.kernel.timeline import RecordedEvents, TimelineEvent, in_words, lanes
+from spinbook.kernel.timeline import in_words, lanes
 from spinbook.kernel.timeline_picture import span_of, still_timeline
 
 if TYPE_CHECKING:
@@ -122,6 +121,9 @@ class TriedPicture:
         return (drawn if drawn.axes else None), f"{exercise.title}: what your node does, and what the solution does"
 
     def _timeline(self, recording: Recording) -> tuple[Figure | None, str]:
+        # Imported here because it imports rclpy.
+        from spinbook.kernel.surroundings import events_of
+
         drawn = lanes(events_of(recording))
         if not any(lane.marks for lane in drawn):
             return None, ""
@@ -136,30 +138,3 @@ def robot_of(recording: Recording) -> tuple[bytes | None, str]:
             robot = urdf.read(str(text))
             return still.as_png(robot, {}), drawing.in_words(robot, {})
     return None, ""
-
-
-def events_of(recording: Recording) -> RecordedEvents:
-    """Return the calls and goals of a recording as a timeline's events, with times in simulated seconds."""
-    found = RecordedEvents()
-    for call in recording.calls:
-        found.kinds[call.service] = "service"
-        answers = [call.answered] if call.answered is not None else []
-        found.events.append(TimelineEvent(call.at / SECOND, call.service, "request"))
-        found.events += [TimelineEvent(at / SECOND, call.service, "response") for at in answers]
-    for goal in recording.goals:
-        found.kinds[goal.action] = "action"
-        found.events += _of_goal(goal)
-    return found
-
-
-def _of_goal(goal: Goal) -> list[TimelineEvent]:
-    asked = ", ".join(f"{name} {value}" for name, value in goal.goal.items())
-    steps: list[tuple[int | None, str]] = [(one.at, one.state.upper()) for one in goal.states]
-    steps += [(one.at, "feedback") for one in goal.feedback]
-    steps += [(goal.answered, "rejected")] if goal.accepted is False else []
-    for one in goal.cancels:
-        steps += [(one.at, "cancel"), (one.answered, "cancel answered")]
-    return [
-        TimelineEvent(goal.at / SECOND, goal.action, "goal", str(goal.number), asked),
-        *(TimelineEvent(at / SECOND, goal.action, what, str(goal.number)) for at, what in steps if at is not None),
-    ]

@@ -43,7 +43,7 @@ def check(name: str, source: str) -> str:
     hindrance = hindrance_of(source)
     if hindrance:
         return json.dumps({"problem": hindrance})
-    exercise = load(_unpacked(name)).public()
+    exercise = load(unpacked(name)).public()
     scenarios, references, hidden = public_part(exercise)
     if exercise.programs or any(scenario.companions or scenario.programs for scenario in scenarios):
         return json.dumps({"problem": _SEVERAL})
@@ -60,7 +60,7 @@ def read(name: str, file: str, content: memoryview) -> str:
     from grader.submission.problems import AmbiguousProgram, Unreadable
 
     try:
-        code = code_of(file, bytes(content), load(_unpacked(name)))
+        code = code_of(file, bytes(content), load(unpacked(name)))
     except (Unreadable, AmbiguousProgram) as error:
         return json.dumps({"problem": str(error)})
     if uses_other_files(code):
@@ -87,7 +87,8 @@ def _imported(node: ast.AST) -> list[str]:
     return [(node.module or "").partition(".")[0]] if isinstance(node, ast.ImportFrom) else []
 
 
-def _unpacked(name: str) -> Path:
+def unpacked(name: str) -> Path:
+    """Return the folder of an exercise's public part."""
     folder = _FOLDER / name
     if not folder.is_dir():
         with zipfile.ZipFile(_ARCHIVE) as archive:

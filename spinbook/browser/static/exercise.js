@@ -1,10 +1,11 @@
-// The editor of an exercise's page, and its Check button, which runs the public checks in this page.
+// The editor of an exercise's page, with Check, which runs the public checks in this page, and Try it.
 import { download as load } from "./download.js";
 import { Edits } from "./edits.js";
 import { createEditor } from "./editor.js";
 import { announce, button, element, failure, hindrance, save, style } from "./elements.js";
 import { fill } from "./picture.js";
 import { take } from "./processes.js";
+import { tryOut } from "./trial.js";
 import { tellUpdate } from "./update.js";
 
 const LIMIT_S = 120;
@@ -164,6 +165,18 @@ function opening(section) {
     }
   };
   const checking = button("Check", `Check ${file}`, act);
+  const play = async (scenario) => {
+    const hindered = hindrance();
+    if (hindered) return say(hindered);
+    edits.note("tried");
+    tellUpdate();
+    say("Starting …");
+    show(state);
+    await load(say);
+    await tryOut({ exercise: name, file, source: editor.text, scenario, place: result, say });
+  };
+  const trying = button("Try it", `Try ${file} in real time`, () => play(""));
+  result.addEventListener("play", ({ detail }) => play(detail));
   editor.onrun = () => checking.click();
   const upload = element("input", { type: "file", className: "hidden-text", tabIndex: -1 });
   upload.setAttribute("aria-label", "A file to continue with");
@@ -190,6 +203,7 @@ function opening(section) {
     "div",
     { className: "check-tools" },
     checking,
+    trying,
     button("Download", `Download your ${file}`, () => save(file, withCounts(editor.text, name))),
     button("Upload", "Continue with a file of yours", () => upload.click()),
     buttons,

@@ -164,6 +164,8 @@ const does = {
     const result = await (await checks()).check.callPromising(exercise, source);
     return JSON.parse(result);
   },
+  plan: async ({ exercise, scenario }) => JSON.parse((await trials()).plan(exercise, scenario)),
+  play: async ({ exercise, scenario }) => (await trials()).play_around.callPromising(page, exercise, scenario),
   read: async ({ exercise, file, content }) => {
     const read = (await checks()).read;
     return JSON.parse(read(exercise, file, (await ready).py.toPy(content)));
@@ -175,6 +177,11 @@ async function checks() {
   py.checks ??= unpackChecks(py, process);
   await Promise.all([py.checks, shares(py)]);
   return py.pyimport("spinbook.browser.in_page.check");
+}
+
+async function trials() {
+  await checks();
+  return (await ready).py.pyimport("spinbook.browser.in_page.trial");
 }
 
 async function cells() {

@@ -177,6 +177,16 @@ def test_an_exercise_is_checked_in_its_page(reader: BrowserContext, address: str
         check(solutions / "solution.py", "9 of 9 public checks, 37 of 37 points")
         expect(page.locator(".check-result")).to_contain_text("This is a preview, not your grade")
 
+        page.get_by_role("button", name="Try joint_velocity.py in real time").click()
+        around, own = (page.get_by_role("log", name=name) for name in ("What surrounds your node", "What joint_vel"))
+        expect(around).to_contain_text("from your node: /joint_velocities  header: (stamp: (sec: 100")
+        expect(own).to_contain_text("6 joints arrived")
+        expect(page.locator(".check-plot svg")).to_contain_text("yours")
+        expect(page.locator(".check-plot svg")).not_to_contain_text("first wrong")
+        page.get_by_role("button", name="Stop surroundings").click()
+        expect(page.get_by_text("is over. Nothing was judged")).to_be_visible()
+        expect(page.get_by_role("button", name="Play the scenario irregular")).to_be_visible()
+
         with page.expect_download() as download:
             page.get_by_role("button", name="Download your joint_velocity.py").click()
         assert download.value.suggested_filename == "joint_velocity.py"

@@ -1,0 +1,70 @@
+// "Try it" on an exercise's page: the node in the editor runs among what surrounds it in the exercise, in real time, with
+// a picture. Nothing is judged.
+import { bar } from "./bar.js";
+import { button, element, failure } from "./elements.js";
+import { fill } from "./picture.js";
+import { take } from "./processes.js";
+
+const LINES = 500;
+
+let playing = [];
+
+// Play `scenario` of an exercise ("" for the first) around a program; `say` gets the state. Resolves when it is over.
+export async function tryOut({ exercise, file, source, scenario, place, say }) {
+  await Promise.all(playing.map((process) => process.stop()));
+  bar();
+  const figure = element("figure", { className: "check-plot" });
+  const around = log("What surrounds your node");
+  const own = log(`What ${file} prints`);
+  const heads = [around, own].map((pre) => element("p", { className: "try-head", textContent: pre.ariaLabel }));
+  place.replaceChildren(figure, heads[0], around, heads[1], own);
+  const surroundings = take("surroundings", {
+    progress: (part) => say(`Loading ${part} …`),
+    output: (text) => print(around, text),
+    picture: (text) => draw(figure, JSON.parse(text)),
+  });
+  playing = [surroundings];
+  try {
+    await surroundings.ready;
+    const plan = await surroundings.call("plan", { exercise, scenario });
+    if (!plan) return say("Stopped.");
+    if (plan.problem) return say(plan.problem);
+    const node = take(file.replace(/\.py$/, ""), { output: (text) => print(own, text) });
+    playing.push(node);
+    const ended = node.program(source, file, plan.args.slice(1));
+    surroundings.work("surroundings");
+    say(`Scenario ${plan.scenario} runs in real time …`);
+    place.append(element("p", { className: "try-scenarios" }, "Play ", ...plan.scenarios.flatMap((name) => choice(name, place))));
+    ended.then((status) => status && print(own, `— ended with ${status} —`));
+    await surroundings.call("play", { exercise, scenario: plan.scenario }).finally(() => surroundings.work(""));
+    await node.stop();
+    say(`Scenario ${plan.scenario} is over. Nothing was judged: Check does that.`);
+  } catch (error) {
+    say(failure(error));
+  } finally {
+    surroundings.end();
+  }
+}
+
+function choice(name, place) {
+  return [button(name, `Play the scenario ${name}`, () => place.dispatchEvent(new CustomEvent("play", { detail: name }))), " "];
+}
+
+function log(label) {
+  const pre = element("pre", { tabIndex: 0 });
+  pre.setAttribute("role", "log");
+  pre.ariaLabel = label;
+  return pre;
+}
+
+function print(pre, text) {
+  pre.append(element("span", { textContent: `${text}\n` }));
+  if (pre.childElementCount > LINES) pre.firstChild.remove();
+  pre.scrollTop = pre.scrollHeight;
+}
+
+// Drawn by Spinbook's own code, which escapes names.
+function draw(figure, { svg, words }) {
+  fill(figure, svg, ".check-plot");
+  figure.dataset.words = words;
+}
