@@ -25,7 +25,7 @@ from grader.runner.script import Script
 from grader.scenario.scenario import SECOND, START, Message, Scenario
 
 #: How long the program may take to appear, and then to connect to everything (s).
-APPEAR_S, CONNECT_S = 10.0, 2.0
+APPEAR_S, CONNECT_S = 10.0, 5.0
 #: The time between two reports (s).
 REPORT_S = 0.5
 

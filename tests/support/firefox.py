@@ -82,6 +82,18 @@ class Firefox:
         """Click on an element that `evaluate` has returned, as a mouse does. Fails if something else covers it."""
         self._call("WebDriver:ElementClick", id=next(iter(element.values())))
 
+    @contextmanager
+    def in_another_tab(self) -> Iterator[None]:
+        """Open a tab in front of the page, whose scripts can still be called: the page is hidden meanwhile."""
+        page = self._call("WebDriver:GetWindowHandle")["value"]
+        tab = self._call("WebDriver:NewWindow", type="tab", focus=True)["handle"]
+        self._call("WebDriver:SwitchToWindow", handle=tab, focus=True)
+        self._call("WebDriver:SwitchToWindow", handle=page, focus=False)
+        yield
+        self._call("WebDriver:SwitchToWindow", handle=tab, focus=True)
+        self._call("WebDriver:CloseWindow")
+        self._call("WebDriver:SwitchToWindow", handle=page, focus=True)
+
     def type(self, selector: str, keys: str) -> None:
         """Type into the element that this selects."""
         found = self._call("WebDriver:FindElement", using="css selector", value=selector)["value"]

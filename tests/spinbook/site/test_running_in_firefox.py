@@ -53,6 +53,21 @@ def test_a_page_runs_edits_and_stops_a_node(page: Firefox) -> None:
     page.wait_for(".cell-node .run-state", "talker ended with 0.")
 
 
+def test_clocks_stay_right_in_a_hidden_tab(page: Firefox) -> None:
+    page.click("Run talker.py")
+    page.wait_for(LOG, "[talker]: number 3")
+    with page.in_another_tab():
+        assert page.evaluate("return document.visibilityState") == "hidden"
+        calls = page.evaluate(
+            "const log = document.querySelector(arguments[0]); const before = log.childElementCount;"
+            "for (let i = 0; i < 4; i++) await new Promise((done) => setTimeout(done, 100));"
+            "return log.childElementCount - before",
+            LOG,
+        )
+    page.click("Stop talker")
+    assert calls > 20, "the browser slows the page's own timer of 0.1 s down to 1 s, and the node's stays what it is"
+
+
 def test_an_error_in_a_worker_arrives_with_its_message(page: Firefox) -> None:
     said = page.evaluate(
         "const { take } = await import(new URL('../run/processes.js', location.href));"
