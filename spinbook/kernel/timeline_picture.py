@@ -55,7 +55,7 @@ def moving_timeline(lanes: Sequence[Lane], title: str = "", *, moves: bool = Tru
     across = Scale(start, max(end, start + 0.1), _LEFT, _WIDTH - _RIGHT)
     words = in_words(lanes, start)
     name = title or ", ".join(dict.fromkeys(lane.name for lane in lanes))
-    key = "t" + hashlib.sha256(f"{name} {lanes}".encode()).hexdigest()[:8]
+    key = "t" + hashlib.sha256(f"{name} {lanes if moves else ''}".encode()).hexdigest()[:8]
     y, labels, drawn = float(_TOP), [], []
     for lane in lanes:
         for row, line in enumerate(_lines(lane.label)):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from grader.exercise.data_files import LACKS
@@ -42,35 +42,41 @@ def play_around(page: Any, name: str, chosen: str) -> None:
     exercise = load(unpacked(name)).public()
     scenarios, references, _ = public_part(exercise)
     scenario = _chosen(scenarios, chosen)
-    draw = _drawing(exercise, references[scenario.name], page)
+    shown = LivePicture(page, exercise, references[scenario.name])
     try:
-        play(exercise, scenario, print, draw)
+        play(exercise, scenario, print, shown.draw)
     except CannotContinue as stopped:
         print(stopped.message)
     except KeyboardInterrupt:
         print("Stopped.")
 
 
-def _drawing(exercise: Exercise, reference: Recording, page: Any) -> Callable[[Recording], None]:
-    shown = [""]
+@dataclass
+class LivePicture:
+    """The picture of what happens, for the page, drawn again whenever that changes."""
 
-    def draw(recording: Recording) -> None:
-        drawn = _timeline(recording, exercise) if recording.calls or recording.goals else _curves(recording, exercise)
-        if drawn["svg"] not in ("", shown[0]):
-            shown[0] = drawn["svg"]
-            page.picture(json.dumps(drawn))
+    page: Any
+    exercise: Exercise
+    reference: Recording
+    shown: str = ""
 
-    def _curves(recording: Recording, exercise: Exercise) -> dict[str, str]:
+    def draw(self, recording: Recording) -> None:
+        """Send the page the picture of what has happened so far, if it is new."""
+        drawn = self._timeline(recording) if recording.calls or recording.goals else self._curves(recording)
+        if drawn["svg"] not in ("", self.shown):
+            self.shown = drawn["svg"]
+            self.page.picture(json.dumps(drawn))
+
+    def _curves(self, recording: Recording) -> dict[str, str]:
         name = recording.scenario
-        tried: Any = CheckedProgram((), {name: recording}, {name: reference})
-        return {"svg": picture(tried, exercise, judged=False) or "", "words": "What your node does, over the solution"}
+        tried: Any = CheckedProgram((), {name: recording}, {name: self.reference})
+        svg = picture(tried, self.exercise, judged=False) or ""
+        return {"svg": svg, "words": "What your node does, over the solution", "kind": "check-plot"}
 
-    return draw
-
-
-def _timeline(recording: Recording, exercise: Exercise) -> dict[str, str]:
-    drawn = lanes(events_of(recording))
-    if not any(lane.marks for lane in drawn):
-        return {"svg": "", "words": ""}
-    words = in_words(drawn, span_of(drawn)[0])
-    return {"svg": moving_timeline(drawn, exercise.title, moves=False), "words": words}
+    def _timeline(self, recording: Recording) -> dict[str, str]:
+        drawn = lanes(events_of(recording))
+        if not any(lane.marks for lane in drawn):
+            return {"svg": ""}
+        words = in_words(drawn, span_of(drawn)[0])
+        svg = moving_timeline(drawn, self.exercise.title, moves=False)
+        return {"svg": svg, "words": words, "kind": "live-timeline"}

@@ -13,7 +13,7 @@ let playing = [];
 export async function tryOut({ exercise, file, source, scenario, place, say }) {
   await Promise.all(playing.map((process) => process.stop()));
   bar();
-  const figure = element("figure", { className: "check-plot" });
+  const figure = element("figure");
   const around = log("What surrounds your node");
   const own = log(`What ${file} prints`);
   const heads = [around, own].map((pre) => element("p", { className: "try-head", textContent: pre.ariaLabel }));
@@ -63,8 +63,9 @@ function print(pre, text) {
   pre.scrollTop = pre.scrollHeight;
 }
 
-// Drawn by Spinbook's own code, which escapes names.
-function draw(figure, { svg, words }) {
-  fill(figure, svg, ".check-plot");
+// Drawn by Spinbook's own code, which escapes names. Each kind of picture has rules of its own.
+function draw(figure, { svg, words, kind }) {
+  figure.className = kind;
+  fill(figure, svg, `.${kind}`);
   figure.dataset.words = words;
 }
