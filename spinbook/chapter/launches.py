@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from spinbook.chapter.classify import CellKind, ClassifiedFence
-from spinbook.chapter.launch_files import LaunchedNode, NotSupportedError, launched_nodes
+from spinbook.chapter.launch_files import LaunchedNode, NotSupportedError, launched_nodes, unsupported_in_launch_file
 from spinbook.chapter.terminal import Command, CommandKind
 
 
@@ -58,11 +59,24 @@ class Launches:
 
         Raises NotSupportedError if the file can't be run as a whole.
         """
-        file = next((word.rpartition("/")[2] for word in launch_words(command) if word.endswith(".py")), "")
-        unnamed = [name for name in self._codes if not name.endswith(".py")]
-        code = self._codes.get(file) or (self._codes[unnamed[-1]] if file and len(unnamed) == 1 else "")
+        _, code = self._meant(command)
         pairs = [word.partition(":=") for word in command.words]
         return launched_nodes(code, {name: value for name, mark, value in pairs if mark}) if code else []
+
+    def could_run_whole(self, command: Command) -> str:
+        """Return the launch file that would run as a whole if its title made a file of it; "" if it would not.
+
+        Its programs must be those of the course's package.
+        """
+        file, code = self._meant(command)
+        is_ours = set(re.findall(r"package=[\"'](\w+)", code)) == {self.package}
+        return file if is_ours and not unsupported_in_launch_file(code) else ""
+
+    def _meant(self, command: Command) -> tuple[str, str]:
+        """Return the name and the code of the Python launch file that a command names; no code if none is above."""
+        file = next((word.rpartition("/")[2] for word in launch_words(command) if word.endswith(".py")), "")
+        unnamed = [name for name in self._codes if not name.endswith(".py")]
+        return file, self._codes.get(file) or (self._codes[unnamed[-1]] if file and len(unnamed) == 1 else "")
 
     def close(self, file: str) -> str:
         """Return the file whose name is most like this one; "" if none is."""

@@ -231,6 +231,8 @@ class Shells:
             self._launches.nodes(command)
         except NotSupportedError as error:
             fix = "It starts nothing here, because a part of it would be missing. Start its nodes with `ros2 run`."
+            if not str(error).startswith("line") and (file := self._launches.could_run_whole(command)):
+                fix = f'To run all of it, write title="launch/{file}", and ros2 launch {self.package} {file}'
             return Reason(f"its launch file can't run here: {error}", fix, "")
         package = names[0] if len(names) > 1 else ""
         if not package or package in {self.package, *self.own.names, *ros_packages()}:

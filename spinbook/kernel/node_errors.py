@@ -39,6 +39,8 @@ _ON_CTRL_C = re.compile(
     r"|.*(rcl_shutdown already|must be initialized before it can be shutdown|context is "
     r"|(publisher|subscription|service|client|node|implementation) is invalid)"
 )
+#: What `ros2 launch` logs of a program that did not end with exit code 0.
+_DIED = re.compile(r"process has died \[pid \d+, exit code (-?\d+)")
 _FROM_US = frozenset({-signal.SIGINT, -signal.SIGTERM, -signal.SIGKILL, 128 + signal.SIGINT, 128 + signal.SIGTERM})
 
 #: Finds the (file's name, line of its cell) of a frame; None for a file that no cell made.
@@ -149,8 +151,14 @@ class NodeLog:
             self._log(line, stopping)
 
     def _log(self, line: str, stopping: bool) -> None:
-        if (log := _LOGGED.match(line)) and not (stopping and _ON_CTRL_C.match(_text_of(log))):
+        if (log := _LOGGED.match(line)) and not (stopping and self._is_of_ctrl_c(_text_of(log))):
             self.logged.append(_in_words(log))
+
+    def _is_of_ctrl_c(self, text: str) -> bool:
+        """Return whether a logged text says how Ctrl-C ends a program, also one of `ros2 launch`."""
+        died = _DIED.match(text)
+        ended = died is not None and not ended_badly(int(died[1]), stopped=True, interrupted=self.was_interrupted)
+        return ended or bool(_ON_CTRL_C.match(text))
 
     def _in_traceback(self, line: str, frames: list[tuple[str, int]]) -> None:
         if frame := _FRAME.match(line):

@@ -215,3 +215,18 @@ def test_a_launch_file_that_another_package_has_comes_with_the_right_command(
     (problem,) = reading(tmp_path, CREATE, shown, shell("ros2 launch bench line.launch.xml")).problems
 
     assert problem.fix == fix
+
+
+def test_a_launch_file_with_more_than_nodes_comes_with_the_title_that_runs_all_of_it(tmp_path: Path) -> None:
+    start = "Node(package='robot', executable='bell')"
+    shown = (
+        "from launch import LaunchDescription\nfrom launch.actions import TimerAction\n"
+        "from launch_ros.actions import Node\n\n\ndef generate_launch_description():\n"
+        f"    return LaunchDescription([TimerAction(period=1.0, actions=[{start}])])\n"
+    )
+
+    (problem,) = reading(tmp_path, named("later.launch.py", shown), shell("ros2 launch robot later.launch.py")).problems
+
+    assert (
+        problem.fix == 'To run all of it, write title="launch/later.launch.py", and ros2 launch robot later.launch.py'
+    )

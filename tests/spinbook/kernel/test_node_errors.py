@@ -79,6 +79,16 @@ def test_a_program_that_ctrl_c_ends_has_no_error_when_it_is_stopped(text: str) -
     assert report(text) is not None, "nobody stopped it"
 
 
+@pytest.mark.parametrize(("text", "code"), [(CTRL_C, -2), (SHUT_DOWN, 1)])
+def test_a_program_of_a_launch_that_ctrl_c_ends_has_no_error_when_the_launch_is_stopped(text: str, code: int) -> None:
+    lines = "".join(f"[arm-1] {line}\n" for line in text.splitlines())
+    died = f"[ERROR] [arm-1]: process has died [pid 5, exit code {code}]\n"
+
+    assert report(lines + died, stopping=True) is None
+    assert report(f"[ERROR] [arm-1]: process has died [pid 5, exit code {code}]\n") is not None, "nobody stopped it"
+    assert report(RAISED + died, stopping=True) is not None, "it fails by itself"
+
+
 @pytest.mark.parametrize(
     "disturbed",
     [
