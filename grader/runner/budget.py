@@ -11,7 +11,8 @@ from pathlib import Path
 
 from grader.runner.program import CannotContinue, RunningProgram
 
-#: The longest time between two looks that counts (s): longer gaps mean that the grader itself did not run.
+#: The longest time between two looks that counts (s), a little more than between two of the hub's ticks. After a longer
+#: one the grader itself did not run, and the program may have waited for the grader.
 LONGEST_LOOK_S = 0.025
 
 #: The limit for one step of a run, far above what any correct program needs.
@@ -72,7 +73,7 @@ class Budget:
             CannotContinue: if the step exceeds its allowance.
         """
         now = time.monotonic()
-        passed = min(now - self._looked, LONGEST_LOOK_S)
+        passed = now - self._looked if now - self._looked <= LONGEST_LOOK_S else 0.0
         self._looked = now
         self._seen += passed
         if self._student.poll() is not None:
