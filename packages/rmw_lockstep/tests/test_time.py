@@ -157,6 +157,30 @@ def test_a_forked_process_waits_in_the_hubs_time_too(watch: Watch) -> None:
     assert watch.said() == [(10, "the child has slept")]
 
 
+@pytest.mark.parametrize("computes_s", [0.0, pytest.param(0.3, marks=pytest.mark.soak)])
+def test_a_childs_clock_goes_on_from_where_it_was_forked_however_busy_its_parent_is(
+    watch: Watch, computes_s: float
+) -> None:
+    watch.start(f"""
+        def fork():
+            time.sleep(0.03)
+            began = time.monotonic()
+            reading, writing = os.pipe()
+            if os.fork() == 0:
+                os.write(writing, repr(time.monotonic() - began).encode())
+                os._exit(0)
+            os.close(writing)
+            end = time.process_time() + {computes_s}
+            while time.process_time() < end: pass
+            say(os.read(reading, 100).decode())
+            os.wait()
+        threading.Thread(target=fork, daemon=True).start()
+        rclpy.spin(node)
+    """)
+    watch.go_on(1)
+    assert [said for _, said in watch.said()] == ["0.0"]
+
+
 def test_a_process_that_another_wakes_through_a_pipe_is_not_idle_before_it_has_done_what_it_is_woken_for(
     watch: Watch,
 ) -> None:

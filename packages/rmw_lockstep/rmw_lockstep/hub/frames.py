@@ -26,6 +26,7 @@ MOST_CHILDREN = 1_000
 
 HEADER = struct.Struct("<IB")
 _HELLO = struct.Struct("<IIIB")
+_FORKED = struct.Struct("<Iq")
 _WELCOME = struct.Struct("<IIqq")
 _ID = struct.Struct("<Q")
 _PAIR = struct.Struct("<QQ")
@@ -153,6 +154,12 @@ def hello(payload: bytes) -> HelloFrame:
     if version != VERSION:
         raise Violation("protocol", f"a process speaks version {version} of the protocol, the hub version {VERSION}")
     return HelloFrame(version, pid, parent, bool(timed))
+
+
+def forked(payload: bytes) -> tuple[int, int]:
+    """Decode a FORKED: the child's id, and the time (ns)."""
+    child, now = _exactly(_FORKED, payload)
+    return child, now
 
 
 def node(payload: bytes) -> NodeFrame:

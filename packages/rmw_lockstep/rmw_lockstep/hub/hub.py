@@ -340,12 +340,14 @@ class Hub:
         for link in self.links:
             link.flush()
 
-    def _welcome(self) -> bool:
+    def _welcome(self, early: bool = False) -> bool:
         """Start those that have sent HELLO, at the time of the others. Return whether there were any.
 
-        A new process waits until the others are idle, as only then its parent's time is known.
+        A new process waits until the others are idle, as only then the time of each is known; `early`, it begins as
+        soon as it is known when its parent forked it.
         """
         waiting = sorted((one for one in self.links if one.hello and not one.began), key=lambda one: one.order)
+        waiting = [one for one in waiting if not (early and self._router.is_still_forking(one))]
         now = max((link.now for link in self.links if link.began), default=self._until)
         for link in waiting:
             self._router.welcome(link, now)
@@ -365,7 +367,7 @@ class Hub:
             self._ticks += 1
             self._accept()
             if not self._ticks % WELCOME_TICKS:
-                self._welcome()  # another process may compute until the new one has done something
+                self._welcome(early=True)  # another process may compute until the new one has done something
             for link in self._missing_children():
                 link.queue(frames.ASK)
             self.on_tick()

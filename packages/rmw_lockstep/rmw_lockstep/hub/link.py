@@ -75,6 +75,11 @@ class ProcessLink:
         """The process id as the process itself sees it. These ids are in the order in which processes were started."""
         return self.hello.pid if self.hello else 0
 
+    @property
+    def parent_inside(self) -> int:
+        """The parent's process id as the process itself sees it."""
+        return self.hello.parent if self.hello else 0
+
     def is_main(self, thread: int) -> bool:
         """Return whether this is the process's main thread, whose number equals the process id (gettid(2))."""
         return thread == self.pid_inside

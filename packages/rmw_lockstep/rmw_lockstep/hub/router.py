@@ -57,8 +57,10 @@ class Router:
         self._held: list[tuple[ProcessLink, ProcessLink, bytes]] = []
         self._asked: list[tuple[tuple[int, int], HubServer, PendingRequest]] = []
         self.unserved: list[PendingRequest] = []
+        self._begins: dict[tuple[int, int], int] = {}
         self._handlers: dict[int, Callable[[ProcessLink, bytes], None]] = {
             ord("I"): self._idle,
+            ord("F"): self._forked,
             ord("D"): self._data,
             ord("K"): self._kept,
             ord("r"): self._replayed,
@@ -87,8 +89,18 @@ class Router:
             raise Violation("protocol", "a process sends something other than HELLO before it gets WELCOME")
         link.hello = frames.hello(payload)
 
+    def _forked(self, link: ProcessLink, payload: bytes) -> None:
+        child, now = frames.forked(payload)
+        self._begins[link.listener, child] = link.moment(link.handled, now)[1]
+
+    def is_still_forking(self, link: ProcessLink) -> bool:
+        """Return whether a new process's parent has not reported yet when it forked it."""
+        parents = {(other.listener, other.pid_inside) for other in self.links if other.began}
+        return link.order not in self._begins and bool(link.hello) and (link.listener, link.parent_inside) in parents
+
     def welcome(self, link: ProcessLink, now: int) -> None:
-        """Let a process that has sent HELLO begin, at the time `now`."""
+        """Let a process that has sent HELLO begin: when its parent forked it, otherwise at the time `now`."""
+        now = self._begins.pop(link.order, now)
         link.begin(now, self.published)
         link.queue(frames.to_welcome(link.number, now, self._epoch))
 
@@ -204,6 +216,8 @@ class Router:
     def forget(self, link: ProcessLink) -> None:
         """Remove a process that has ended, and everything it had."""
         self.links.remove(link)
+        if link.hello:
+            self._begins[link.order] = link.now  # it may have become another program, with the same id
         for number in tuple(link.endpoints):
             self._remove_endpoint(link, number)
         for number in tuple(link.nodes):

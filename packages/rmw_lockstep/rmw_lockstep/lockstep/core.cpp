@@ -296,8 +296,9 @@ void Core::announce() {
 void Core::forked(pid_t child) {
   if (child <= 0 || !connected_) return;
   children_.push_back(child);
-  changed_ = true;
-  poke();
+  std::vector<uint8_t> frame;
+  Writer(frame, 'F').put<uint32_t>(child).put<int64_t>(now());
+  report(frame.data(), frame.size());
 }
 
 void Core::reset_in_child(bool connect_again) {
