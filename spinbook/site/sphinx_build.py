@@ -53,7 +53,7 @@ def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], 
     # Without this file, GitHub Pages leaves out folders that begin with an underscore.
     published[Path(".nojekyll")] = b""
     for relative, data in published.items():
-        write_if_changed(site / relative, _bare(data) if relative.parent.name == "_static" else data)
+        write_if_changed(site / relative, _bare(relative, data))
     _remove_others(site, set(published))
     return len(published)
 
@@ -71,9 +71,12 @@ def _stamped(page: bytes, version: str) -> bytes:
 _COMMENTS = re.compile(rb"^[ \t]*(?://[^\n]*\n|/\*.*?\*/\n)?", re.MULTILINE | re.DOTALL)
 
 
-def _bare(code: bytes) -> bytes:
-    """Return a script or a style sheet without indentation and without comments that have their own lines."""
-    return _COMMENTS.sub(b"", code)
+def _bare(file: Path, code: bytes) -> bytes:
+    """Return a page's script or style sheet without indentation and without comments that have their own lines."""
+    if file.parent.name != "_static":
+        return code
+    code = _COMMENTS.sub(b"", code)
+    return re.sub(rb"([{;,:])\s+", rb"\1", code) if file.suffix == ".css" else code
 
 
 def _for_offline(published: Mapping[Path, bytes]) -> bytes:
