@@ -141,9 +141,9 @@ def _describe(cell: nodes.container, about: dict[str, Any]) -> None:
         elif part.get("nb_element") == "cell_code_output":
             _pictures(part, about["alts"], about["stills"])
             part.insert(0, nodes.raw("", _output_name(about), format="html"))
-    if about["repeats"]["housekeeping"] and not about["wrong"] and not about["fails"]:
+    if about["repeats"]["housekeeping"] and not (about["wrong"] or about["fails"] or cell.get("hide_mode")):
         cell["classes"].append("cell-strip")
-        cell["hide_mode"] = cell.get("hide_mode") or "output"
+        cell["hide_mode"] = "output"
     _fold(cell)
     cell.insert(0, nodes.raw("", _head(kind, about), format="html"))
 
