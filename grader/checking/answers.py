@@ -30,7 +30,7 @@ def must_match(
     """Check that the node answers each message that the solution answers, with the same `field`.
 
     `per` names the list of names that `field` goes with, so that the order does not count: `must_match("velocity",
-    per="name")`. Numbers may differ by `tolerance`, absolute or relative, whichever is larger. With `missing_ok`,
+    per="name")`. Numbers may differ by `tolerance`, or by one part in a million if that is more. With `missing_ok`,
     missing answers are ignored, because another check judges them.
 
     Example: `run.must_match("data", tolerance=0.01)`

@@ -2,8 +2,8 @@
 
 The rules, each with a test module of its own in tests/grader/checking/comparator:
 
-- **Floats** are equal within a tolerance, absolute or relative to the larger of the two, whichever allows more. A
-  difference of exactly the tolerance is allowed.
+- **Floats** are equal within a tolerance in the field's unit, or within one part in a million of the larger of the two
+  (with a smaller tolerance, within that part), whichever allows more. A difference of exactly the tolerance is allowed.
 - **Integers and booleans** are equal only if they are the same; a boolean never equals a number.
 - **NaN** equals NaN and nothing else. An **infinity** equals the infinity of the same sign and nothing else.
 - **-0.0** equals 0.0.
@@ -77,7 +77,7 @@ def _same(got: Any, expected: Any, tolerance: float) -> bool:
     if _is_number(got) and _is_number(expected) and (isinstance(got, float) or isinstance(expected, float)):
         if math.isnan(got) or math.isnan(expected):
             return math.isnan(got) and math.isnan(expected)
-        return math.isclose(got, expected, rel_tol=tolerance, abs_tol=tolerance)
+        return math.isclose(got, expected, rel_tol=min(tolerance, TOLERANCE), abs_tol=tolerance)
     return type(got) is type(expected) and bool(got == expected)
 
 

@@ -60,9 +60,8 @@ def fail(text: str, *, expected: object = "", got: object = "", at: float | None
 
     Example: `fail("Two publishers on /out.", expected=1, got=2)`
     """
-    message = text
-    if expected != "" or got != "":
-        message += f" Expected {expected}, got {got}."
+    values = ", ".join([f"expected {expected}"] * (expected != "") + [f"got {got}"] * (got != ""))
+    message = f"{text} {values[0].upper()}{values[1:]}." if values else text
     raise Wrong(Finding(message, at=at, expected=str(expected), got=str(got)))
 
 

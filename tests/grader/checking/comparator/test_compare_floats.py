@@ -1,4 +1,4 @@
-"""Floats are equal within a tolerance, absolute or relative to the larger of the two, whichever allows more."""
+"""Floats are equal within a tolerance, or within a millionth of the larger of the two, whichever allows more."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ BIG, TINY = sys.float_info.max, 5e-324
         (math.nextafter(-1e-6, -1), 0.0, 1e-6, False),
         (0.0, 1e-6, 1e-6, True),
         (5e-7, -5e-7, 1e-6, True),
-        # the relative tolerance, of the larger of the two: its edge is inside
-        (1024.0, 1025.0, 1 / 1025, True),
-        (1025.0, 1024.0, 1 / 1025, True),
-        (1024.0, math.nextafter(1025.0, 2000), 1 / 1025, False),
+        # a tolerance is in the field's unit, and not a part of the value: half a pixel of 20
+        (20.5, 20.0, 0.5, True),
+        (15.0, 20.0, 0.5, False),
+        # one part in a million of the larger of the two
         (1e9 + 900, 1e9, 1e-6, True),
         (1e9 + 1100, 1e9, 1e-6, False),
         (-1e9 - 900, -1e9, 1e-6, True),
