@@ -95,6 +95,8 @@ class Chapter:
     """The files of the course that it includes or shows, relative to the course."""
     references: Mapping[str, Any] = field(default_factory=dict)
     """Its definitions `[label]: target`, as markdown-it keeps them."""
+    week: str = ""
+    """The week of the course in which it is read, as its front matter says."""
 
     @property
     def interfaces(self) -> Iterator[ChapterCell]:

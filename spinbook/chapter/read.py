@@ -85,6 +85,7 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResu
         file=file,
         title=title,
         summary=str(parsed.source.front_matter.get("summary", "")),
+        week=str(parsed.source.front_matter.get("week", "")),
         cells=cells,
         uses=tuple(sorted({*_uses(parsed, root, file), *_shown_in(borrowed)})),
         references=references_in(parsed.source.text),

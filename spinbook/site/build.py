@@ -87,8 +87,8 @@ def build_site(course: Course, on_page: Callable[[str], None], *, as_it_ran: boo
         on_page(page)
 
     html, problems = run_sphinx(contents, source, cache, course, note_page)
-    pages = [*(page.name for page in contents.pages), names.SEARCH]
-    publish(html, pages, contents.files, folder)
+    pages = [*(page.name for page in contents.pages), *names.own_pages(course.site)]
+    publish(html, pages, contents.files, folder, course.site)
     _write_branch(contents.branch, course.build_folder / "launch")
     write_if_changed(record, json.dumps({"key": key, "code": code, "pages": len(pages)}))
     problems = [*contents.problems, *problems]

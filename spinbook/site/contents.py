@@ -30,7 +30,15 @@ from spinbook.site.chapter_page import ExecutedNotebook, ExerciseCard, as_text, 
 from spinbook.site.drawings import DrawingError, Picture, draw, drawing_files, drawing_html
 from spinbook.site.exercise_page import exercise_markdown, public_checks
 from spinbook.site.graph_section import node_graph_excerpt, node_graph_of, node_graph_section
-from spinbook.site.home_page import about_markdown, home_chapters, home_drawing, home_log, home_pictures, home_robot
+from spinbook.site.home_page import (
+    about_markdown,
+    chapter_opening,
+    home_chapters,
+    home_drawing,
+    home_pictures,
+    home_robot,
+)
+from spinbook.site.minutes import chapter_facts, section_minutes
 from spinbook.site.notebooks import branch_files, launch_notebook, openers, requirement
 from spinbook.site.page import Page, Repository, address_files, repository_of
 from spinbook.site.prose import Links, Term, rich, terms_of
@@ -193,6 +201,8 @@ def _chapter(
     downloads = _downloads(chapter, contents)
     notebook = chapter_notebook(chapter, ran, prose, cards, links.repository, downloads, _graph(course, chapter))
     contents.files |= stills(chapter, ran)
+    opening = chapter_opening(chapter, ran)
+    contents.files |= opening.files if opening else {}
     contents.origins[name] = chapter.file
     contents.lines[name] = [cell["metadata"]["spinbook"]["line"] for cell in notebook["cells"]]
     contents.taught += [cell.source for cell in chapter.nodes]
@@ -208,19 +218,15 @@ def _chapter(
         source,
         chapter.name,
         summary=chapter.summary,
-        about={"minutes": _minutes(chapter), "errors": wrong_cells(chapter, ran)},
+        about={
+            "facts": chapter_facts(chapter),
+            "opening": opening.about if opening else {},
+            "week": chapter.week,
+            "minutes": section_minutes(chapter),
+            "errors": wrong_cells(chapter, ran),
+        },
         runs=runs,
     )
-
-
-#: The number of words of a technical text that most people read in a minute.
-WORDS_PER_MINUTE = 200
-
-
-def _minutes(chapter: Chapter) -> int:
-    """Return the reading time of the prose in minutes. Code does not count: readers try it at their own pace."""
-    words = sum(len(cell.source.split()) for cell in chapter.cells if cell.kind is CellKind.PROSE)
-    return max(1, round(words / WORDS_PER_MINUTE))
 
 
 def _downloads(chapter: Chapter, contents: SiteContents) -> dict[str, str]:
@@ -323,8 +329,6 @@ def _home(
         "graph": next((node_graph_excerpt(graph) for graph in graphs if graph), ""),
         "drawing": home_drawing(drawings.pictures),
         "pictures": [picture.about for picture in pictures],
-        "log": home_log(runs),
-        "nodes": sum(1 for chapter in chapters for _ in chapter.nodes),
     }
     source = repository.link(Path("course.toml"))
     text = f"# {course.title}\n"

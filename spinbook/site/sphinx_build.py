@@ -25,7 +25,7 @@ from spinbook.handout.leaks import authors_code, leaks, secrets_of_all
 from spinbook.problem import SpinbookError
 from spinbook.site.contents import SiteContents
 from spinbook.site.extension import NAME
-from spinbook.site.page import FRAME_SUFFIX, HOME, SEARCH
+from spinbook.site.page import FRAME_SUFFIX, HOME, NOT_FOUND, own_pages
 
 #: The pictures and the other files of Sphinx's output that are published.
 _IMAGES = "_images"
@@ -33,13 +33,19 @@ _SEARCH_DATA = "search-data.js"
 _OURS = ("early.js", "site.js", "run.js", "search.js", "site.css", "print.css", "icon.svg", _SEARCH_DATA)
 
 
-def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], site: Path) -> int:
-    """Make `site` consist of these `pages` of `html` and these `files`: path -> content. Return the number of files."""
+def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], site: Path, address: str) -> int:
+    """Make `site` consist of these `pages` of `html` and these `files`: path -> content. Return the number of files.
+
+    `address` is where the site will be published, "" if that is unknown.
+    """
     scripts = {name: (html / "_static" / name).read_bytes() for name in _OURS}
     # The search data changes with every sentence: it is no reason to load the rest again.
     own = [data for path, data in files.items() if Path(path).parent.name == "_static"]
     version = digest(run_version(files), *own, *(data for name, data in scripts.items() if name != _SEARCH_DATA))[:16]
     published = {Path(f"{page}.html"): _stamped((html / f"{page}.html").read_bytes(), version) for page in pages}
+    if (lost := Path(f"{NOT_FOUND}.html")) in published:
+        # Servers show this page at any address.
+        published[lost] = _RELATIVE.sub(rb'\1="' + address.encode() + rb'\2"', published[lost])
     used = b"\n".join(published.values())
     for image in (html / _IMAGES).glob("*"):
         # Sphinx keeps pictures of earlier builds: skip those that no page uses.
@@ -60,6 +66,7 @@ def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], 
 
 #: For pages that are open while the course is updated; and what a page keeps for reading without a network.
 _VERSION, _OFFLINE = "version.txt", "offline.json"
+_RELATIVE = re.compile(rb'\b(href|src|action|data-root)="(?!https?:|#)([^"]*)"')
 _OWN_FILE = re.compile(rb'(_static/(?:%s))"' % b"|".join(re.escape(name.encode()) for name in _OURS))
 
 
@@ -214,7 +221,11 @@ def run_sphinx(
 
 def _settings(contents: SiteContents, course: Course) -> dict[str, Any]:
     terms = [(form, term.anchor) for term in contents.terms for form in term.forms]
-    nav = [{"page": page.name, "title": page.title, "kind": page.kind} for page in contents.pages if page.name != HOME]
+    nav = [
+        {"page": page.name, "title": page.title, "kind": page.kind, "week": page.about.get("week", "")}
+        for page in contents.pages
+        if page.name != HOME
+    ]
     return {
         "project": course.title,
         "language": "en",
@@ -235,7 +246,7 @@ def _settings(contents: SiteContents, course: Course) -> dict[str, Any]:
         "html_show_sourcelink": False,
         "html_use_index": False,
         "html_permalinks_icon": "#",
-        "html_additional_pages": {SEARCH: "search.html"},
+        "html_additional_pages": {name: f"{name}.html" for name in own_pages(course.site)},
         "html_context": {
             "nav": nav,
             "repository": course.repository,

@@ -89,6 +89,9 @@ export async function runAbove(node) {
     const cell = cellAt(each);
     if (cell.kind === "node" && !cell.failed) await Promise.race([cell.shows(NODE_S), cell.ended]);
     if (cell.failed && !cell.about.raises) {
+      // It may be in a part of the chapter that is not shown.
+      each.dispatchEvent(new Event("beforematch", { bubbles: true }));
+      each.scrollIntoView({ block: "nearest" });
       announce(`Stopped at ${cell.name}, which failed.`);
       return;
     }

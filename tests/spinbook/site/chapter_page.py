@@ -24,6 +24,8 @@ _BUTTON = f"""(at) => {{
   // What a run shows is an element of its own: this one, if any, is from an earlier run.
   cell.earlier = cell.querySelector('.ran');
   const button = [...cell.querySelectorAll('button')].find((each) => /^Run (?!all)/.test(each.ariaLabel));
+  // The page shows the part of the chapter in which it is, as when the browser's search has found it.
+  cell.dispatchEvent(new Event('beforematch', {{ bubbles: true }}));
   button.scrollIntoView({{ block: 'center', behavior: 'instant' }});
   return button;
 }}"""

@@ -125,11 +125,19 @@ _MORE = """\
 ---
 title: More
 summary: What comes next.
+week: 2
 ---
 
 # More
 
 Words only. <!-- NOTE_IN_A_LINE -->
+
+| Section | Minutes |
+| --- | --- |
+| [Options](#options) | 20 |
+| [Last words](#last-words) | 15 |
+
+## Options
 
 | Option | What colcon does with it | When you need it | Since |
 | --- | --- | --- | --- |
@@ -139,6 +147,22 @@ With `--symlink-install` colcon links, and `--packages-select` builds one: `--sy
 save time, `--event-handlers` shows output, and `--symlink-install` once more, with `--packages-up-to` for the rest.
 
 ## Last words
+
+**Guess before you look.** How many words does x have?
+
+- None
+- One
+
+```python
+x = 'word'
+```
+
+<details>
+<summary>Answer</summary>
+
+**One.** It is "word".
+
+</details>
 
 Good-bye.
 

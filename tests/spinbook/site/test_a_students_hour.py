@@ -71,6 +71,7 @@ def clean(shown: Opened) -> None:
 def the_chapter(shown: Opened) -> None:
     """Run two nodes, edit one, break one, stop one; the edit is there after a reload."""
     page = shown.page
+    press(page, "Whole chapter")
     press(page, "Run left_toe.py")
     says(page, "left_toe", "I publish 102.0 N")
     press(page, "Run balance_controller.py")

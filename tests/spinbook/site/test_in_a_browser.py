@@ -133,21 +133,76 @@ def test_the_menu_of_a_phone_opens_and_closes_by_keyboard(browser: Browser, addr
         expect(link).to_be_hidden(timeout=DEADLINE_MS)
 
 
-def edges(table: Locator) -> list[float]:
-    """The brightness of a table's left and right edge: the median over its height, so that letters do not count."""
-    picture = Image.open(io.BytesIO(table.screenshot())).convert("L")
+def edges(place: Locator) -> list[float]:
+    """The brightness of the left and right edge: the median over the height, so that letters do not count."""
+    picture = Image.open(io.BytesIO(place.screenshot())).convert("L")
     return [statistics.median(picture.getpixel((x, y)) for y in range(picture.height)) for x in (1, picture.width - 2)]
 
 
-def test_on_a_phone_a_wide_table_has_a_shadow_at_the_side_where_there_is_more(browser: Browser, address: str) -> None:
+def test_on_a_phone_a_wide_table_stacks_its_cells_below_their_columns_names(browser: Browser, address: str) -> None:
     with opened(browser, f"{address}/chapters/02-more.html", width=390) as shown:
-        table = shown.page.locator("main .table")
-        assert table.evaluate("table => table.scrollWidth > table.clientWidth + 20")
-        left, right = edges(table)
-        assert right < left - 20
-        table.evaluate("table => { table.scrollLeft = table.scrollWidth; }")
-        left, right = edges(table)
-        assert left < right - 20
+        cells = shown.page.get_by_role("table").filter(has_text="colcon does").get_by_role("cell")
+        lefts = cells.evaluate_all("cells => cells.map((cell) => cell.getBoundingClientRect().left)")
+        assert len(lefts) == 4
+        assert len(set(lefts)) == 1
+        assert cells.last.evaluate("cell => getComputedStyle(cell, '::before').content") == '"Since"'
+
+
+def test_a_chapter_is_read_part_by_part_and_stays_one_document(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/02-more.html") as shown:
+        page = shown.page
+        options = page.get_by_role("heading", name="Options")
+        last = page.get_by_role("heading", name="Last words")
+        expect(options).to_be_visible()
+        expect(last).to_be_hidden()
+        page.get_by_role("link", name="Page 2 · 15 minutes Last words").press("Enter")
+        expect(last).to_be_visible()
+        expect(options).to_be_hidden()
+        expect(page.locator("#said")).to_have_text("Page 2 of 2")
+        assert shown.violations() == []
+        page.go_back()
+        expect(options).to_be_visible()
+        page.goto(f"{address}/chapters/01-talk.html")
+        page.goto(f"{address}/chapters/02-more.html#last-words")
+        expect(last).to_be_in_viewport()
+        expect(options).to_be_hidden()
+        page.emulate_media(media="print")
+        expect(options).to_be_visible()
+        page.emulate_media(media="screen")
+        page.get_by_role("button", name="Whole chapter").click()
+        expect(options).to_be_visible()
+        expect(last).to_be_visible()
+        page.goto(f"{address}/index.html")
+        expect(page.locator(".chapter-list .facts").last).to_have_text(re.compile(r"Week 2.*2 pages read"))
+        assert shown.faults == []
+
+
+def test_an_answer_is_folded_until_a_guess_is_made_and_the_guess_is_kept(browser: Browser, address: str) -> None:
+    with opened(browser, f"{address}/chapters/02-more.html#guess-1") as shown:
+        page = shown.page
+        answer = page.get_by_text("It is “word”.")
+        expect(page.get_by_role("radiogroup", name="Guess before you look.")).to_be_visible()
+        expect(answer).to_be_hidden()
+        expect(page.get_by_text("or run the code")).to_be_visible()
+        assert shown.violations() == []
+        page.get_by_role("radio", name="None", exact=True).check()
+        expect(answer).to_be_visible()
+        expect(page.locator(".guess-told")).to_have_text("You guessed: None. See the answer.")
+        assert shown.violations() == []
+        page.reload()
+        expect(page.get_by_role("radio", name="None", exact=True)).to_be_checked()
+        page.get_by_role("radio", name="One", exact=True).check()
+        expect(page.locator(".guess-told")).to_have_text("You guessed: One. That is right.")
+        assert shown.faults == []
+
+
+def test_without_scripts_a_chapter_is_whole(browser: Browser, address: str) -> None:
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto(f"{address}/chapters/02-more.html")
+    expect(page.get_by_role("heading", name="Options")).to_be_visible()
+    expect(page.get_by_role("heading", name="Last words")).to_be_visible()
+    context.close()
 
 
 def test_on_a_phone_code_in_a_sentence_does_not_break_at_its_hyphens(browser: Browser, address: str) -> None:
@@ -261,13 +316,15 @@ def test_what_moves_stands_still_on_paper_and_for_those_who_prefer_no_motion(
     browser: Browser, changed: SmallCourse
 ) -> None:
     with opened(browser, changed.site / "chapters" / "01-talk.html") as shown:
-        moving, still = shown.page.locator("main img.moving"), shown.page.locator("main img.still")
+        expect(shown.page.locator(".opening img.moving")).to_be_visible()
+        output = shown.page.locator(".cell_output")
+        moving, still = output.locator("img.moving"), output.locator("img.still")
         expect(moving).to_be_visible()
         expect(still).to_be_hidden()
-        shown.page.get_by_role("button", name="Pause this picture").click()
+        output.get_by_role("button", name="Pause this picture").click()
         expect(moving).to_be_hidden()
         expect(still).to_be_visible()
-        shown.page.get_by_role("button", name="Play this picture").click()
+        output.get_by_role("button", name="Play this picture").click()
         expect(moving).to_be_visible()
         shown.page.emulate_media(reduced_motion="reduce")
         expect(moving).to_be_hidden()

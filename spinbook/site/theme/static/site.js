@@ -229,13 +229,121 @@ function pausing() {
   }
 }
 
-// Show how far the reader has scrolled.
+// What this browser keeps for the reader; without storage, nothing.
+function kept(key) {
+  try {
+    return JSON.parse(localStorage.getItem(key)) ?? null;
+  } catch {
+    return null;
+  }
+}
+
+function keep(key, value) {
+  try {
+    localStorage.setItem(key, JSON.stringify(value));
+  } catch {
+    // What is not kept holds until the reader leaves.
+  }
+}
+
+// The parts of a chapter: one is shown, which the address names (`#part-2`, or any anchor in it). The browser's search
+// finds words in the others, where it knows hidden="until-found", and shows their part.
+const parts = [...document.querySelectorAll("main .part")];
+let part = parts[0];
+
+function chapterParts() {
+  if (!part) return;
+  const place = `parts:${location.pathname}`;
+  const { read = [], last } = kept(place) ?? {};
+  const whole = document.querySelector(".pages .whole");
+  const link = (id) => document.querySelector(`.pages a[href="#${id}"]`);
+  let isWhole = root.classList.contains("whole-chapter");
+
+  const show = (next) => {
+    if (next !== part) said.textContent = next.getAttribute("aria-label");
+    part = next;
+    for (const each of parts) {
+      if (each === part) each.removeAttribute("hidden");
+      else each.setAttribute("hidden", "until-found");
+      if (each === part && !isWhole) link(each.id).setAttribute("aria-current", "page");
+      else link(each.id).removeAttribute("aria-current");
+    }
+    whole.setAttribute("aria-pressed", String(isWhole));
+    root.classList.toggle("whole-chapter", isWhole);
+    dispatchEvent(new Event("resize"));
+  };
+  const follow = () => {
+    const target = location.hash ? document.getElementById(location.hash.slice(1)) : parts[0];
+    const next = target?.closest(".part");
+    if (!next) return;
+    show(next);
+    if (location.hash) target.scrollIntoView();
+    keep(place, { read, last: part.id });
+  };
+  const finished = new IntersectionObserver((entries) => {
+    for (const { target, isIntersecting } of entries) {
+      const { id } = target.closest(".part");
+      if (!isIntersecting || read.includes(id)) continue;
+      read.push(id);
+      link(id).classList.add("is-read");
+      keep(place, { read, last: part.id });
+    }
+  });
+  for (const steps of document.querySelectorAll(".part > .steps")) finished.observe(steps);
+  for (const id of read) link(id)?.classList.add("is-read");
+  if (!location.hash && last) link(last)?.classList.add("is-last");
+  addEventListener("hashchange", follow);
+  document.addEventListener("beforematch", (event) => show(event.target.closest(".part") ?? part));
+  whole.addEventListener("click", () => {
+    isWhole = !isWhole;
+    keep("parts-whole", isWhole);
+    show(part);
+    part.scrollIntoView();
+  });
+  show(part);
+  if (location.hash) follow();
+  root.classList.add("has-parts");
+}
+
+// Guesses, which are kept by their question: choosing one opens the answer.
+function guesses() {
+  const place = `guesses:${location.pathname}`;
+  for (const guess of document.querySelectorAll("main .guess")) {
+    const { question, right } = guess.dataset;
+    const choose = (input) => {
+      const words = input.value === "?" ? "" : `You guessed: ${input.value}. `;
+      guess.querySelector(".guess-told").textContent = words && words + (input.value === right ? "That is right." : "See the answer.");
+      guess.querySelector("details.answer").open = true;
+    };
+    guess.addEventListener("change", ({ target }) => {
+      if (!target.matches("[type=radio]")) return;
+      keep(place, { ...kept(place), [question]: target.value });
+      choose(target);
+    });
+    const before = [...guess.querySelectorAll("[type=radio]")].find((input) => input.value === kept(place)?.[question]);
+    if (before) {
+      before.checked = true;
+      choose(before);
+    }
+  }
+}
+
+// On the home page: how many pages of each chapter have been read.
+function partsRead() {
+  for (const place of document.querySelectorAll("[data-parts-of]")) {
+    const read = kept(`parts:${new URL(place.dataset.partsOf, location.href).pathname}`)?.read ?? [];
+    if (read.length) place.append(` · ${read.length} page${read.length > 1 ? "s" : ""} read`);
+  }
+}
+
+// Show how far the reader has read.
 function progress() {
   const bar = document.querySelector("progress.reading");
   if (!bar) return;
   const show = () => {
     const length = root.scrollHeight - innerHeight;
-    bar.value = length > 0 ? Math.round((1000 * scrollY) / length) : 1000;
+    const [at, count] = part && !root.classList.contains("whole-chapter") ? [parts.indexOf(part), parts.length] : [0, 1];
+    bar.value = Math.round((1000 * (at + (length > 0 ? scrollY / length : 1))) / count);
   };
   addEventListener("scroll", show, { passive: true });
   addEventListener("resize", show);
@@ -245,6 +353,9 @@ function progress() {
 colours();
 unfolding();
 searching();
+chapterParts();
+guesses();
+partsRead();
 pausing();
 robots();
 progress();
