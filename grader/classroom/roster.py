@@ -10,7 +10,7 @@ from datetime import tzinfo
 from functools import cache
 from pathlib import Path
 
-from grader.classroom.formats.moodle_languages import LANGUAGES, in_english
+from grader.classroom.formats.moodle_languages import LANGUAGE, LANGUAGES, in_english, time_in_english
 from grader.classroom.formats.registry import PLATFORMS
 from grader.classroom.names import comparable, normal, student_id
 from grader.classroom.submissions import SubmissionsError
@@ -83,7 +83,7 @@ def _time(row: Mapping[str, str], place: str, zone: tzinfo | None) -> Time:
     if not column:
         return UNKNOWN
     source = "the roster" if column == "submitted" else "Moodle's worksheet"
-    time = read_time(row[column], source, zone, zone)
+    time = read_time(time_in_english(row[column], row.get(LANGUAGE, "")), source, zone, zone)
     if time.fault:
         raise SubmissionsError(f"{place}: {column} = {row[column]!r}. Write it as 2026-11-22 23:59.")
     return time
@@ -176,5 +176,5 @@ def with_row(student: Student, row: RosterRow | None) -> Student:
         student,
         name=listed.name or student.name,
         email=listed.email or student.email,
-        lms={**listed.lms, **student.lms},
+        lms={**listed.lms, **student.lms, **{name: listed.lms[name] for name in ("Identifier",) if name in listed.lms}},
     )

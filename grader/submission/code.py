@@ -33,6 +33,7 @@ from grader.submission.file_kinds import (
 from grader.submission.launch_program import MAIN, launch_file_in, program_files
 from grader.submission.magics import cell_magic, without_commands
 from grader.submission.notebook import Notebook, NotebookCell, read_notebook
+from grader.submission.places import is_launcher
 from grader.submission.problems import AmbiguousProgram, Unreadable, merge_conflict
 from grader.submission.program_choice import choose, digest_of
 from grader.submission.python_version import newer_syntax
@@ -91,7 +92,7 @@ def code_of(name: str, content: bytes, exercise: Exercise) -> Code:
     if kind == "python":
         return code_of_python(content, exercise)
     what = NOT_UNPACKED if content.startswith(OTHER_ARCHIVES) else NEITHER
-    raise Unreadable(f"{posixpath.basename(name)} is {what}. Hand in a .py, .ipynb or .zip file.")
+    raise Unreadable(f"Your file is {what}. Hand in a .py, .ipynb or .zip file.")
 
 
 def code_of_python(content: bytes, exercise: Exercise) -> Code:
@@ -268,7 +269,7 @@ def _of_one(option: FileOption, reading: ReadState) -> Code:
         return replace(code, files=files, notes=(*notes, *code.notes))
     files = _files_of(option, reading, exercise.file_name)
     main = exercise.file_name
-    if main not in files:
+    if not is_launcher(text_of(files.get(main, b""))):
         main = packages.layout_of(option.file, reading.files, reading.called).main
     if len(files) == 1:
         return replace(code_of_python(files[main], exercise), notes=(*notes, *newer_syntax(option.source)))

@@ -92,7 +92,9 @@ def read_notebook(content: bytes) -> Notebook:
     """Read a notebook's file, or one that was saved as Python. Raises `Unreadable`."""
     if SAVED_AS_PYTHON.search(content):
         sources = cells_in(content.decode("utf-8-sig", errors="replace").replace("\r\n", "\n"))
-        note = f"Your file is a notebook that was saved as Python. It was read as its {len(sources)} code cells."
+        note = (
+            f"Your file is a notebook that was saved as Python. It was read as its code cells, {len(sources)} in all."
+        )
         return Notebook(tuple(NotebookCell(number, one) for number, one in enumerate(sources, start=1)), note=note)
     data = _json(content)
     cells = _cells(data)

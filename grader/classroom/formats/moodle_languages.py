@@ -56,23 +56,21 @@ _WITH_NAMES = re.compile(
 
 
 def in_english(row: dict[str, str]) -> dict[str, str]:
-    """Return a row of a worksheet with its columns and its times as in English; any other row unchanged."""
+    """Return a row of a worksheet with its columns as in English, and `LANGUAGE`; any other row unchanged."""
     fitting = {language: len(words.keys() & _english(words, row)) for language, words in LANGUAGES.items()}
     language = max(fitting, key=lambda one: fitting[one])
     words = LANGUAGES[language]
     if not {words["Identifier"], words["Full name"]} <= row.keys() or fitting[language] < 4:
         return row
     names = {translated: english for english, translated in words.items()}
-    english = {names.get(name, name): value for name, value in row.items()}
-    times = {name: _time(value, language) for name, value in english.items() if name.startswith("Last modified")}
-    return {**english, **times, LANGUAGE: language}
+    return {**{names.get(name, name): value for name, value in row.items()}, LANGUAGE: language}
 
 
 def _english(words: Mapping[str, str], row: Mapping[str, str]) -> set[str]:
     return {english for english, translated in words.items() if translated in row}
 
 
-def _time(text: str, language: str) -> str:
+def time_in_english(text: str, language: str) -> str:
     """Return `Sonntag, 22. November 2026, 23:59` as 2026-11-22 23:59; another text unchanged."""
     match = _WITH_NUMBERS.fullmatch(text.strip()) or _WITH_NAMES.fullmatch(text.strip())
     if not match:

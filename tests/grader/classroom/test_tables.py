@@ -12,8 +12,9 @@ import pytest
 from grader.classroom.formats import moodle
 from grader.classroom.formats.moodle_languages import COLUMNS, LANGUAGES
 from grader.classroom.groups import read_groups
-from grader.classroom.roster import read_roster
+from grader.classroom.roster import read_roster, with_row
 from grader.classroom.submissions import SubmissionsError
+from grader.grading.grade import Student
 
 READ = {
     "commas": b"student,name\nanna,Anna\n",
@@ -92,8 +93,10 @@ def test_moodles_worksheet_may_be_in_another_language(language: str, tmp_path: P
     assert (row.student.id, row.student.name, row.student.email) == ("Anna Lee_77", "Anna Lee", "a@x.org")
     assert row.time.at == datetime(2026, 11, 22, 23, 59, tzinfo=timezone.utc)
     # Moodle reads its own table back only in the same language.
-    back = next(csv.reader(moodle.table(plain.exercise(), [plain.entry(plain.RIGHT, row.student)]).splitlines()))
-    assert back == columns
+    student = with_row(Student("Anna Lee_77", "", "", {"Identifier": "Participant 77"}), row)
+    back = list(csv.reader(moodle.table(plain.exercise(), [plain.entry(plain.RIGHT, student)]).splitlines()))
+    assert back[0] == columns
+    assert (back[1][0], back[1][7]) == ("X 77", TIMES[language])
 
 
 @pytest.mark.parametrize(

@@ -170,8 +170,8 @@ def test_an_archive_that_python_can_not_unpack_is_named_as_one(content: bytes, e
 
 
 OTHER_KINDS = {
-    "week3.md": (f"# Mine\n```python\n{PROGRAM}```\n".encode(), "week3.md is neither Python, nor a notebook"),
-    "week3.html": (f"<!DOCTYPE html>\n<pre>\n{PROGRAM}".encode(), "week3.html is neither Python, nor a notebook"),
+    "week3.md": (f"# Mine\n```python\n{PROGRAM}```\n".encode(), "Your file is neither Python, nor a notebook"),
+    "week3.html": (f"<!DOCTYPE html>\n<pre>\n{PROGRAM}".encode(), "Your file is neither Python, nor a notebook"),
     "heartbeat.docx": (
         zipped({"[Content_Types].xml": "", "word/document.xml": f"<w:t>\n{PROGRAM}"}),
         "of an office program.",

@@ -397,6 +397,8 @@ def test_a_file_that_starts_the_node_of_another_is_the_program(name: str, exerci
     start = f"import rclpy\nfrom {name[:-3]} import Heartbeat\n\nrclpy.init()\nrclpy.spin(Heartbeat())\n"
     submission = of_content("all.zip", zipped({name: PROGRAM.partition("def main")[0], "main.py": start}), exercise)
     assert submission.source == start
+    assert submission.program
+    assert submission.program.main == "main.py"
     assert submission.notes == (f"Taken: main.py, because it starts what {name} defines.",)
 
 
