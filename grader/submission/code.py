@@ -99,7 +99,7 @@ def code_of_python(content: bytes, exercise: Exercise) -> Code:
     """Return the program in one Python file, which runs under the exercise's file name. Raises `Unreadable`."""
     if problem := not_python(content) if content.strip() else "Your file is empty.":
         raise Unreadable(problem)
-    source = content.decode("utf-8", errors="replace")
+    source = text_of(content)
     _refuse_conflict(content, "your file")
     notes = newer_syntax(source)
     if not notes and python_code.tree_of(source) is None:

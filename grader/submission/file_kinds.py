@@ -118,7 +118,10 @@ def named_by_content(files: Mapping[str, bytes]) -> dict[str, bytes]:
 
     A program without a suffix counts, one in a text file only if there is nothing else.
     """
-    has_work = any(kind_of(name) in ("python", "notebook", "other language") for name in files)
+    has_work = any(
+        kind_of(name) in ("notebook", "other language") or (kind_of(name) == "python" and b"rclpy" in content)
+        for name, content in files.items()
+    )
     named = dict(files)
     for name, content in files.items():
         before = kind_of(name)
@@ -128,9 +131,9 @@ def named_by_content(files: Mapping[str, bytes]) -> dict[str, bytes]:
             continue
         bare = name if kind != before else name.rpartition("/")[0] + "/" * ("/" in name) + without_additions(name)
         new = bare if bare.endswith(_SUFFIX_OF[kind]) else re.sub(r"(?i)\.(?:py|ipynb)$", "", bare) + _SUFFIX_OF[kind]
-        if new not in named:
+        if new != name:
             del named[name]
-            named[new] = content
+            named[new if new not in files else f"{bare}-1{_SUFFIX_OF[kind]}"] = content
     return named
 
 

@@ -16,7 +16,8 @@ from grader.submission.problems import Unreadable
 
 #: What only such a file has. A script with `# %%` alone is a script: Python runs it as it is.
 SAVED_AS_PYTHON = re.compile(
-    rb"^(?:[\w, \t]*=)?[ \t]*get_ipython\(\)\.|^# ?%%(?:node|part)[ \t]|^app = marimo\.App\(|^#%% md[ \t]*$"
+    rb"^(?:[\w, \t]*=)?[ \t]*get_ipython\(\)\.|^# ?%%(?:node|part)[ \t]|^#%% md[ \t]*$"
+    rb"|^import marimo\b(?s:.*)^app = marimo\.App\("
     rb"|^%%(?:node|part)[ \t](?s:.*)^%%(?:node|part)[ \t]",  # several cells in one file
     re.MULTILINE,
 )
@@ -27,7 +28,7 @@ _BEGINS = re.compile(
 _IS_TEXT = re.compile(r"# ?%%(?: md\s*$|.*\[(?:markdown|md|raw)\])")
 _MAGIC = re.compile(r"(?:# ?)?%%\w")
 _TEXT = r"""('(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*")"""
-_CELL_CALL = re.compile(rf"get_ipython\(\)\.run_cell_magic\({_TEXT}, {_TEXT}, {_TEXT}\)\s*")
+_CELL_CALL = re.compile(rf"get_ipython\(\)\.run_cell_magic\({_TEXT}, *{_TEXT}, *{_TEXT}\)\s*")
 #: Longer lines (characters) are not searched for a command: the pattern would take too long.
 _LONGEST = 500
 _CALL = re.compile(r"(?P<before>[ \t]*(?:[\w, \t]+=)?)[ \t]*get_ipython\(\)\..*")

@@ -9,8 +9,8 @@ UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
 def text_of(code: bytes) -> str:
-    """Return a file's text: UTF-8, or UTF-16 if it begins with such a mark."""
-    return code.decode("utf-16" if code.startswith(UTF_16) else "utf-8", errors="replace")
+    """Return a file's text without its byte order mark: UTF-8, or UTF-16 if it begins with such a mark."""
+    return code.decode("utf-16" if code.startswith(UTF_16) else "utf-8-sig", errors="replace")
 
 
 def not_python(code: bytes) -> str:

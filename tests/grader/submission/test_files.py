@@ -46,7 +46,7 @@ NAMES = {
     "renamed.py": zipped({"heartbeat.py": PROGRAM}),
     "heartbeat.py.gz": gzip.compress(PROGRAM.encode()),
     "of names without a suffix.zip": zipped({"bin/heartbeat": PROGRAM, "README": "mine"}),
-    "of text.zip": zipped({"heartbeat.txt": PROGRAM, "report.pdf": "%PDF"}),
+    "of text.zip": zipped({"heartbeat.txt": PROGRAM, "plot.py": "import matplotlib\n"}),
     "of JSON.zip": zipped({"week3.json": notebook(NODE)}),
     "of a notebook as .py.zip": zipped({"week3.py": notebook(NODE)}),
     "of a program as .ipynb.zip": zipped({"week3.ipynb": PROGRAM}),
@@ -220,7 +220,9 @@ def test_other_languages_are_refused_by_name_too(exercise: Exercise) -> None:
     assert of_content("beat.zip", crate, exercise).problem == "Rust is not graded yet: hand in Python."
 
 
-@pytest.mark.parametrize("before", ["%%node heartbeat\n", "!pip install rclpy\n", "# mine\n%matplotlib inline\n"])
+@pytest.mark.parametrize(
+    "before", ["%%node heartbeat\n", "\ufeff%%node heartbeat\n", "!pip install rclpy\n", "# mine\n%matplotlib inline\n"]
+)
 def test_a_notebooks_commands_in_a_file_are_left_out_with_a_word(before: str, exercise: Exercise) -> None:
     submission = of_content("heartbeat.py", (before + PROGRAM).encode(), exercise)
     assert submission.source.endswith(PROGRAM)

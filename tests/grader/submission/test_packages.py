@@ -337,6 +337,7 @@ QUESTIONS = {
     "two of other names": {"new.py": PROGRAM, "old.py": OLD.partition("\n")[2]},
     "two notebooks": {"a.ipynb": notebook(NODE), "b.ipynb": notebook(OLD)},
     "cells": {"a.ipynb": notebook(NODE, OLD)},
+    "an executable and its older source": {"beat": f"#!/usr/bin/python3\n{PROGRAM}", "beat.py": OLD.partition("\n")[2]},
     "a file and a notebook": {"heartbeat.py": PROGRAM, "a.ipynb": notebook(OLD)},
     "a download and another": {"heartbeat.py": PROGRAM, "heartbeat (1).py": OLD.partition("\n")[2]},
 }
