@@ -115,8 +115,18 @@ def fields(type_name: str) -> dict[str, str]:
 def nested(type_name: str, name: str) -> str:
     """Return the type of a field that is itself a message; empty for any other."""
     type_ = fields(type_name).get(name, "")
+    return "" if _LIST.fullmatch(type_) else _message_type(type_)
+
+
+def element(type_name: str, name: str) -> str:
+    """Return the type of the messages in a field that is a list of messages; empty for any other."""
+    match = _LIST.fullmatch(fields(type_name).get(name, ""))
+    return _message_type(match[1] or match[2]) if match else ""
+
+
+def _message_type(type_: str) -> str:
     package, _, short = type_.partition("/")
-    return f"{package}/msg/{short}" if short and not _LIST.fullmatch(type_) else ""
+    return f"{package}/msg/{short}" if short else ""
 
 
 def has(type_name: str, path: str) -> bool:
@@ -128,7 +138,5 @@ def has(type_name: str, path: str) -> bool:
             continue
         if step not in known:
             return False
-        element = _LIST.fullmatch(known[step])
-        package, _, short = (element[1] or element[2] if element else known[step]).partition("/")
-        here = f"{package}/msg/{short}" if short else ""
+        here = element(here, step) or nested(here, step)
     return True

@@ -124,6 +124,10 @@ class _Function:
                 self._remember(node.targets[0], self._value(node.value), self._items(node.value))
             elif isinstance(node, (ast.For, ast.comprehension)):
                 self._remember(node.target, self._items(node.iter), None)
+            elif isinstance(node, ast.Call) and getattr(node.func, "id", "") == "each" and len(node.args) == 2:
+                items, judge = node.args
+                for argument in judge.args.args if isinstance(judge, ast.Lambda) else ():
+                    self._remember(ast.Name(argument.arg), self._items(items), None)
 
     def _remember(self, target: ast.expr, value: Value | None, items: Value | None) -> None:
         """Note what a variable is; None if it is unknown, or different things at different places."""
@@ -154,6 +158,9 @@ class _Function:
         if isinstance(node, ast.Attribute) and self._is_method(node) and node.attr in ("sent", "received"):
             types = self._known.sent if node.attr == "sent" else self._known.received
             return ("message", types[0]) if len(types) == 1 else None
+        if isinstance(node, ast.Attribute) and (owner := self._value(node.value)) and owner[0] == "message":
+            element = known_names.element(owner[1], node.attr)
+            return ("message", element) if element else None
         if isinstance(node, ast.Call) and getattr(node.func, "id", "") in _SAME_ITEMS and node.args:
             return self._items(node.args[0])
         if isinstance(node, ast.Call) and self._is_method(node.func):

@@ -20,6 +20,10 @@ node = "names"
 topic = "/scan"
 type = "sensor_msgs/msg/Range"
 
+[[subscribe]]
+topic = "/tf"
+type = "tf2_msgs/msg/TFMessage"
+
 [[publish]]
 topic = "/cmd_vel"
 type = "geometry_msgs/msg/Twist"
@@ -93,6 +97,8 @@ def problems(folder: Path, line: str) -> list[tuple[int | None, str]]:
         ("near.must_take('gian', 1.0)", "there is no parameter 'gian'. Did you mean gain?"),
         ("near.must_match_series('linear.x', subscriber='lat')", "there is no subscriber 'lat'. Did you mean late?"),
         ("[m.linaer for m in near.messages_on(SPEED)]", "geometry_msgs/msg/Twist has no linaer. Did you mean linear?"),
+        ("each(near.messages_on(SPEED), lambda m: m.linaer)", "Twist has no linaer. Did you mean linear?"),
+        ("[t.heder for m in near.messages_on('/tf') for t in m.transforms]", "TransformStamped has no heder"),
         ("near.received[0].angular.zz", "geometry_msgs/msg/Vector3 has no zz"),
         ("near.messages_on('/turtle1/pose')[-1].fields['thta']", "has no field 'thta'. Did you mean theta?"),
         ("[call.answerd for call in near.calls()]", "the record Call has no answerd. Did you mean answered?"),
