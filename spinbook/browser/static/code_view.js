@@ -23,6 +23,8 @@ const look = EditorView.theme({
   ".cm-content": { padding: "0.9rem 0", caretColor: "var(--ink)" },
   ".cm-line": { padding: "0 1.1rem 0 0.6rem" },
   ".cm-gutters": { backgroundColor: "var(--code)", color: "var(--soft)", border: "0" },
+  ".cm-gutterElement": { fontSize: "0.8em" },
+  ".cm-lineNumbers .cm-gutterElement": { minWidth: "1rem", padding: "0 0.15rem 0 0.3rem" },
   ".cm-cursor": { borderLeftColor: "var(--ink)" },
   "&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground, .cm-selectionBackground": { background: "var(--tint)" },
   "&.cm-focused .cm-matchingBracket": { backgroundColor: "transparent", outline: "1px solid var(--accent)" },
@@ -56,7 +58,8 @@ export function codeView({ parent, text, label, language, before, onchange }) {
       mirror.closeBrackets(),
       mirror.indentUnit.of("    "),
       mirror.syntaxHighlighting(colours),
-      isPhone ? EditorView.lineWrapping : mirror.lineNumbers({ formatNumber: numbers(before) }),
+      mirror.lineNumbers({ formatNumber: numbers(before) }),
+      isPhone ? EditorView.lineWrapping : [],
       EditorView.contentAttributes.of({ "aria-label": label, tabindex: "0", spellcheck: "false", autocapitalize: "off", autocorrect: "off" }),
       EditorView.updateListener.of((update) => {
         edited ||= update.docChanged;

@@ -181,6 +181,7 @@ def test_an_exercise_is_checked_in_its_page(reader: BrowserContext, address: str
         around, own = (page.get_by_role("log", name=name) for name in ("What surrounds your node", "What joint_vel"))
         expect(around).to_contain_text("from your node: /joint_velocities  header: (stamp: (sec: 100")
         expect(own).to_contain_text("6 joints arrived")
+        expect(page.locator(".cm-lineNumbers")).to_be_visible()
         expect(page.get_by_text("is over. Nothing was judged")).to_be_visible()
         expect(page.locator(".check-plot svg")).to_contain_text("yours")
         expect(page.locator(".check-plot svg")).not_to_contain_text("first wrong")
