@@ -11,8 +11,8 @@ import re
 from collections.abc import Iterator
 from itertools import takewhile
 
-from grader.submission import python_code
 from grader.submission.problems import Unreadable
+from grader.submission.unreadable import not_python
 
 #: What only such a file has. A script with `# %%` alone is a script: Python runs it as it is.
 SAVED_AS_PYTHON = re.compile(
@@ -26,6 +26,7 @@ _BEGINS = re.compile(
     r"# In ?\[[\d ]*\]:\s*|# ?%%(?:[ \t].*)?|# ?\+(?: .*)?|# -|# Commented out IPython magic to ensure .*"
 )
 _IS_TEXT = re.compile(r"# ?%%(?: md\s*$|.*\[(?:markdown|md|raw)\])")
+_IS_CODE = re.compile(r"(?:import|from|class|def) +\w")
 _MAGIC = re.compile(r"(?:# ?)?%%\w")
 _TEXT = r"""('(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*")"""
 _CELL_CALL = re.compile(rf"get_ipython\(\)\.run_cell_magic\({_TEXT}, *{_TEXT}, *{_TEXT}\)\s*")
@@ -57,7 +58,7 @@ def _pieces(lines: list[str]) -> Iterator[list[str]]:
             commented = list(takewhile(_continues, (lines[below] for below in range(number, len(lines)))))
             body = [re.sub(r"^# ?", "", one) for one in commented]
             skipped, piece = False, [line]
-            if python_code.imports("\n".join(body)) or python_code.definitions("\n".join(body)):
+            if any(map(_IS_CODE.match, body)):
                 yield [line, *body]
                 number += len(commented)
                 piece = []
@@ -100,9 +101,13 @@ def _without_call(line: str) -> str:
 
 def _of_marimo(source: str) -> Iterator[str]:
     """Yield the bodies of marimo's cells, and the functions and classes that it keeps at the top."""
-    tree = python_code.tree_of(source)
-    if tree is None:
-        raise Unreadable("It is a marimo notebook that can't be read as Python. Open it in marimo, and save it again.")
+    try:
+        if problem := not_python(source.encode(errors="replace")):
+            raise Unreadable(problem)
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        advice = "Open it in marimo, and save it again."
+        raise Unreadable(f"It is a marimo notebook that can't be read as Python. {advice}") from None
     lines = source.split("\n")
     for one in tree.body:
         if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
