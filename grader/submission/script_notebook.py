@@ -11,9 +11,6 @@ import re
 from collections.abc import Iterator
 from itertools import takewhile
 
-from grader.submission.problems import Unreadable
-from grader.submission.unreadable import not_python
-
 #: What only such a file has. A script with `# %%` alone is a script: Python runs it as it is.
 SAVED_AS_PYTHON = re.compile(
     rb"^(?:[\w, \t]*=)?[ \t]*get_ipython\(\)\.|^# ?%%(?:node|part)[ \t]|^#%% md[ \t]*$"
@@ -101,6 +98,9 @@ def _without_call(line: str) -> str:
 
 def _of_marimo(source: str) -> Iterator[str]:
     """Yield the bodies of marimo's cells, and the functions and classes that it keeps at the top."""
+    from grader.submission.problems import Unreadable
+    from grader.submission.unreadable import not_python
+
     try:
         if problem := not_python(source.encode(errors="replace")):
             raise Unreadable(problem)
