@@ -1,5 +1,5 @@
 // Shows the SVG pictures that Spinbook draws.
-import { button, element } from "./elements.js";
+import { element } from "./elements.js";
 
 const DARK = /@media[^{]*\(prefers-color-scheme:\s*dark\)\s*\{/g;
 const dressed = new Set();
@@ -29,18 +29,8 @@ export function show(cell, { picture, words, problem }, className) {
   const figure = element("figure", { className: `live-picture ${className}` });
   fill(figure, picture);
   figure.dataset.words = words;
-  if (picture.includes("@keyframes")) figure.append(pause(figure));
+  if (picture.includes("@keyframes")) figure.append(globalThis.pauseButton(figure));
   cell.shown?.append(figure);
-}
-
-// Return a button that stops what moves in a figure (WCAG 2.2.2), as the site's script does for recorded ones.
-function pause(figure) {
-  const made = button("Pause", "Pause this picture", () => {
-    made.textContent = figure.classList.toggle("paused") ? "Play" : "Pause";
-    made.setAttribute("aria-label", `${made.textContent} this picture`);
-  });
-  made.className = "pause";
-  return made;
 }
 
 // Return a figure with a picture for each part of the graph.

@@ -207,7 +207,21 @@ function searching() {
   });
 }
 
-// Let readers pause moving pictures (WCAG 2.2.2): a still picture takes their place.
+// Return a button that pauses what moves in `frame` (WCAG 2.2.2): it has the class "paused" then.
+function pauseButton(frame) {
+  const button = document.createElement("button");
+  button.type = "button";
+  button.className = "pause";
+  const show = (paused) => {
+    button.textContent = paused ? "Play" : "Pause";
+    button.setAttribute("aria-label", `${button.textContent} this picture`);
+  };
+  button.addEventListener("click", () => show(frame.classList.toggle("paused")));
+  show(false);
+  return button;
+}
+
+// Let readers pause recorded pictures: a still picture takes their place.
 function pausing() {
   for (const picture of document.querySelectorAll("main img.moving")) {
     const still = picture.parentElement.querySelector("img.still");
@@ -215,17 +229,7 @@ function pausing() {
     const frame = document.createElement("span");
     frame.className = "pausable";
     picture.before(frame);
-    const button = document.createElement("button");
-    button.type = "button";
-    button.className = "pause";
-    button.textContent = "Pause";
-    button.setAttribute("aria-label", "Pause this picture");
-    button.addEventListener("click", () => {
-      const paused = frame.classList.toggle("paused");
-      button.textContent = paused ? "Play" : "Pause";
-      button.setAttribute("aria-label", paused ? "Play this picture" : "Pause this picture");
-    });
-    frame.append(picture, still, button);
+    frame.append(picture, still, pauseButton(frame));
   }
 }
 
