@@ -91,7 +91,7 @@ def test_a_launch_file_of_which_ros2_launch_knows_not_all_is_shown_and_its_nodes
 ) -> None:
     more = CHAPTER.replace(
         "from launch import LaunchDescription\n",
-        "from launch import LaunchDescription\nfrom launch.actions import TimerAction\n",
+        "from launch import LaunchDescription\nfrom launch_ros.actions import ComposableNodeContainer\n",
     )
     course.write(one=more).spinbook("build")
 
