@@ -14,6 +14,7 @@ from grader.classroom.archive import unpacked, walk
 from grader.classroom.class_table import by_row
 from grader.classroom.formats.format import UploadedFile
 from grader.classroom.formats.per_student import without_suffix
+from grader.classroom.formats.registry import PLAIN
 from grader.classroom.groups import Attempt, Group, Unit, in_groups
 from grader.classroom.names import normal, unique_ids
 from grader.classroom.recogniser import GRADABLE, Recogniser, Recognition, can_be_graded
@@ -21,7 +22,7 @@ from grader.classroom.roster import RosterRow, match, signs, with_row
 from grader.classroom.submissions import File, Question, StudentSubmission, Submissions, SubmissionsError
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Skipped, Student
-from grader.submission.file_kinds import can_be_read, kind_of_content
+from grader.submission.file_kinds import can_be_read, kind_of, kind_of_content
 
 KINDS = "not one of .py, .ipynb, .zip"
 
@@ -84,6 +85,8 @@ def _found(source: Path, exercise: Exercise, unpack_into: Path, options: Collect
         return ClassFiles("", (), left_out)
     root = source.resolve().name if source.is_dir() else without_suffix(source.name)
     recognition = Recogniser(files, root, exercise, options.zone).recognise(options.format)
+    if not source.is_dir() and len(files) == 1 and recognition.form is PLAIN:
+        _refuse_class_within(source.name, *files.values(), exercise, unpack_into / "within")
     folder = f", in {'/'.join(recognition.inside)}/" if recognition.inside else ""
     uploads = [(file, place) for file, place in recognition.understood if isinstance(place, UploadedFile)]
     others = [Skipped(file.name, place) for file, place in recognition.understood if isinstance(place, str) and place]
@@ -97,6 +100,24 @@ def _found(source: Path, exercise: Exercise, unpack_into: Path, options: Collect
         _odd(recognition, why),
         recognition.form.dates,
     )
+
+
+def _refuse_class_within(around: str, only: File, exercise: Exercise, unpack_into: Path) -> None:
+    """Raise `SubmissionsError` if `only`, an archive that is all another one holds, seems to be a whole class."""
+    if kind_of(only.name) != "archive":
+        return
+    unpack_into.mkdir()
+    try:
+        inner = {tuple(one.name.split("/")): one for one in unpacked(only.path, unpack_into) if isinstance(one, File)}
+        recognition = Recogniser(inner, without_suffix(only.name), exercise, None).recognise()
+    except SubmissionsError:
+        return  # one student's, then, who gets a row that says what is wrong with it
+    if len(recognition.fits) > 1:
+        raise SubmissionsError(
+            f"{around} holds nothing but {only.name}, in which are {len(recognition.fits)} submissions "
+            f"({recognition.form.title}).\nUnpack {around}. Then grade {only.name} if it is a class, or the "
+            "folder that it is in if it is one student's work."
+        )
 
 
 def _odd(recognition: Recognition, why: str) -> list[Question]:

@@ -199,6 +199,21 @@ def test_no_name_in_a_zip_leads_out_of_its_folder(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["class.zip", "unpacked"]
 
 
+def test_a_class_in_a_zip_in_a_zip_is_not_one_students_work(tmp_path: Path) -> None:
+    zipped(tmp_path / "class.zip", "anna.py", "bert.py")
+    with zipfile.ZipFile(tmp_path / "export.zip", "w") as archive:
+        archive.write(tmp_path / "class.zip", "class.zip")
+    with pytest.raises(SubmissionsError, match=r"export\.zip holds nothing but class\.zip, in which are 2 submissions"):
+        taken(tmp_path / "export.zip", tmp_path)
+
+
+def test_one_students_package_in_a_zip_in_a_zip_is_theirs(tmp_path: Path) -> None:
+    zipped(tmp_path / "anna.zip", "vel/package.xml", "vel/setup.py", "vel/vel/node.py", "vel/vel/angles.py")
+    with zipfile.ZipFile(tmp_path / "export.zip", "w") as archive:
+        archive.write(tmp_path / "anna.zip", "anna.zip")
+    assert files(taken(tmp_path / "export.zip", tmp_path)) == {"anna": "anna.zip"}
+
+
 @pytest.mark.parametrize("kind", ["gz", "bz2", "xz", ""])
 def test_a_tar_is_read_as_a_zip_is(tmp_path: Path, kind: str) -> None:
     source = tmp_path / f"class.tar.{kind}"
