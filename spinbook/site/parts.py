@@ -22,11 +22,12 @@ PER_CELL = 2
 
 @dataclass(frozen=True)
 class TimedSection:
-    """What is not divided any more: a section, or a subsection of a long one."""
+    """What is not divided any more: a section, or a subsection of a long one, `within` the section of that title."""
 
     title: str
     minutes: float
     node: nodes.section
+    within: str = ""
 
 
 def divide(document: nodes.document, minutes: Mapping[str, int]) -> None:
@@ -73,7 +74,7 @@ def _timed(section: nodes.section, minutes: Mapping[str, int]) -> Iterator[Timed
     yield TimedSection(_title(section), scale * _estimate(section), section)
     for child in inner[1:]:
         # The heading keeps its level within a section that has no heading of its own.
-        yield TimedSection(_title(child), scale * _estimate(child), nodes.section("", child))
+        yield TimedSection(_title(child), scale * _estimate(child), nodes.section("", child), _title(section))
 
 
 def _estimate(section: nodes.section) -> float:
@@ -110,9 +111,12 @@ def _numbers(parts: list[list[TimedSection]]) -> str:
 def _opening(number: int, parts: list[list[TimedSection]]) -> str:
     hidden = ' hidden="until-found"' if number > 1 else ""
     place = f"Page {number} of {len(parts)}"
+    within = parts[number - 1][0].within
+    # Headings leave out no level, wherever a part begins.
+    continued = f'<h2 class="part-within">{escape(within)}, continued</h2>' if within else ""
     return (
         f'<div class="part" id="part-{number}" role="group" aria-label="{place}" tabindex="-1"{hidden}>'
-        f'<p class="part-place">{place} · about {_about(parts[number - 1])}</p>'
+        f'<p class="part-place">{place} · about {_about(parts[number - 1])}</p>{continued}'
     )
 
 

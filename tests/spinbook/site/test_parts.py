@@ -1,0 +1,45 @@
+"""A long chapter is divided into parts, each of which begins where a reader can tell what it belongs to."""
+
+from __future__ import annotations
+
+from docutils import nodes
+from docutils.core import publish_doctree
+
+from spinbook.site.parts import divide
+
+WORDS = "word " * 400
+CHAPTER = f"""
+Title
+=====
+
+Long
+----
+
+First
+~~~~~
+
+{WORDS}
+
+Second
+~~~~~~
+
+{WORDS}
+
+Short
+-----
+
+{WORDS}
+"""
+
+
+def test_a_part_that_begins_within_a_section_repeats_its_heading() -> None:
+    document = publish_doctree(CHAPTER, settings_overrides={"doctitle_xform": False})
+
+    divide(document, {"long": 40, "short": 15})
+
+    openings = [raw.astext() for raw in document.findall(nodes.raw) if 'class="part-place"' in raw.astext()]
+    assert [opening.partition("</p>")[2] for opening in openings] == [
+        "",
+        '<h2 class="part-within">Long, continued</h2>',
+        "",
+    ]
