@@ -86,7 +86,7 @@ def _found(source: Path, exercise: Exercise, unpack_into: Path, options: Collect
     root = source.resolve().name if source.is_dir() else without_suffix(source.name)
     recognition = Recogniser(files, root, exercise, options.zone).recognise(options.format)
     if not source.is_dir() and len(files) == 1 and recognition.form is PLAIN:
-        _refuse_class_within(source.name, *files.values(), exercise, unpack_into / "within")
+        _refuse_class_within(source.name, next(iter(files.values())), exercise, unpack_into / "within")
     folder = f", in {'/'.join(recognition.inside)}/" if recognition.inside else ""
     uploads = [(file, place) for file, place in recognition.understood if isinstance(place, UploadedFile)]
     others = [Skipped(file.name, place) for file, place in recognition.understood if isinstance(place, str) and place]

@@ -67,6 +67,10 @@ class Task:
         return self.files or {self.file_name: self.source}
 
 
+class AuthorFault(Exception):
+    """Raised from the error if the author's code, which runs inside the grader, fails; the text names it."""
+
+
 class CannotContinue(Exception):
     """Raised inside a runner if the student's program can't continue; `message` is for the student."""
 

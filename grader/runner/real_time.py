@@ -20,8 +20,7 @@ from grader.runner.program import Task
 from grader.runner.publishers import ReferencePublishers
 from grader.runner.real_ros import RealRos
 from grader.runner.recorder import Recorder, recorded_topics
-from grader.runner.run import AFTERWARDS
-from grader.runner.script import Script
+from grader.runner.script import AFTERWARDS, Script
 from grader.scenario.scenario import SECOND, START, Message, Scenario
 
 #: How long the program may take to appear, and then to connect to everything (s).

@@ -22,14 +22,11 @@ from grader.runner.publishers import OFFER, ReferencePublishers
 from grader.runner.readiness import START as STARTING
 from grader.runner.readiness import Parameters, wait_until_up
 from grader.runner.recorder import Recorder, recorded_topics
-from grader.runner.script import Script
+from grader.runner.script import AFTERWARDS, Script
 from grader.runner.team import Start, Team
 from grader.scenario.command_line import starts
 from grader.scenario.scenario import SECOND, START, Content, Message
 from rmw_lockstep.hub import Hub, HubLimits, Violation
-
-#: How long simulated time continues after the last message, for what a node does by timer (ns).
-AFTERWARDS = SECOND // 2
 
 #: A program that waits for less than this is considered about to continue (ns of the computer's time).
 SOON = 3 * SECOND

@@ -11,8 +11,8 @@ from grader.runner.cdr import deserialized
 from grader.runner.grader_side import ACCEPT_ANY, GraderSide, Schedule, nanoseconds
 from grader.runner.message import message_class
 from grader.runner.message_order import in_canonical_order, unordered_sources
+from grader.runner.program import AuthorFault
 from grader.runner.publishers import ReferencePublishers
-from grader.runner.service_servers import AuthorFault
 from grader.scenario.scenario import START, Message, ToWorld
 from grader.scenario.values import InvalidValue, checked_fields
 from grader.scenario.world import World

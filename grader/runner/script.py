@@ -11,13 +11,14 @@ from grader.runner.action_clients import CancelStep, Goals
 from grader.runner.action_servers import ScriptedActionServer
 from grader.runner.calls import Calls, CallStep
 from grader.runner.grader_side import GraderSide, Schedule, hub_qos, nanoseconds
-from grader.runner.program import Task
+from grader.runner.program import AuthorFault, Task
 from grader.runner.publishers import ReferencePublishers
 from grader.runner.recorder import Recorder
 from grader.runner.running_world import RunningWorld
-from grader.runner.service_servers import AuthorFault, ServiceServer, unserved
+from grader.runner.service_servers import ServiceServer, unserved
 from grader.runner.team import Team
 from grader.scenario.scenario import (
+    SECOND,
     START,
     ComeBack,
     Kill,
@@ -32,6 +33,9 @@ from grader.scenario.scenario import (
 )
 from grader.scenario.servers import ActionServer
 from grader.scenario.servers import Server as DeclaredServer
+
+#: How long simulated time continues after the last message, for what a node does by timer (ns).
+AFTERWARDS = SECOND // 2
 
 Peer = ServiceServer | ScriptedActionServer
 

@@ -11,7 +11,7 @@ from grader.runner.cdr import deserialized, fields_of, serialized
 from grader.runner.grader_side import GraderSide, Schedule, nanoseconds
 from grader.runner.message import message_class, to_fields
 from grader.runner.message_order import requests_in_order
-from grader.runner.program import CannotContinue
+from grader.runner.program import AuthorFault, CannotContinue
 from grader.scenario.code import AuthorCode
 from grader.scenario.servers import Reply
 from grader.scenario.servers import Server as Declared
@@ -20,10 +20,6 @@ from rmw_lockstep.hub import HubServer, PendingRequest
 
 #: No exercise needs more calls of one service from a node in one scenario, and no more bytes in the answers.
 MOST_CALLS, MOST_BYTES = 5_000, 8_000_000
-
-
-class AuthorFault(Exception):
-    """Raised from the error if the author's code, which runs inside the grader, fails; the text names it."""
 
 
 @dataclass

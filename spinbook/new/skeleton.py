@@ -74,6 +74,24 @@ if __name__ == "__main__":
     main()
 '''
 
+#: A launch file's code. The author says which program each node is.
+_LAUNCH = '''\
+"""{title}."""
+
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription(
+        [
+            # BEGIN SOLUTION
+{nodes}
+            # END SOLUTION
+        ]
+    )
+'''
+
 
 @dataclass(frozen=True)
 class _Callback:
@@ -90,6 +108,8 @@ def skeleton(exercise: Exercise) -> str:
 
     exercise.toml does not say which of several programs has which topic: comments then list them for the author.
     """
+    if exercise.nodes:
+        return _LAUNCH.format(title=exercise.title, nodes="\n".join(map(_launched, exercise.nodes)))
     if not exercise.programs:
         node = ProgramFile(exercise.file_name, exercise.node_name, exercise.class_name)
         return _program(exercise.title, node, exercise.topics, exercise.endpoints, exercise.parameters)
@@ -99,6 +119,12 @@ def skeleton(exercise: Exercise) -> str:
         for program in exercise.programs
     )
     return "\n\n".join(parts)
+
+
+def _launched(node: str) -> str:
+    namespace, _, name = node.rpartition("/")
+    within = f', namespace="{namespace}"' if namespace else ""
+    return f'            Node(package="TODO", executable="TODO", name="{name}"{within}),'
 
 
 def _listed(exercise: Exercise) -> Iterator[str]:

@@ -301,7 +301,10 @@ def test_advice_names_what_the_student_can_change(log: str, source: str, advice:
             "TypeError: unsupported operand type(s) for -: 'array.array' and 'array.array'",
             "A list of numbers is no number",
         ),
-        ("AttributeError: 'Future' object has no attribute 'success'", "A future is not yet the answer."),
+        (
+            "AttributeError: 'Future' object has no attribute 'success'",
+            "A future is not yet the answer: give it",
+        ),
         (
             "AttributeError: 'Push_FeedbackMessage' object has no attribute 'coins'",
             "a message inside: message.feedback.coins.",

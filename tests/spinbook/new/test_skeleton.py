@@ -20,7 +20,7 @@ from spinbook.new.skeleton import skeleton
 from spinbook.new.templates import BY_NAME, KINDS, write_exercise
 from spinbook.problem import SpinbookError
 
-ONE_PROGRAM = [pytest.param(kind, id=kind.name) for kind in KINDS if kind.name != "several-nodes"]
+ONE_PROGRAM = [pytest.param(kind, id=kind.name) for kind in KINDS if kind.name not in ("several-nodes", "launch-file")]
 
 
 @pytest.fixture
@@ -84,6 +84,14 @@ def test_each_of_several_programs_has_a_part_with_its_node(exercise: Exercise) -
         assert f"class {program.class_name}(Node)" in part
         assert f'super().__init__("{program.node}")' in part
         assert "TODO: publish on /gripper_force/output (std_msgs/msg/Float64, depth 10, reliable, volatile)" in part
+
+
+@pytest.mark.parametrize("kind", [BY_NAME["launch-file"]])
+def test_a_launch_file_starts_the_declared_nodes(exercise: Exercise) -> None:
+    text = skeleton(exercise)
+    for name in ("left", "right"):
+        assert f'Node(package="TODO", executable="TODO", name="{name}", namespace="/gripper_force"),' in text
+    assert "Node(" not in starter(text)
 
 
 def made(*words: str) -> Result:

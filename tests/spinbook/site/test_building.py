@@ -21,7 +21,7 @@ def test_nothing_is_made_where_nothing_has_changed(course: SmallCourse) -> None:
     said = course.spinbook_site()
 
     assert said.returncode == 0
-    assert "7 pages, unchanged" in said.stdout
+    assert "8 pages, unchanged" in said.stdout
     assert snapshot(course.site) == before
 
 
