@@ -89,17 +89,17 @@ def test_an_authors_fault_ends_with_3(tmp_path: Path) -> None:
 
 def test_the_executable_of_an_installed_package_is_graded_with_the_modules_beside_it(tmp_path: Path) -> None:
     prefix = tmp_path / "install" / "vel"
-    script = prefix / "lib" / "vel" / "joint_velocity"
+    script = prefix / "lib" / "vel" / "heartbeat"
     modules = prefix / "lib" / "python3.11" / "site-packages" / "vel"
     for folder in (script.parent, modules):
         folder.mkdir(parents=True)
-    script.write_text("#!/usr/bin/env python3\nfrom vel.joint_velocity import main\nmain()\n")
+    script.write_text("#!/usr/bin/env python3\nfrom vel.heartbeat import main\nmain()\n")
     (modules / "__init__.py").write_text("")
-    (modules / "joint_velocity.py").write_bytes((SOLUTIONS / "solution.py").read_bytes())
-    done = grade("joint_velocity", "vel/joint_velocity", "--json", AMENT_PREFIX_PATH=str(prefix))
+    (modules / "heartbeat.py").write_bytes((ROOT / "solutions" / "heartbeat" / "solution.py").read_bytes())
+    done = grade("heartbeat", "vel/heartbeat", "--json", AMENT_PREFIX_PATH=str(prefix))
     assert done.returncode == 0, done.stdout + done.stderr
     entries = json.loads(done.stdout)
-    assert (entries["outcome"], entries["score"], entries["points"]) == ("graded", 100, 100)
+    assert (entries["outcome"], entries["score"], entries["points"]) == ("graded", 50, 50)
     assert entries["isolation"] in ("bubblewrap", "namespaces", "landlock")
     assert len(entries["digest"]) == 64
     assert all(verdict["status"] == "passed" for verdict in entries["verdicts"])

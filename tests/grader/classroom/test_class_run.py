@@ -136,7 +136,8 @@ def test_a_fault_of_ours_is_tried_again_listed_apart_and_never_scored(done: Smal
     hidden.write_text(right.replace('    backwards.must_match("data")', breaks), encoding="utf-8")
     forwards = (done.submissions / "carl.py").read_text(encoding="utf-8")
     done.hand_in("carl", forwards.replace("min(LIMIT, message.data)", "min(LIMIT, message.data * 1000)"))
-    (done.submissions / "emil.py").unlink()
+    for name in ("bert", "dora", "emil"):
+        (done.submissions / f"{name}.py").unlink()
     code, printed = done.grade()
     assert code == 3, printed
     assert "not graded, because of a fault of Spinbook or the machine: carl" in printed
@@ -148,7 +149,7 @@ def test_a_fault_of_ours_is_tried_again_listed_apart_and_never_scored(done: Smal
     assert "Not graded because of a fault on our side" in page
     with (done.folder / "results" / "grades.csv").open(encoding="utf-8-sig") as file:
         points = {row["student"]: row["points"] for row in csv.DictReader(file)}
-    assert points == {"ana": "20", "bert": "20", "carl": "", "dora": "18", "fay": "0"}
+    assert points == {"ana": "20", "carl": "", "fay": "0"}
     hidden.write_text(right, encoding="utf-8")
     code, printed = done.grade()
     assert code == 0, printed
