@@ -44,7 +44,7 @@ test: setup   ## Check style and the direction of imports, then run every test; 
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
-	$(PYTEST) -n 3
+	$(PYTEST) -n 4
 
 soak: setup   ## Run the long suites in full, and count how often the same program gets another recording or grade.
 	$(PYTEST) -m soak
