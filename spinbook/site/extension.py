@@ -265,7 +265,7 @@ def _add_still(image: nodes.image, still: str) -> None:
     """Add the still picture after the image. Style sheets show one of the two."""
     image["classes"].append("moving")
     alt = escape(image["alt"])
-    shown = nodes.raw("", f'<img class="still" src="../{escape(still)}" alt="{alt}">', format="html")
+    shown = nodes.raw("", f'<img class="still" loading="lazy" src="../{escape(still)}" alt="{alt}">', format="html")
     image.parent.insert(image.parent.index(image) + 1, shown)
 
 
