@@ -29,17 +29,21 @@ def grading() -> Iterator[Grading]:
 
 
 class GraderProcesses:
-    """Watches, in a thread, the memory and CPU time of this process and its children, without the students' own."""
+    """Watches, in a thread, the memory and CPU time of this process and its workers, without the students' own.
+
+    Of this process only what is added counts: other tests have run in it.
+    """
 
     def __init__(self) -> None:
         self.most_memory, self.cpu_s = 0, 0.0
+        self._before = psutil.Process().memory_full_info().pss
         self._cpu = {process: seconds(process) for process in grader_processes()}
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._watch, daemon=True)
 
     def _watch(self) -> None:
         while not self._ended.wait(0.1):
-            memory = 0
+            memory = -self._before
             for process in grader_processes():
                 with contextlib.suppress(psutil.Error):
                     memory += process.memory_full_info().pss
@@ -63,14 +67,19 @@ def seconds(process: psutil.Process) -> float:
 
 
 def grader_processes() -> Iterator[psutil.Process]:
-    """Yield this process and all that it started, down to the supervisors, whose children are students' programs."""
-    waiting = [psutil.Process()]
+    """Yield this process and its workers, down to the supervisors, whose children are students' programs.
+
+    What other tests have started, such as a browser, is not of the grader.
+    """
+    yield psutil.Process()
+    waiting = psutil.Process().children()
     while waiting:
         process = waiting.pop()
-        yield process
         with contextlib.suppress(psutil.Error):
-            is_fork_server = "grader.sandbox.zygote" in process.cmdline()
-            waiting += [] if is_fork_server else process.children()
+            command = " ".join(process.cmdline())
+            if "grader." in command:
+                yield process
+                waiting += [] if "grader.sandbox.zygote" in command else process.children()
 
 
 def grade_of(grading: Grading, name: str, source: str) -> Grade:
