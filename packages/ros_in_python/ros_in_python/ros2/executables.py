@@ -21,8 +21,9 @@ from ros_in_python.ros2.opening import check_installed
 
 # The wheels' `.pth` file re-executes Python once with the wheels' libraries in LD_LIBRARY_PATH, and marks that with a
 # guard variable. Another Python that inherits the guard skips its own turn and then misses its libraries; a program of
-# a ROS installation that inherits the libraries gets the wrong ones. So neither is passed on: each program that needs
-# them sets both for itself.
+# a ROS installation that inherits the libraries gets the wrong ones. So neither is passed on to them. A program of
+# this very Python keeps both: done again, the wheels' turn puts the folders in an order that depends on their names,
+# and a middleware that came first in LD_LIBRARY_PATH may come after Fast DDS.
 
 
 GUARD = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
@@ -190,7 +191,7 @@ def find(package: str, executable: str, cwd: Path) -> Invocation:
     and our own executables, in this order. A workspace need not be sourced: the environment is the one that its setup
     scripts would make. Raises `CommandError`, with what there is, if the package or the executable does not exist.
     """
-    environment = without_bootstrap(os.environ)
+    environment = dict(os.environ)
     prefix = prefixes.prefix_of(package, prefixes.installed())
     if prefix is None:
         for near in workspaces_near(cwd):
@@ -201,7 +202,9 @@ def find(package: str, executable: str, cwd: Path) -> Invocation:
     add_own_prefix(environment)
     there = in_prefix(prefix, package) if prefix is not None else []
     if there or (prefix is not None and package not in BUILT_IN):
-        return Invocation([str(_only(there, package, executable))], environment)
+        program = _only(there, package, executable)
+        is_ours = _is_of_this_python(program)
+        return Invocation([str(program)], environment if is_ours else without_bootstrap(environment))
     modules = BUILT_IN.get(package)
     if modules is None:
         raise CommandError(
@@ -213,6 +216,16 @@ def find(package: str, executable: str, cwd: Path) -> Invocation:
         raise CommandError("No executable found", f"Executables of {package}: {', '.join(sorted(modules))}.")
     check_installed()
     return Invocation([sys.executable, "-m", *modules[executable].split()], environment)
+
+
+def _is_of_this_python(program: Path) -> bool:
+    """Return whether a script's first line names the Python of this environment."""
+    with program.open("rb") as file:
+        line = file.readline(1000)
+    words = line.removeprefix(b"#!").decode(errors="replace").split() if line.startswith(b"#!") else []
+    if words and Path(words[0]).name == "env":
+        words = [shutil.which(word) or "" for word in words[1:2]]
+    return bool(words) and Path(words[0]).parent == Path(sys.executable).parent
 
 
 def is_built_in(package: str, prefix: Path | None) -> bool:

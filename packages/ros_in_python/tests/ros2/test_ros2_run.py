@@ -129,12 +129,28 @@ def test_an_installed_turtlesim_comes_first(tmp_path: Path, monkeypatch: pytest.
     assert find("turtlesim", "turtlesim_node", tmp_path).argv == [str(node)]
 
 
-def test_another_program_does_not_inherit_the_wheels_bootstrap(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("first_line", "is_kept"),
+    [
+        (f"#!{sys.executable}", True),
+        ("#!/usr/bin/env python", True),
+        ("#!/opt/another/bin/python3", False),
+        ("#!/usr/bin/env bash", False),
+        ("\x7fELF", False),
+    ],
+)
+def test_only_this_pythons_programs_inherit_what_the_wheels_have_set(
+    first_line: str, is_kept: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install(tmp_path, "isolated")
+    (tmp_path / "install/hello_pkg/lib/hello_pkg/hello").write_text(f"{first_line}\n")
+    searched = ["/opt/middleware", str(Path(sys.prefix, "lib")), "/opt/mine"]
     monkeypatch.setenv("_ROS_WHEELS_BOOTSTRAP_COMPLETE", "1")
-    monkeypatch.setenv("LD_LIBRARY_PATH", os.pathsep.join([str(Path(sys.prefix, "lib")), "/opt/mine"]))
-    env = find("turtlesim", "turtlesim_node", tmp_path).env
-    assert "_ROS_WHEELS_BOOTSTRAP_COMPLETE" not in env
-    assert env["LD_LIBRARY_PATH"] == "/opt/mine"
+    monkeypatch.setenv("LD_LIBRARY_PATH", os.pathsep.join(searched))
+    monkeypatch.setenv("PATH", os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]))
+    env = find("hello_pkg", "hello", tmp_path).env
+    assert ("_ROS_WHEELS_BOOTSTRAP_COMPLETE" in env) == is_kept
+    assert env["LD_LIBRARY_PATH"].split(os.pathsep) == (searched if is_kept else ["/opt/middleware", "/opt/mine"])
 
 
 def test_an_unknown_package_or_executable_is_refused_with_what_there_is(tmp_path: Path, terminal: Terminal) -> None:
