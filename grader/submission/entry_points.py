@@ -61,14 +61,16 @@ def entry_points(files: Mapping[str, bytes]) -> list[EntryPoint]:
 def entry_points_of(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoint]:
     """Yield the executables that the package in the folder `root` installs, if their modules exist."""
     inside = {posixpath.relpath(name, root or "."): name for name in files if is_below(name, root)}
+    package = package_name(files, root)
     for line in (*_of_setup(files, root), *_of_configuration(files, root), *_of_pyproject(files, root)):
         if (match := _ENTRY.fullmatch(line)) and (file := _module_file(match["module"], inside)):
-            own = _package_name(files, root)
-            yield EntryPoint(match["name"], file, match["function"] or "main", match["module"], own)
-    yield from _of_cmake(files, root)
+            yield EntryPoint(match["name"], file, match["function"] or "main", match["module"], package)
+    for name, file in _of_cmake(files, root):
+        yield EntryPoint(name, file, "", "", package)
 
 
-def _package_name(files: Mapping[str, bytes], root: str) -> str:
+def package_name(files: Mapping[str, bytes], root: str) -> str:
+    """Return a package's name, from its package.xml; without one, the name of the folder `root`."""
     name = re.search(r"<name>\s*([\w-]+)\s*</name>", _text(files, root, "package.xml"))
     return name[1] if name else posixpath.basename(root)
 
@@ -162,10 +164,10 @@ def _of_pyproject(files: Mapping[str, bytes], root: str) -> Iterator[str]:
             yield f"{name} = {value}"
 
 
-def _of_cmake(files: Mapping[str, bytes], root: str) -> Iterator[EntryPoint]:
-    """Yield the scripts that `install(PROGRAMS …)` names."""
+def _of_cmake(files: Mapping[str, bytes], root: str) -> Iterator[tuple[str, str]]:
+    """Yield the name and the file of each script that `install(PROGRAMS …)` names."""
     for call in re.findall(r"install\s*\(\s*PROGRAMS([^)]*)\)", _text(files, root, "CMakeLists.txt"), re.IGNORECASE):
         for word in call.split():
             for file in (posixpath.join(root, word), posixpath.join(root, f"{word}.py")):  # see `named_by_content`
                 if file in files:
-                    yield EntryPoint(posixpath.basename(word), file, "", "", _package_name(files, root))
+                    yield posixpath.basename(word), file

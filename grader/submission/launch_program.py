@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from grader.exercise.data_files import DATA, data_files
 from grader.exercise.exercise import Exercise
 from grader.submission import packages
-from grader.submission.entry_points import entry_points_of, is_below, roots
+from grader.submission.entry_points import entry_points_of, is_below, package_name, roots
 from grader.submission.file_kinds import original_name
 from grader.submission.launch_files import LAUNCH_FILE
 from grader.submission.places import LAUNCHER
@@ -44,7 +44,9 @@ def launch_file_in(files: Mapping[str, bytes], exercise: Exercise) -> str:
     fitting = own or [name for name in every if name not in included] or every
     if not fitting:
         there = ", ".join(sorted(files)[:5])
-        raise Unreadable(f"There is no launch file in it. It holds: {there}. Call it {exercise.file_name}.")
+        raise Unreadable(
+            f"There is no launch file among the files handed in: {there}. Name the launch file {exercise.file_name}."
+        )
     if len({files[name] for name in fitting}) > 1:
         names = ", ".join(fitting)
         raise AmbiguousProgram(f"There are {len(fitting)} launch files in it, and they differ: {names}. Which counts?")
@@ -71,7 +73,7 @@ def _packages(files: Mapping[str, bytes], otherwise: str) -> dict[str, str]:
 
     Python files that are in no package are executables of the folder that they are in, or at the top of `otherwise`.
     """
-    folders = {_name(root, files) or otherwise: root for root in roots(files)}
+    folders = {package_name(files, root) or otherwise: root for root in roots(files)}
     executables = {name: dict(_of_package(root, files)) for name, root in folders.items()}
     for file in packages.programs(files):
         if not any(is_below(file, root) for root in folders.values()):
@@ -84,11 +86,6 @@ def _packages(files: Mapping[str, bytes], otherwise: str) -> dict[str, str]:
         name: f"UnbuiltPackage({folder!r}, {{{', '.join(f'{k!r}: {v}' for k, v in executables[name].items())}}})"
         for name, folder in folders.items()
     }
-
-
-def _name(root: str, files: Mapping[str, bytes]) -> str:
-    manifest = packages.PACKAGE_NAME.search(files.get(posixpath.join(root, "package.xml"), b""))
-    return manifest[1].decode() if manifest else posixpath.basename(root)
 
 
 def _of_package(root: str, files: Mapping[str, bytes]) -> Iterator[tuple[str, str]]:

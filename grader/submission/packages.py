@@ -13,11 +13,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from grader.submission import python_code
-from grader.submission.entry_points import is_below, roots
+from grader.submission.entry_points import is_below, package_name, roots
 from grader.submission.file_kinds import kind_of
 from grader.submission.places import LAUNCHER
 
-PACKAGE_NAME = re.compile(rb"<name>\s*([\w-]+)\s*</name>")
 #: Python files that are never the student's program.
 _NOT_PROGRAMS = re.compile(r"(?:setup|conftest|__init__|test_\w*|\w*_test|\w*[._]launch)\.py", re.IGNORECASE)
 
@@ -145,13 +144,12 @@ def packages_of_messages(source: str, files: Mapping[str, bytes]) -> set[str]:
 
 def own_interfaces(files: Mapping[str, bytes]) -> set[str]:
     """Return the packages that define messages, services or actions."""
-    found = set()
-    for root in roots(files):
-        manifest = PACKAGE_NAME.search(files.get(posixpath.join(root, "package.xml"), b""))
-        kinds = [name for name in files if is_below(name, root) and re.search(r"\.(msg|srv|action)$", name)]
-        if manifest and kinds:
-            found.add(manifest[1].decode())
-    return found
+    interfaces = [name for name in files if re.search(r"\.(msg|srv|action)$", name)]
+    return {
+        package_name(files, root)
+        for root in roots(files)
+        if posixpath.join(root, "package.xml") in files and any(is_below(name, root) for name in interfaces)
+    }
 
 
 def is_installed(package: str) -> bool:
