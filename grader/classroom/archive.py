@@ -24,6 +24,7 @@ from grader.submission.reader import MOST_BYTES
 #: Created by operating systems, editors and Python, never by a student.
 NOISE = {"__MACOSX", "__pycache__", "Thumbs.db", "desktop.ini"}
 WHY_NOISE = "made by a program, not handed in"
+ENCRYPTED = "it is encrypted. Unpack the zip file with its password, and give the folder."
 
 #: Enough for a thousand students with 20 files each.
 MOST_FILES = 20_000
@@ -69,7 +70,10 @@ def _time(seconds: float, source: str) -> Time:
 
 @dataclass(frozen=True)
 class _Entry:
-    """One entry of an archive. `load` reads at most so many bytes; `is_link` is for symbolic links."""
+    """One entry of an archive.
+
+    `load` returns its content, at most as many bytes as its argument says. `is_link` is whether it is a symbolic link.
+    """
 
     name: str
     load: Callable[[int], bytes]
@@ -123,6 +127,7 @@ def _too_large(archive: Path) -> str:
 
 def _entries(archive: Path) -> Iterator[_Entry]:
     """Yield an archive's files and links, those of a zip sorted by name."""
+    start = b""
     try:
         with archive.open("rb") as file:
             start = file.read(262)
@@ -148,7 +153,7 @@ def _of_zip(archive: Path) -> Iterator[_Entry]:
     with zipfile.ZipFile(archive) as opened:
         for entry in sorted(opened.infolist(), key=_name):
             if not entry.is_dir():
-                fault = "it is encrypted. Was the download cut off?" if entry.flag_bits & 1 else ""
+                fault = ENCRYPTED if entry.flag_bits & 1 else ""
                 is_link = stat.S_ISLNK(entry.external_attr >> 16)
                 yield _Entry(_name(entry), partial(_of_zip_entry, opened, entry), _entry_date(entry), is_link, fault)
 
@@ -160,19 +165,16 @@ def _of_zip_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most: int) -
 
 def _of_tar(archive: Path, start: bytes) -> Iterator[_Entry]:
     """Yield a tar's entries in their order, as a compressed file can't be read backwards quickly."""
-    with (
-        archive.open("rb") as file,
-        tarfile.open(
-            fileobj=cast("IO[bytes]", bounded := _Bounded(archive, decompressed(file, start))), mode="r|"
-        ) as tar,
-    ):
-        for entry in _whole(tar, bounded):
-            if entry.isdir():
-                continue
-            is_file = entry.isfile()
-            fault = "" if is_file or entry.issym() else "it is a hard link or a device in the archive, not a file"
-            time = _time(entry.mtime, "the tar file") if is_file else UNKNOWN
-            yield _Entry(_path(entry.name), partial(_of_tar_entry, tar, entry), time, entry.issym(), fault)
+    with archive.open("rb") as file:
+        bounded = _Bounded(archive, decompressed(file, start))
+        with tarfile.open(fileobj=cast("IO[bytes]", bounded), mode="r|") as tar:
+            for entry in _whole(tar, bounded):
+                if entry.isdir():
+                    continue
+                is_file = entry.isfile()
+                fault = "" if is_file or entry.issym() else "it is a hard link or a device in the archive, not a file"
+                time = _time(entry.mtime, "the tar file") if is_file else UNKNOWN
+                yield _Entry(_path(entry.name), partial(_of_tar_entry, tar, entry), time, entry.issym(), fault)
 
 
 def _of_tar_entry(archive: tarfile.TarFile, entry: tarfile.TarInfo, most: int) -> bytes:

@@ -264,7 +264,7 @@ def test_links_and_encrypted_files_in_a_zip_are_named_and_have_a_row(tmp_path: P
     assert list(files(collected)) == ["fine", "link"]
     assert "symbolic link" in read(str(collected.handed_in[1].file.path), load(ROOT / "exercises" / EXERCISE)).problem
     assert [str(question) for question in collected.questions] == [
-        "secret handed in secret.py: it is encrypted. Was the download cut off?"
+        "secret handed in secret.py: it is encrypted. Unpack the zip file with its password, and give the folder."
     ]
 
 
@@ -282,6 +282,11 @@ def test_a_bomb_in_a_zip_is_cut_off_and_judged_too_large(tmp_path: Path) -> None
     collected = taken(source, tmp_path)
     (bomb,) = collected.handed_in
     assert bomb.file.path.stat().st_size < 31_000_000
+
+
+def test_a_folder_in_place_of_an_archive_is_reported(tmp_path: Path) -> None:
+    with pytest.raises(SubmissionsError, match=r"it is not a valid zip file: .*Is a directory"):
+        list(unpacked(tmp_path, tmp_path))
 
 
 def test_a_zip_of_too_many_files_is_refused(tmp_path: Path) -> None:
