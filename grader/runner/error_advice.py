@@ -118,9 +118,10 @@ def _of_newer_ros(last: LastError, sources: Mapping[str, str]) -> str:
 
 def _before_init(last: LastError, sources: Mapping[str, str]) -> str:
     """Explain what rclpy misses in a Node whose own __init__ was not called, or is called only later."""
-    if last.raised_there or not re.search(r"AttributeError: '\w+' object has no attribute '_\w+'", last.error):
+    missing = re.search(r"AttributeError: '(\w+)' object has no attribute '_\w+'", last.error)
+    if last.raised_there or not missing:
         return ""
-    own = re.search(r"^\s*class \w+\(.*\bNode\b.*\):", sources.get(last.file, ""), re.MULTILINE)
+    own = re.search(rf"^\s*class {missing[1]}\(.*Node\b.*\):", sources.get(last.file, ""), re.MULTILINE)
     return "Begin __init__ with super().__init__('name'): that makes the node." if own else ""
 
 

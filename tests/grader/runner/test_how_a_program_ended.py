@@ -282,6 +282,13 @@ def test_advice_names_what_the_student_can_change(log: str, source: str, advice:
     assert advice in of_exit(ProcessExit(1, None, None), log, {"turnstile.py": source})[0]
 
 
+def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_its_init() -> None:
+    log = raised(12, "AttributeError: 'Coin' object has no attribute '_value'", '  File "coins.py", line 3, in value')
+    sources = {"turnstile.py": f"class Coin(Money): ...\n\n{NODE}"}
+
+    assert "super().__init__" not in of_exit(ProcessExit(1, None, None), log, sources)[0]
+
+
 @pytest.mark.parametrize(
     ("error", "advice"),
     [
