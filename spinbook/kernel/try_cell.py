@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import tempfile
 import time
@@ -135,6 +136,12 @@ def robot_of(recording: Recording) -> tuple[bytes | None, str]:
     texts = [item.fields["data"] for item in recording.received if item.topic.endswith("/robot_description")]
     for text in reversed(texts):
         with contextlib.suppress(urdf.InvalidUrdf):
-            robot = urdf.read(str(text))
-            return still.as_png(robot, {}), drawing.in_words(robot, {})
+            return _drawn(str(text))
     return None, ""
+
+
+@functools.lru_cache(maxsize=1)
+def _drawn(text: str) -> tuple[bytes, str]:
+    """Return the robot as a PNG and in words. Raises InvalidUrdf."""
+    robot = urdf.read(text)
+    return still.as_png(robot, {}), drawing.in_words(robot, {})
