@@ -12,6 +12,7 @@ from grader.classroom.tables import BYTE_ORDER_MARK
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.loading import load
 from groundwork.files import write_if_changed
+from groundwork.words import counted
 from spinbook.chapter.classify import CellKind
 from spinbook.chapters import read_all
 from spinbook.course.course import Course, find_course
@@ -47,8 +48,7 @@ def gradebook(results: Path, start: Path) -> None:
     rows = course_rows(exercises)
     write_if_changed(results / "index.html", course_page(course.title, exercises, rows), durable=True)
     write_if_changed(results / "gradebook.csv", BYTE_ORDER_MARK + course_csv(exercises, rows), durable=True)
-    students = "1 student" if len(rows) == 1 else f"{len(rows)} students"
-    click.echo(f"{students}, exercises: {', '.join(exercise.name for exercise in exercises)}.")
+    click.echo(f"{counted(len(rows), 'student')}, exercises: {', '.join(exercise.name for exercise in exercises)}.")
     click.echo(f"Open {results / 'index.html'}.")
 
 

@@ -20,6 +20,7 @@ from grader.audit.result import Audit, AuditProblem, Fate, MutantResult, RuleRes
 from grader.report.pages import render
 from grader.report.printable import printable
 from groundwork.files import write_if_changed
+from groundwork.words import counted
 
 
 def show(audit: Audit, console: Console) -> None:
@@ -139,7 +140,7 @@ def _show_score(audit: Audit, console: Console) -> None:
     if audit.mutants:
         console.print(Text(_score(audit), style="bold"))
     many = len(audit.problems)
-    verdict = "nothing to fix" if not many else f"{many} thing{'s' if many > 1 else ''} to fix"
+    verdict = f"{counted(many, 'thing')} to fix" if many else "nothing to fix"
     console.print(Text(verdict, style="bold red" if many else "bold green"))
     console.print(
         Text(f"{audit.seconds:.0f} s; {audit.made} tried, {audit.kept} reused from earlier runs", style="dim")

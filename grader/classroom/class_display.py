@@ -13,6 +13,7 @@ from grader.classroom.formats.moodle import unknown_to_moodle
 from grader.classroom.submissions import Submissions
 from grader.grading.grade import Entry, Skipped
 from grader.report.printable import printable
+from groundwork.words import counted
 
 #: At most this many skipped files are named per reason; the overview page names all of them.
 MOST_NAMED = 5
@@ -21,12 +22,6 @@ MOST_NAMED = 5
 def say(console: Console, text: str, style: str = "") -> None:
     """Print a line, without control sequences that a terminal would obey."""
     console.print(Text(printable(text), style=style), soft_wrap=True)
-
-
-def counted(number: int, what: str) -> str:
-    """Return `1 student` or `2 students`, `1 entry` or `2 entries`."""
-    plural = f"{what[:-1]}ies" if what.endswith("y") else f"{what}s"
-    return f"{number} {what if number == 1 else plural}"
 
 
 def show_submissions(console: Console, collected: Submissions) -> None:

@@ -23,6 +23,7 @@ from grader.classroom.submissions import File, Question, StudentSubmission, Subm
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Skipped, Student
 from grader.submission.file_kinds import can_be_read, kind_of, kind_of_content
+from groundwork.words import counted
 
 KINDS = "not one of .py, .ipynb, .zip"
 
@@ -278,4 +279,4 @@ def _notes(handed_in: Sequence[StudentSubmission]) -> list[str]:
     for one in handed_in:
         if one.file.time.note:
             count[f"{one.file.time.source}: {one.file.time.note}"] += 1
-    return [f"{note}, for {number} student{'s' if number > 1 else ''}" for note, number in count.items()]
+    return [f"{note}, for {counted(number, 'student')}" for note, number in count.items()]

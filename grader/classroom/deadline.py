@@ -16,6 +16,7 @@ from grader.classroom.tables import table_rows
 from grader.classroom.times import later, localized, moment, units_begun, zone_named
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.grading.grade import Adjustment, Entry
+from groundwork.words import counted
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -256,5 +257,5 @@ def lateness(due: datetime, submitted: datetime, zone: tzinfo | None) -> str:
     minutes = -((later(due, days * UNITS["day"], zone) - submitted) // UNITS["minute"])
     hours, minutes = divmod(minutes, 60)
     if days:
-        return f"{days} day{'s' if days > 1 else ''} {hours} h"
+        return f"{counted(days, 'day')} {hours} h"
     return f"{hours} h {minutes} min" if hours else f"{minutes} min"

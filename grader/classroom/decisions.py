@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 from rich.console import Console
 
-from grader.classroom.class_display import counted, say
+from grader.classroom.class_display import say
 from grader.classroom.deadline import Adjuster
 from grader.classroom.submissions import File, StudentSubmission, Submissions, Unclear
 from grader.submission.submission import Submission
+from groundwork.words import counted
 
 
 @dataclass(frozen=True)

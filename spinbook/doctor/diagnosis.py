@@ -20,6 +20,7 @@ from rich.text import Text
 
 from groundwork.child_process import run_program
 from groundwork.clean_environment import GUARD, ignored, module_command
+from groundwork.words import counted
 from spinbook.update.handout import BASE
 
 
@@ -108,7 +109,7 @@ def _summary(findings: Sequence[MachineFinding]) -> str:
     works = "Notebooks and checks work here" if in_handout() else "Courses can be built and graded here"
     missing_count = sum(finding.state is State.MISSING for finding in findings)
     warnings = sum(finding.state is State.WARNING for finding in findings)
-    also = f" ({warnings} {'warning' if warnings == 1 else 'warnings'})" if warnings else ""
+    also = f" ({counted(warnings, 'warning')})" if warnings else ""
     if missing_count:
         return f"Fix every ✗ before you {does} here. Failed: {missing_count} of {len(findings)}{also}."
     return f"{works}{also}."

@@ -20,6 +20,7 @@ from sphinx.util import logging
 from sphinx.writers.html5 import HTML5Translator
 
 from groundwork.files import write_if_changed
+from groundwork.words import counted
 from spinbook.site.command_lexer import CommandLexer
 from spinbook.site.glossary import define_terms
 from spinbook.site.guesses import AskGuesses
@@ -96,8 +97,7 @@ def _size(file: Path) -> tuple[int, int]:
 
 def _sized(tag: str, folder: Path, app: Sphinx) -> str:
     source = _SOURCE.search(tag)
-    if source is None or " width=" in tag or 'class="still"' in tag:
-        # A picture that is only printed must not load lazily: it would be missing in print.
+    if source is None or " width=" in tag:
         return tag
     # Sphinx copies pictures after it has written the pages, but already knows their new names.
     name = Path(source.group(1)).name
@@ -243,7 +243,7 @@ def _changes(lines: list[int]) -> Iterator[str]:
     """Yield what the marks at the lines of a changed program mean, for a page's head."""
     if lines:
         where = f'<span class="hidden-text">: {", ".join(map(str, lines))}</span>'
-        yield f'<span class="hll">{len(lines)} {"lines" if len(lines) > 1 else "line"} changed</span>{where}'
+        yield f'<span class="hll">{counted(len(lines), "line")} changed</span>{where}'
 
 
 def _pictures(output: nodes.container, alts: list[str], stills: list[str]) -> None:
@@ -265,7 +265,7 @@ def _add_still(image: nodes.image, still: str) -> None:
     """Add the still picture after the image. Style sheets show one of the two."""
     image["classes"].append("moving")
     alt = escape(image["alt"])
-    shown = nodes.raw("", f'<img class="still" loading="lazy" src="../{escape(still)}" alt="{alt}">', format="html")
+    shown = nodes.raw("", f'<img class="still" src="../{escape(still)}" alt="{alt}">', format="html")
     image.parent.insert(image.parent.index(image) + 1, shown)
 
 

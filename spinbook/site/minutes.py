@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
+from groundwork.words import counted
 from spinbook.chapter.chapter import Chapter
 from spinbook.chapter.classify import CellKind
 
@@ -26,12 +26,8 @@ def chapter_facts(chapter: Chapter) -> list[str]:
     """Return what a reader wants to know first, such as: Week 3, 3 hours, 13 nodes, 3 exercises."""
     week = [f"Week {chapter.week}"] if chapter.week else []
     exercises = [cell for cell in chapter.cells if cell.kind is CellKind.EXERCISE]
-    counted = _count(list(chapter.nodes), "node") + _count(exercises, "exercise")
-    return [*week, _duration(chapter), *counted]
-
-
-def _count(things: Sequence[object], name: str) -> list[str]:
-    return [f"{len(things)} {name}{'s' if len(things) > 1 else ''}"] if things else []
+    numbers = ((len(list(chapter.nodes)), "node"), (len(exercises), "exercise"))
+    return [*week, _duration(chapter), *(counted(number, name) for number, name in numbers if number)]
 
 
 def _duration(chapter: Chapter) -> str:
@@ -41,5 +37,4 @@ def _duration(chapter: Chapter) -> str:
         hours = f"{halves // 2 or ''}{'½' if halves % 2 else ''}"
         return f"{total} minutes" if total < 60 else f"{hours} hour{'s' if halves > 2 else ''}"
     words = sum(len(cell.source.split()) for cell in chapter.cells if cell.kind is CellKind.PROSE)
-    minutes = max(1, round(words / WORDS_PER_MINUTE))
-    return f"About {minutes} minute{'s' if minutes > 1 else ''} to read"
+    return f"About {counted(max(1, round(words / WORDS_PER_MINUTE)), 'minute')} to read"

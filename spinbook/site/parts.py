@@ -12,6 +12,7 @@ from html import escape
 
 from docutils import nodes
 
+from groundwork.words import counted
 from spinbook.site.minutes import WORDS_PER_MINUTE
 
 #: A part takes no longer than this, unless one subsection alone does (minutes).
@@ -92,8 +93,7 @@ def _title(section: nodes.section) -> str:
 
 
 def _about(part: list[TimedSection]) -> str:
-    minutes = max(1, round(_minutes(part)))
-    return f"{minutes} minute{'s' if minutes > 1 else ''}"
+    return counted(max(1, round(_minutes(part))), "minute")
 
 
 def _numbers(parts: list[list[TimedSection]]) -> str:

@@ -332,7 +332,7 @@ def test_what_moves_stands_still_on_paper_and_for_those_who_prefer_no_motion(
         shown.page.emulate_media(media="print", reduced_motion="no-preference")
         expect(moving).to_be_hidden()
         expect(still).to_be_visible()
-        assert still.evaluate("image => image.complete && image.naturalWidth > 42")
+        assert still.evaluate("image => image.complete && image.naturalWidth > 42 && image.loading") == "lazy"
         assert shown.faults == []
 
 
