@@ -112,8 +112,8 @@ def _of_mistake(
         text = f"{subject} {costs}, more than {DEAREST:g} times the {points:g} of its rules"
         fix = (
             "Let fewer checks depend on what it fails, or let checks judge only their own rule. If nothing else can be "
+            "judged without it, write “Costs more:” and why in its section."
         )
-        fix += "judged without it, write “Costs more:” and why in its section."
         yield AuditProblem(file, line, text, fix, about=broken.name)
     if best and poor:
         text = f"{subject} gets {broken.score:g} points, fewer than {best.score:g} for {best.title}"

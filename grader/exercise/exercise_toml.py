@@ -259,7 +259,7 @@ def programs(entries: dict[str, Any], file: Path) -> tuple[ProgramFile, ...]:
 
 
 def nodes(top: TomlTable, several: bool) -> tuple[str, ...]:
-    """Return the nodes that a launch file must start; () if the submission is no launch file.
+    """Return the nodes that a launch file must start; empty if the submission is not a launch file.
 
     `several` is whether there are tables of programs.
     """

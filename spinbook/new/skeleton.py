@@ -104,7 +104,7 @@ class _Callback:
 
 
 def skeleton(exercise: Exercise) -> str:
-    """Return the text of a solution.py with the exercise's interface; with several programs, each with its part.
+    """Return the text of a solution with the exercise's interface: a program, several, or a launch file.
 
     exercise.toml does not say which of several programs has which topic: comments then list them for the author.
     """
