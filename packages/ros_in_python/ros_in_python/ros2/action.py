@@ -8,20 +8,15 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ros_in_python.ros2 import interfaces
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry, StopSignal, discovery_options, held_back
-from ros_in_python.ros2.opening import open_graph
+from ros_in_python.ros2.cli import CommandError, Menu, StopSignal, held_back, show_names
+from ros_in_python.ros2.names import absolute, seen
+from ros_in_python.ros2.opening import with_graph
 
 if TYPE_CHECKING:
-    from ros_in_python.ros2.graph import GraphView, TypedName
+    from ros_in_python.ros2.graph import GraphView
 
 action = Menu(
     name="action",
-    entries={
-        "info": MenuEntry("ros_in_python.ros2.action:info", "The clients and servers of an action."),
-        "list": MenuEntry("ros_in_python.ros2.action:list_", "All actions."),
-        "send_goal": MenuEntry("ros_in_python.ros2.action:send_goal", "Send a goal and print its result."),
-        "type": MenuEntry("ros_in_python.ros2.action:type_", "The type of an action."),
-    },
     help="""List actions, send a goal to one.
 
     \b
@@ -34,74 +29,59 @@ action = Menu(
 CANCELLING = 2.0
 
 
-@click.command(name="list", context_settings=CONTEXT)
+@action.command(name="list")
 @click.option("-t", "--show-types", is_flag=True, help="Show each action's type too.")
 @click.option("-c", "--count-actions", is_flag=True, help="Print only the number.")
-@discovery_options
-def list_(show_types: bool, count_actions: bool, spin_time: float | None, use_sim_time: bool) -> None:
+@with_graph
+def list_(graph: GraphView, show_types: bool, count_actions: bool) -> None:
     """All actions.
 
     \b
       ros2 action list -t
       /fibonacci [test_msgs/action/Fibonacci]
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        graph.settle()
-        actions = _actions(graph)
-    if count_actions:
-        click.echo(str(len(actions)))
-        return
-    for found in actions:
-        click.echo(str(found) if show_types else found.name)
+    graph.settle()
+    actions = graph.actions()
+    show_names([str(found) if show_types else found.name for found in actions], count_actions)
 
 
-@click.command(name="type", context_settings=CONTEXT)
+@action.command(name="type")
 @click.argument("action_name")
-@discovery_options
-def type_(action_name: str, spin_time: float | None, use_sim_time: bool) -> None:
+@with_graph
+def type_(graph: GraphView, action_name: str) -> None:
     """The type of an action.
 
     \b
       ros2 action type /fibonacci
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        from ros_in_python.ros2.graph import absolute, seen
-
-        name = absolute(action_name, "action")
-        graph.settle(lambda: any(found.name == name for found in _actions(graph)))
-        actions = _actions(graph)
+    name = absolute(action_name, "action")
+    graph.settle(lambda: any(found.name == name for found in graph.actions()))
+    actions = graph.actions()
     types = [kind for found in actions if found.name == name for kind in found.types]
     if not types:
         raise CommandError(f"Unknown action '{action_name}'", seen("Actions", (found.name for found in actions)))
-    for kind in types:
-        click.echo(kind)
+    show_names(types, only_count=False)
 
 
-@click.command(context_settings=CONTEXT)
+@action.command()
 @click.argument("action_name")
 @click.option("-t", "--show-types", is_flag=True, help="Show the type each node uses too.")
 @click.option("-c", "--count", is_flag=True, help="Print only the number.")
-@discovery_options
-def info(action_name: str, show_types: bool, count: bool, spin_time: float | None, use_sim_time: bool) -> None:
+@with_graph
+def info(graph: GraphView, action_name: str, show_types: bool, count: bool) -> None:
     """The clients and servers of an action.
 
     \b
       ros2 action info /fibonacci
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        from rclpy.action import (
-            get_action_client_names_and_types_by_node,
-            get_action_server_names_and_types_by_node,
-        )
+    from rclpy.action import get_action_client_names_and_types_by_node, get_action_server_names_and_types_by_node
 
-        from ros_in_python.ros2.graph import absolute
-
-        name = absolute(action_name, "action")
-        graph.settle(lambda: any(found.name == name for found in _actions(graph)))
-        ends = {
-            "clients": _nodes_with(graph, name, get_action_client_names_and_types_by_node),
-            "servers": _nodes_with(graph, name, get_action_server_names_and_types_by_node),
-        }
+    name = absolute(action_name, "action")
+    graph.settle(lambda: any(found.name == name for found in graph.actions()))
+    ends = {
+        "clients": _nodes_with(graph, name, get_action_client_names_and_types_by_node),
+        "servers": _nodes_with(graph, name, get_action_server_names_and_types_by_node),
+    }
     click.echo(f"Action: {action_name}")
     for what, nodes in ends.items():
         click.echo(f"Action {what}: {len(nodes)}")
@@ -109,56 +89,52 @@ def info(action_name: str, show_types: bool, count: bool, spin_time: float | Non
             click.echo(f"    {node_name} [{', '.join(types)}]" if show_types else f"    {node_name}")
 
 
-@click.command(name="send_goal", context_settings=CONTEXT)
+@action.command(name="send_goal")
 @click.argument("action_name")
 @click.argument("action_type")
 @click.argument("goal", default="{}")
 @click.option("-f", "--feedback", is_flag=True, help="Print the feedback on the way.")
-@discovery_options
-def send_goal(
-    action_name: str, action_type: str, goal: str, feedback: bool, spin_time: float | None, use_sim_time: bool
-) -> None:
+@with_graph
+def send_goal(graph: GraphView, action_name: str, action_type: str, goal: str, feedback: bool) -> None:
     """Send a goal given in YAML and print its result; Ctrl-C cancels it.
 
     \b
       ros2 action send_goal --feedback /fibonacci test_msgs/action/Fibonacci '{order: 5}'
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        from rclpy.action import ActionClient
+    from rclpy.action import ActionClient
 
-        from ros_in_python.ros2.graph import absolute
-        from ros_in_python.ros2.messages import fill, read_values, to_yaml
+    from ros_in_python.ros2.messages import fill, read_values, to_yaml
 
-        kind = interfaces.action_class(action_type)
-        message = kind.Goal()
-        fill(message, read_values(goal, "goal"))
-        name = absolute(action_name, "action")
-        news = _News()
-        if feedback:
-            # The client's own call-back for feedback is dropped as soon as the result has come, with what is under way.
-            graph.node.create_subscription(kind.Impl.FeedbackMessage, f"{name}/_action/feedback", news.on_feedback, 10)
-        client = ActionClient(graph.node, kind, name)
-        print("Waiting for an action server to become available...", flush=True)
-        _wait_for_server(graph, client, name, interfaces.full_name(action_type, "action"))
-        print(f"Sending goal:\n     {to_yaml(message)}", flush=True)
+    kind = interfaces.action_class(action_type)
+    message = kind.Goal()
+    fill(message, read_values(goal, "goal"))
+    name = absolute(action_name, "action")
+    news = _News()
+    if feedback:
+        # The client's own call-back for feedback is dropped as soon as the result has come, with what is under way.
+        graph.node.create_subscription(kind.Impl.FeedbackMessage, f"{name}/_action/feedback", news.on_feedback, 10)
+    client = ActionClient(graph.node, kind, name)
+    print("Waiting for an action server to become available...", flush=True)
+    _wait_for_server(graph, client, name, interfaces.full_name(action_type, "action"))
+    print(f"Sending goal:\n     {to_yaml(message)}", flush=True)
 
-        sent = client.send_goal_async(message, goal_uuid=news.goal_id)
-        try:
-            handle = _done(graph, sent, "sending goal")
-            if not handle.accepted:
-                print("Goal was rejected.", flush=True)
-                return
-            print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
-            news.print_from_now_on()
-            with held_back():
-                result = handle.get_result_async()
-            answer = _done(graph, result, "getting result")
-            graph.spin_arrived()
-        except StopSignal:
-            _cancel(graph, sent)
-            raise
-        print(f"Result:\n    {to_yaml(answer.result)}", flush=True)
-        print(f"Goal finished with status: {_status(answer.status)}", flush=True)
+    sent = client.send_goal_async(message, goal_uuid=news.goal_id)
+    try:
+        handle = _done(graph, sent, "sending goal")
+        if not handle.accepted:
+            print("Goal was rejected.", flush=True)
+            return
+        print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
+        news.print_from_now_on()
+        with held_back():
+            result = handle.get_result_async()
+        answer = _done(graph, result, "getting result")
+        graph.spin_arrived()
+    except StopSignal:
+        _cancel(graph, sent)
+        raise
+    print(f"Result:\n    {to_yaml(answer.result)}", flush=True)
+    print(f"Goal finished with status: {_status(answer.status)}", flush=True)
 
 
 class _News:
@@ -202,7 +178,7 @@ def _wait_for_server(graph: GraphView, client: Any, name: str, wanted: str) -> N
     def ready_or_never() -> bool:
         if client.server_is_ready():
             return True
-        others = [kind for found in _actions(graph) if found.name == name for kind in found.types if kind != wanted]
+        others = [kind for found in graph.actions() if found.name == name for kind in found.types if kind != wanted]
         if others:
             raise CommandError(f"The action '{name}' is of type {' or '.join(others)}, not {wanted}.")
         return False
@@ -236,14 +212,6 @@ def _status(number: int) -> str:
 
     names = ("ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
     return next((name for name in names if getattr(GoalStatus, f"STATUS_{name}") == number), "UNKNOWN")
-
-
-def _actions(graph: GraphView) -> list[TypedName]:
-    from rclpy.action import get_action_names_and_types
-
-    from ros_in_python.ros2.graph import TypedName
-
-    return [TypedName(name, tuple(types)) for name, types in get_action_names_and_types(graph.node)]
 
 
 def _nodes_with(graph: GraphView, action_name: str, ask: Any) -> list[tuple[str, list[str]]]:

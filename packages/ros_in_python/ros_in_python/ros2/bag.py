@@ -11,7 +11,8 @@ import click
 
 from ros_in_python.ros2 import cli, interfaces
 from ros_in_python.ros2.bag_storage import duration_of, know_type, message_types, reading, stored_files, writing
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry
+from ros_in_python.ros2.cli import CommandError, Menu
+from ros_in_python.ros2.names import absolute
 from ros_in_python.ros2.opening import open_graph
 
 if TYPE_CHECKING:
@@ -24,11 +25,6 @@ LOOK_AGAIN = 0.5
 
 bag = Menu(
     name="bag",
-    entries={
-        "info": MenuEntry("ros_in_python.ros2.bag:info", "What is in a bag."),
-        "play": MenuEntry("ros_in_python.ros2.bag:play", "Publish what a bag holds."),
-        "record": MenuEntry("ros_in_python.ros2.bag:record", "Write messages into a bag until Ctrl-C."),
-    },
     help="""Record topics into a file, and play them again.
 
     \b
@@ -39,7 +35,7 @@ bag = Menu(
 )
 
 
-@click.command(context_settings=CONTEXT)
+@bag.command()
 @click.argument("topics", nargs=-1)
 @click.option("-a", "--all", "all_topics", is_flag=True, help="Record every topic.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The bag's folder.  [default: rosbag2_DATE]")
@@ -58,8 +54,6 @@ def record(topics: tuple[str, ...], all_topics: bool, output: Path | None, stora
     if folder.exists():
         raise CommandError(f"[ERROR] [ros2bag]: Output folder '{folder}' already exists.", "Name another one: -o NAME")
     with open_graph(use_sim_time=use_sim_time) as graph, writing(folder, storage) as writer:
-        from ros_in_python.ros2.graph import absolute
-
         recording = _Recording(graph, writer, {absolute(topic) for topic in topics})
         click.echo("Recording... Press Ctrl-C to stop.")
         try:
@@ -105,7 +99,7 @@ class _Recording:
         click.echo(f"Subscribed to topic '{topic}'")
 
 
-@click.command(context_settings=CONTEXT)
+@bag.command()
 @click.argument("bag_path", type=click.Path(path_type=Path))
 @click.option("-r", "--rate", type=click.FloatRange(min=0, min_open=True), default=1.0, help="How fast to play it.")
 @click.option("-l", "--loop", is_flag=True, help="Begin again at the end, until Ctrl-C.")
@@ -138,7 +132,7 @@ def play(bag_path: Path, rate: float, loop: bool, topics: tuple[str, ...]) -> No
                 return
 
 
-@click.command(context_settings=CONTEXT)
+@bag.command()
 @click.argument("bag_path", type=click.Path(path_type=Path))
 def info(bag_path: Path) -> None:
     """What is in a bag.

@@ -7,7 +7,7 @@ import importlib
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import FrameType
@@ -29,11 +29,11 @@ class MenuEntry:
 
 
 class Menu(click.Group):
-    """A group whose help lists its entries without importing any, and whose errors say what there is."""
+    """A group whose errors say what there is. Its help lists `entries`, which are elsewhere, without importing any."""
 
-    def __init__(self, *, entries: Mapping[str, MenuEntry], **attributes: Any) -> None:
+    def __init__(self, *, entries: Mapping[str, MenuEntry] | None = None, **attributes: Any) -> None:
         super().__init__(context_settings=CONTEXT, **attributes)
-        self.entries = entries
+        self.entries = entries or {}
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         if not args and not ctx.resilient_parsing:
@@ -43,11 +43,11 @@ class Menu(click.Group):
         return super().parse_args(ctx, args)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return list(self.entries)
+        return sorted([*self.entries, *self.commands])
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in self.entries:
-            return None
+            return super().get_command(ctx, cmd_name)
         module, _, name = self.entries[cmd_name].place.partition(":")
         command = getattr(importlib.import_module(module), name)
         assert isinstance(command, click.Command)
@@ -55,21 +55,33 @@ class Menu(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
-            formatter.write_dl([(name, entry.help) for name, entry in self.entries.items()])
+            formatter.write_dl([(name, self._summary(name)) for name in self.list_commands(ctx)])
+
+    def _summary(self, name: str) -> str:
+        if name in self.entries:
+            return self.entries[name].help
+        return (self.commands[name].help or "").partition("\n")[0]
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        if args and not args[0].startswith("-") and args[0] not in self.entries:
-            close = difflib.get_close_matches(args[0], self.entries, n=1)
+        names = self.list_commands(ctx)
+        if args and not args[0].startswith("-") and args[0] not in names:
+            close = difflib.get_close_matches(args[0], names, n=1)
             meant = f" Did you mean '{close[0]}'?" if close else ""
             raise click.UsageError(
                 f"there is no '{ctx.command_path} {args[0]}' here.{meant}\n"
-                f"There is: {', '.join(self.entries)}.\n"
+                f"There is: {', '.join(names)}.\n"
                 "Other commands need a ROS 2 installation, whose own ros2 is then used by itself.",
                 ctx,
             )
         return super().resolve_command(ctx, args)
+
+
+def show_names(names: Sequence[str], only_count: bool) -> None:
+    """Print the names, one per line, or only how many there are."""
+    for line in [str(len(names))] if only_count else names:
+        click.echo(line)
 
 
 def discovery_options(command: F) -> F:

@@ -9,7 +9,7 @@ import click
 
 from interface_compiler.near import use_near
 from ros_in_python.ros2 import cli
-from ros_in_python.ros2.cli import CONTEXT, Menu, MenuEntry
+from ros_in_python.ros2.cli import Menu, MenuEntry
 from ros_in_python.ros2.executables import hand_over
 
 NOUNS = {
@@ -42,7 +42,7 @@ class Ros2(Menu):
             # A course's own types are known in its folder; nothing has to be sourced.
             use_near(Path.cwd())
         if not args or args[0] not in NOUNS:
-            self.entries = dict(sorted({**NOUNS, **_nouns_of_others()}.items()))
+            self.entries = {**NOUNS, **_nouns_of_others()}
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:
@@ -85,11 +85,6 @@ ros2 = Ros2(
 
 daemon = Menu(
     name="daemon",
-    entries={
-        "start": MenuEntry("ros_in_python.ros2.command:start", "Say that none is needed."),
-        "status": MenuEntry("ros_in_python.ros2.command:status", "Say that none is running."),
-        "stop": MenuEntry("ros_in_python.ros2.command:stop", "Say that none is running."),
-    },
     help="""The ROS 2 installation's ros2 keeps a daemon that remembers the graph. Here each call looks for itself.
 
     \b
@@ -100,7 +95,7 @@ daemon = Menu(
 _WHY = "(none is needed: each command looks at the graph itself, so there is nothing to restart)"
 
 
-@click.command(context_settings=CONTEXT)
+@daemon.command()
 def status() -> None:
     """Say that none is running.
 
@@ -110,7 +105,7 @@ def status() -> None:
     click.echo(f"The daemon is not running {_WHY}")
 
 
-@click.command(context_settings=CONTEXT)
+@daemon.command()
 def start() -> None:
     """Say that none is needed.
 
@@ -120,7 +115,7 @@ def start() -> None:
     click.echo(f"The daemon has not been started {_WHY}")
 
 
-@click.command(context_settings=CONTEXT)
+@daemon.command()
 def stop() -> None:
     """Say that none is running.
 

@@ -9,7 +9,7 @@ import click
 
 from ros_in_python.ros2.ament_cmake import cmake_files
 from ros_in_python.ros2.ament_python import Manifest, package_files
-from ros_in_python.ros2.cli import CONTEXT, CommandError
+from ros_in_python.ros2.cli import CommandError
 
 NODE = """\
 def main():
@@ -22,7 +22,7 @@ if __name__ == '__main__':
 
 
 @click.command(
-    context_settings={**CONTEXT, "ignore_unknown_options": True},
+    context_settings={"ignore_unknown_options": True},
     options_metavar="[--build-type TYPE] [--node-name NODE] [--library-name NAME] [--dependencies PACKAGE…]",
 )
 @click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="PACKAGE_NAME")

@@ -16,7 +16,7 @@ import click
 
 from interface_compiler import prefixes
 from ros_in_python.example_robots import EXAMPLES
-from ros_in_python.ros2.cli import CONTEXT, CommandError
+from ros_in_python.ros2.cli import CommandError
 from ros_in_python.ros2.opening import check_installed
 
 # The wheels' `.pth` file re-executes Python once with the wheels' libraries in LD_LIBRARY_PATH, and marks that with a
@@ -330,7 +330,7 @@ def _ours_all_the_same(arguments: Sequence[str]) -> bool:
     return bool(rest) and is_built_in(rest[0], prefixes.prefix_of(rest[0], prefixes.installed()))
 
 
-@click.command(context_settings={**CONTEXT, "ignore_unknown_options": True, "allow_interspersed_args": False})
+@click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
 @click.option("--prefix", metavar="COMMAND", help="A command to run the executable with, as in 'gdb --args'.")
 @click.argument("package_name")
 @click.argument("executable_name")

@@ -10,16 +10,14 @@ from types import TracebackType
 from typing import Any
 
 import rclpy
+from rclpy.action import get_action_names_and_types
 from rclpy.context import Context
-from rclpy.exceptions import InvalidServiceNameException, InvalidTopicNameException
 from rclpy.executors import SingleThreadedExecutor, TimeoutException
-from rclpy.expand_topic_name import expand_topic_name
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
-from rclpy.validate_full_topic_name import validate_full_topic_name
 
 from ros_in_python.ros2.cli import CommandError, held_back
 from ros_in_python.ros2.domain import domain_id, hears_other_hosts, participants
@@ -70,6 +68,11 @@ class TypedName:
 
     name: str
     types: tuple[str, ...]
+
+    @property
+    def hidden(self) -> bool:
+        """Whether it is not to be listed: a part of its name begins with an underscore."""
+        return topic_or_service_is_hidden(self.name)
 
     def __str__(self) -> str:
         return f"{self.name} [{', '.join(self.types)}]"
@@ -125,6 +128,10 @@ class GraphView:
             if name != own
         )
 
+    def node_names(self, include_hidden: bool) -> list[str]:
+        """Return the full names of `nodes`, of hidden ones only with `include_hidden`."""
+        return [node.full_name for node in self.nodes() if include_hidden or not node.hidden]
+
     def topics(self) -> list[TypedName]:
         """Return every topic that another node publishes or subscribes to, including hidden ones."""
         return [
@@ -148,6 +155,10 @@ class GraphView:
     def services(self) -> list[TypedName]:
         """Return every service, including hidden ones."""
         return [TypedName(name, tuple(types)) for name, types in self.node.get_service_names_and_types()]
+
+    def actions(self) -> list[TypedName]:
+        """Return every action, including hidden ones."""
+        return [TypedName(name, tuple(types)) for name, types in get_action_names_and_types(self.node)]
 
     def _others(self, ends: Iterable[TopicEndpointInfo]) -> list[TopicEndpointInfo]:
         own = self.node.get_name()
@@ -262,29 +273,3 @@ class GraphView:
                 return False
             self.spin_once()
         return True
-
-
-def absolute(name: str, what: str = "topic") -> str:
-    """Return the full name of a topic, service or action: `/chatter`. Raises `CommandError` if it is not valid."""
-    try:
-        full: str = expand_topic_name(name, "ros2", "/")
-        validate_full_topic_name(full)
-    except (InvalidTopicNameException, InvalidServiceNameException, ValueError) as error:
-        # The rest is a place in the C source of rcl.
-        reason = str(error).split("\n")[0].partition(", at /")[0]
-        raise CommandError(
-            f"'{name}' is not a valid name for a {what}: {reason}",
-            "A name has letters, digits and underscores, in parts divided by '/', as in /left_foot/pressure.",
-        ) from None
-    return full
-
-
-def absolute_node(name: str) -> str:
-    """Return the full name of a node: `joint_monitor` -> `/joint_monitor`."""
-    return name if name.startswith("/") else f"/{name}"
-
-
-def seen(what: str, names: Iterable[str]) -> str:
-    """Return a line that says which names there are instead: `Topics seen: /a, /b`."""
-    listed = ", ".join(sorted(set(names)))
-    return f"{what} seen: {listed or 'none'}. ROS_DOMAIN_ID must be the same in every terminal and notebook."

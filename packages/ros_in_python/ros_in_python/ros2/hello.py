@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ros_in_python.ros2.cli import CONTEXT, CommandError
+from ros_in_python.ros2.cli import CommandError
 from ros_in_python.ros2.multicast import GROUP, PORT, receiver
 from ros_in_python.ros2.opening import open_graph
 
@@ -58,7 +58,7 @@ def _rows(heard: Counter[str], period: float) -> list[str]:
     return [f"{'':<15} {name:<20} {count:<10}" for name, count in rows]
 
 
-@click.command(context_settings=CONTEXT)
+@click.command()
 @click.option("-t", "--topic", default="/canyouhearme", show_default=True, help="The topic on which they say hello.")
 @click.option("-ep", "--emit-period", type=_SECONDS, default=0.1, show_default=True, help="Seconds between two hellos.")
 @click.option(

@@ -13,7 +13,7 @@ from typing import Any, Literal
 import click
 
 from interface_compiler import prefixes, shipped
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry
+from ros_in_python.ros2.cli import CommandError, Menu
 
 DEFINITION_KINDS = ("msg", "srv", "action")
 
@@ -184,13 +184,6 @@ def _alike(full: str) -> str:
 
 interface = Menu(
     name="interface",
-    entries={
-        "list": MenuEntry("ros_in_python.ros2.interfaces:list_", "Every type installed here."),
-        "package": MenuEntry("ros_in_python.ros2.interfaces:package", "The types of one package."),
-        "packages": MenuEntry("ros_in_python.ros2.interfaces:packages", "The packages that have types."),
-        "proto": MenuEntry("ros_in_python.ros2.interfaces:proto", "A type's fields with defaults, to copy into pub."),
-        "show": MenuEntry("ros_in_python.ros2.interfaces:show", "The definition of a type."),
-    },
     help="""Show the fields of message, service and action types.
 
     \b
@@ -212,7 +205,7 @@ _only_srvs = click.option("-s", "--only-srvs", is_flag=True, help="Services.")
 _only_actions = click.option("-a", "--only-actions", is_flag=True, help="Actions.")
 
 
-@click.command(context_settings=CONTEXT)
+@interface.command()
 @click.argument("type_name", metavar="TYPE")
 @click.option("--all-comments", is_flag=True, help="Comments of nested types too.")
 @click.option("--no-comments", is_flag=True, help="No comments and no blank lines.")
@@ -232,7 +225,7 @@ def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
         click.echo(line)
 
 
-@click.command(name="list", context_settings=CONTEXT)
+@interface.command(name="list")
 @_only_msgs
 @_only_srvs
 @_only_actions
@@ -253,7 +246,7 @@ def list_(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
                     click.echo(f"    {package_name}/{name}")
 
 
-@click.command(context_settings=CONTEXT)
+@interface.command()
 @click.argument("package_name")
 @_only_msgs
 @_only_srvs
@@ -274,7 +267,7 @@ def package(package_name: str, only_msgs: bool, only_srvs: bool, only_actions: b
             click.echo(f"{package_name}/{name}")
 
 
-@click.command(context_settings=CONTEXT)
+@interface.command()
 @_only_msgs
 @_only_srvs
 @_only_actions
@@ -290,7 +283,7 @@ def packages(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
             click.echo(package_name)
 
 
-@click.command(context_settings=CONTEXT)
+@interface.command()
 @click.argument("type_name", metavar="TYPE")
 @click.option("--no-quotes", is_flag=True, help="Without the quotes around it.")
 def proto(type_name: str, no_quotes: bool) -> None:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry, discovery_options
-from ros_in_python.ros2.opening import open_graph
+from ros_in_python.ros2.cli import CommandError, Menu, show_names
+from ros_in_python.ros2.names import absolute_node, seen
+from ros_in_python.ros2.opening import with_graph
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
@@ -20,12 +21,6 @@ _GET_STATE = "lifecycle_msgs/srv/GetState"
 
 lifecycle = Menu(
     name="lifecycle",
-    entries={
-        "get": MenuEntry("ros_in_python.ros2.lifecycle:get", "The state of one node or of all."),
-        "list": MenuEntry("ros_in_python.ros2.lifecycle:list_", "The transitions that a node can make now."),
-        "nodes": MenuEntry("ros_in_python.ros2.lifecycle:nodes", "All nodes with a life cycle."),
-        "set": MenuEntry("ros_in_python.ros2.lifecycle:set_", "Make a node do a transition."),
-    },
     help="""Look at nodes with a life cycle, and change their state.
 
     \b
@@ -37,88 +32,78 @@ lifecycle = Menu(
 _hidden_nodes = click.option("--include-hidden-nodes", is_flag=True, help="Hidden nodes too.")
 
 
-@click.command(context_settings=CONTEXT)
+@lifecycle.command()
 @click.option("-a", "--all", "include_hidden_nodes", is_flag=True, help="Hidden nodes too.")
 @click.option("-c", "--count-nodes", is_flag=True, help="Print only the number.")
-@discovery_options
-def nodes(include_hidden_nodes: bool, count_nodes: bool, spin_time: float | None, use_sim_time: bool) -> None:
+@with_graph
+def nodes(graph: GraphView, include_hidden_nodes: bool, count_nodes: bool) -> None:
     """All nodes with a life cycle.
 
     \b
       ros2 lifecycle nodes
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        graph.settle()
-        names = _nodes(graph, include_hidden_nodes)
-    for line in [str(len(names))] if count_nodes else names:
-        click.echo(line)
+    graph.settle()
+    show_names(_nodes(graph, include_hidden_nodes), count_nodes)
 
 
-@click.command(context_settings=CONTEXT)
+@lifecycle.command()
 @click.argument("node_name", required=False)
 @_hidden_nodes
-@discovery_options
-def get(node_name: str | None, include_hidden_nodes: bool, spin_time: float | None, use_sim_time: bool) -> None:
+@with_graph
+def get(graph: GraphView, node_name: str | None, include_hidden_nodes: bool) -> None:
     """The state of one node, or of all with a life cycle.
 
     \b
       ros2 lifecycle get /camera
       unconfigured [1]
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        if node_name is not None:
-            click.echo(_state(graph, _found(graph, node_name, include_hidden_nodes)))
-            return
-        graph.settle()
-        for name in _nodes(graph, include_hidden_nodes):
-            click.echo(f"{name}: {_state(graph, name)}")
+    if node_name is not None:
+        click.echo(_state(graph, _found(graph, node_name, include_hidden_nodes)))
+        return
+    graph.settle()
+    for name in _nodes(graph, include_hidden_nodes):
+        click.echo(f"{name}: {_state(graph, name)}")
 
 
-@click.command(name="list", context_settings=CONTEXT)
+@lifecycle.command(name="list")
 @click.argument("node_name")
 @click.option("-a", "--all", "all_transitions", is_flag=True, help="Those of all states, not only of the current one.")
 @_hidden_nodes
-@discovery_options
-def list_(
-    node_name: str, all_transitions: bool, include_hidden_nodes: bool, spin_time: float | None, use_sim_time: bool
-) -> None:
+@with_graph
+def list_(graph: GraphView, node_name: str, all_transitions: bool, include_hidden_nodes: bool) -> None:
     """The transitions that a node can make now.
 
     \b
       ros2 lifecycle list /camera
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = _found(graph, node_name, include_hidden_nodes)
-        service = "get_transition_graph" if all_transitions else "get_available_transitions"
-        found = call(graph, name, "GetAvailableTransitions", service).available_transitions
+    name = _found(graph, node_name, include_hidden_nodes)
+    service = "get_transition_graph" if all_transitions else "get_available_transitions"
+    found = call(graph, name, "GetAvailableTransitions", service).available_transitions
     for one in found:
         click.echo(f"- {_named(one.transition)}\n\tStart: {one.start_state.label}\n\tGoal: {one.goal_state.label}")
 
 
-@click.command(name="set", context_settings=CONTEXT)
+@lifecycle.command(name="set")
 @click.argument("node_name")
 @click.argument("transition")
 @_hidden_nodes
-@discovery_options
-def set_(
-    node_name: str, transition: str, include_hidden_nodes: bool, spin_time: float | None, use_sim_time: bool
-) -> None:
+@with_graph
+def set_(graph: GraphView, node_name: str, transition: str, include_hidden_nodes: bool) -> None:
     """Make a node do a transition, given by its name or its number.
 
     \b
       ros2 lifecycle set /camera configure
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = _found(graph, node_name, include_hidden_nodes)
-        possible = call(graph, name, "GetAvailableTransitions", "get_available_transitions").available_transitions
-        chosen = [one.transition for one in possible if transition in (one.transition.label, str(one.transition.id))]
-        if not chosen:
-            raise CommandError(
-                "Unknown transition requested, available ones are:",
-                *(f"- {_named(one.transition)}" for one in possible),
-                f"The node is {_state(graph, name)}.",
-            )
-        result = call(graph, name, "ChangeState", "change_state", transition=chosen[0])
+    name = _found(graph, node_name, include_hidden_nodes)
+    possible = call(graph, name, "GetAvailableTransitions", "get_available_transitions").available_transitions
+    chosen = [one.transition for one in possible if transition in (one.transition.label, str(one.transition.id))]
+    if not chosen:
+        raise CommandError(
+            "Unknown transition requested, available ones are:",
+            *(f"- {_named(one.transition)}" for one in possible),
+            f"The node is {_state(graph, name)}.",
+        )
+    result = call(graph, name, "ChangeState", "change_state", transition=chosen[0])
     if not result.success:
         raise CommandError("Transitioning failed", "The node's callback returned a failure or an error: see its log.")
     click.echo("Transitioning successful")
@@ -126,14 +111,11 @@ def set_(
 
 def _nodes(graph: GraphView, include_hidden: bool) -> list[str]:
     named = {service.name.removesuffix("/get_state") for service in graph.services() if _GET_STATE in service.types}
-    shown = (node.full_name for node in graph.nodes() if include_hidden or not node.hidden)
-    return sorted(named.intersection(shown))
+    return sorted(named.intersection(graph.node_names(include_hidden)))
 
 
 def _found(graph: GraphView, node_name: str, include_hidden: bool) -> str:
     """Return the full name of a node with a life cycle. Raises `CommandError`, with those that there are."""
-    from ros_in_python.ros2.graph import absolute_node, seen
-
     full = absolute_node(node_name)
     graph.settle(lambda: full in _nodes(graph, include_hidden))
     there = _nodes(graph, include_hidden)

@@ -7,17 +7,13 @@ import struct
 
 import click
 
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry
+from ros_in_python.ros2.cli import CommandError, Menu
 
 #: The group and the port of the real command.
 GROUP, PORT = "225.0.0.1", 49150
 
 multicast = Menu(
     name="multicast",
-    entries={
-        "receive": MenuEntry("ros_in_python.ros2.multicast:receive", "Wait for one datagram."),
-        "send": MenuEntry("ros_in_python.ros2.multicast:send", "Send one datagram."),
-    },
     help="""Try whether UDP multicast gets from one computer to another.
 
     \b
@@ -43,7 +39,7 @@ def receiver(group: str, port: int) -> socket.socket:
     return end
 
 
-@click.command(context_settings=CONTEXT)
+@multicast.command()
 @_group
 @_port
 @click.option("--timeout", type=click.FloatRange(min=0, min_open=True), metavar="N", help="Stop after N seconds.")
@@ -67,7 +63,7 @@ def receive(group: str, port: int, timeout: float | None) -> None:
     click.echo(f"Received from {sender}:{from_port}: {data.decode(errors='replace')!r}")
 
 
-@click.command(context_settings=CONTEXT)
+@multicast.command()
 @_group
 @_port
 @click.option("--ttl", type=click.IntRange(1, 255), default=1, show_default=True, help="How many routers it may pass.")

@@ -6,18 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry, discovery_options
-from ros_in_python.ros2.opening import open_graph
+from ros_in_python.ros2.cli import CommandError, Menu, show_names
+from ros_in_python.ros2.names import absolute_node, seen
+from ros_in_python.ros2.opening import with_graph
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
 
 node = Menu(
     name="node",
-    entries={
-        "info": MenuEntry("ros_in_python.ros2.node:info", "The topics, services and actions of a node."),
-        "list": MenuEntry("ros_in_python.ros2.node:list_", "The nodes that run."),
-    },
     help="""List running nodes, show what one offers.
 
     \b
@@ -27,65 +24,57 @@ node = Menu(
 )
 
 
-@click.command(name="list", context_settings=CONTEXT)
+@node.command(name="list")
 @click.option("-a", "--all", "include_hidden", is_flag=True, help="Hidden nodes too (an underscore before the name).")
 @click.option("-c", "--count-nodes", is_flag=True, help="Print only the number.")
-@discovery_options
-def list_(include_hidden: bool, count_nodes: bool, spin_time: float | None, use_sim_time: bool) -> None:
+@with_graph
+def list_(graph: GraphView, include_hidden: bool, count_nodes: bool) -> None:
     """The nodes that run.
 
     \b
       ros2 node list
       /joint_command_publisher
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        graph.settle()
-        names = [found.full_name for found in graph.nodes() if include_hidden or not found.hidden]
-    if count_nodes:
-        click.echo(str(len(names)))
-        return
-    if len(set(names)) < len(names):
+    graph.settle()
+    names = graph.node_names(include_hidden)
+    if len(set(names)) < len(names) and not count_nodes:
         click.echo(
             "WARNING: Be aware that there are nodes in the graph that share an exact name, "
             "which can have unintended side effects.",
             err=True,
         )
-    for name in names:
-        click.echo(name)
+    show_names(names, count_nodes)
 
 
-@click.command(context_settings=CONTEXT)
+@node.command()
 @click.argument("node_name")
 @click.option("--include-hidden", is_flag=True, help="Hidden topics, services and actions too.")
-@discovery_options
-def info(node_name: str, include_hidden: bool, spin_time: float | None, use_sim_time: bool) -> None:
+@with_graph
+def info(graph: GraphView, node_name: str, include_hidden: bool) -> None:
     """The topics, services and actions of a node.
 
     \b
       ros2 node info /joint_command_publisher
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        from ros_in_python.ros2.graph import absolute_node, seen
-
-        # The real command knows nodes by their full names alone.
-        full = node_name
-        graph.settle(lambda: any(found.full_name == full for found in graph.nodes()))
-        same = [found for found in graph.nodes() if found.full_name == full]
-        if not same:
-            meant = absolute_node(node_name)
-            is_there = meant != node_name and any(found.full_name == meant for found in graph.nodes())
-            raise CommandError(
-                f"Unable to find node '{node_name}'",
-                *([f"Its name begins with a slash: ros2 node info {meant}"] if is_there else []),
-                seen("Nodes", (found.full_name for found in graph.nodes() if not found.hidden)),
-            )
-        if len(same) > 1:
-            click.echo(
-                f'There are {len(same)} nodes in the graph with the exact name "{full}". '
-                "You are seeing information about only one of them.",
-                err=True,
-            )
-        sections = _sections(graph, same[0].name, same[0].namespace, include_hidden)
+    # The real command knows nodes by their full names alone.
+    full = node_name
+    graph.settle(lambda: any(found.full_name == full for found in graph.nodes()))
+    same = [found for found in graph.nodes() if found.full_name == full]
+    if not same:
+        meant = absolute_node(node_name)
+        is_there = meant != node_name and any(found.full_name == meant for found in graph.nodes())
+        raise CommandError(
+            f"Unable to find node '{node_name}'",
+            *([f"Its name begins with a slash: ros2 node info {meant}"] if is_there else []),
+            seen("Nodes", graph.node_names(include_hidden=False)),
+        )
+    if len(same) > 1:
+        click.echo(
+            f'There are {len(same)} nodes in the graph with the exact name "{full}". '
+            "You are seeing information about only one of them.",
+            err=True,
+        )
+    sections = _sections(graph, same[0].name, same[0].namespace, include_hidden)
     click.echo(full)
     for title, entries in sections:
         click.echo(f"  {title}:")

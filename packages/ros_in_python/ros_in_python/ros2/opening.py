@@ -5,13 +5,14 @@ That has to be checked before rclpy is imported, which would end the process wit
 
 from __future__ import annotations
 
+import functools
 import os
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 from interface_compiler import prefixes
-from ros_in_python.ros2.cli import CommandError
+from ros_in_python.ros2.cli import CommandError, F, discovery_options
 from ros_in_python.ros2.domain import domain_id
 
 if TYPE_CHECKING:
@@ -29,6 +30,17 @@ def open_graph(
     from ros_in_python.ros2.graph import GraphView
 
     return GraphView(node_name=node_name, spin_time=spin_time, use_sim_time=use_sim_time)
+
+
+def with_graph(command: F) -> F:
+    """Give a command the graph as its first argument, and the real command's options for discovery."""
+
+    @functools.wraps(command)
+    def run(*, spin_time: float | None, use_sim_time: bool, **given: Any) -> Any:
+        with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+            return command(graph, **given)
+
+    return cast("F", discovery_options(run))
 
 
 def prepare() -> None:

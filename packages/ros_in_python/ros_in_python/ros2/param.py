@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import click
 import yaml
 
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry, discovery_options
-from ros_in_python.ros2.opening import open_graph
+from ros_in_python.ros2.cli import CommandError, F, Menu
+from ros_in_python.ros2.names import absolute_node, seen
+from ros_in_python.ros2.opening import with_graph
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
@@ -37,16 +39,11 @@ _VALUE_FIELDS = (
 
 def find_node(graph: GraphView, node_name: str, include_hidden: bool) -> str:
     """Return the full name of a running node. Raises `CommandError`, with those that run, if it does not run."""
-    from ros_in_python.ros2.graph import absolute_node, seen
-
     full = absolute_node(node_name)
 
-    def visible() -> list[str]:
-        return [node.full_name for node in graph.nodes() if include_hidden or not node.hidden]
-
-    graph.settle(lambda: full in visible())
-    if full not in visible():
-        raise CommandError("Node not found", seen("Nodes", visible()))
+    graph.settle(lambda: full in graph.node_names(include_hidden))
+    if full not in (names := graph.node_names(include_hidden)):
+        raise CommandError("Node not found", seen("Nodes", names))
     return full
 
 
@@ -114,15 +111,6 @@ def value_of(value: Any) -> Any:
 
 param = Menu(
     name="param",
-    entries={
-        "delete": MenuEntry("ros_in_python.ros2.param:delete", "Delete a parameter of a node."),
-        "describe": MenuEntry("ros_in_python.ros2.param:describe", "Describe a parameter: type, range."),
-        "dump": MenuEntry("ros_in_python.ros2.param:dump", "All parameters of a node, in a parameter file's YAML."),
-        "get": MenuEntry("ros_in_python.ros2.param:get", "The value of a parameter."),
-        "list": MenuEntry("ros_in_python.ros2.param:list_", "The parameters of one node or of all."),
-        "load": MenuEntry("ros_in_python.ros2.param:load", "Set a node's parameters from a parameter file."),
-        "set": MenuEntry("ros_in_python.ros2.param:set_", "Set a parameter."),
-    },
     help="""Read and change parameters of running nodes.
 
     \b
@@ -147,21 +135,31 @@ _TYPES = {
 _hidden_nodes = click.option("-a", "--include-hidden-nodes", is_flag=True, help="Hidden nodes too.")
 
 
-@click.command(name="list", context_settings=CONTEXT)
+def _of_a_node(command: F) -> F:
+    """Give a command the graph, and the full name and a client of the node that is its argument `node_name`."""
+
+    @functools.wraps(command)
+    def run(graph: GraphView, node_name: str, include_hidden_nodes: bool, **given: Any) -> Any:
+        name = find_node(graph, node_name, include_hidden_nodes)
+        return command(graph, name, client_of(graph, name), **given)
+
+    return cast("F", _hidden_nodes(with_graph(run)))
+
+
+@param.command(name="list")
 @click.argument("node_name", required=False)
 @_hidden_nodes
 @click.option("--param-prefixes", "prefixes", multiple=True, metavar="NAME", help="Only those below NAME: NAME.x")
 @click.option("--param-type", is_flag=True, help="Show each parameter's type too.")
 @click.option("--filter", "expression", default="", metavar="REGEX", help="Only those whose names match.")
-@discovery_options
+@with_graph
 def list_(
+    graph: GraphView,
     node_name: str | None,
     include_hidden_nodes: bool,
     prefixes: tuple[str, ...],
     param_type: bool,
     expression: str,
-    spin_time: float | None,
-    use_sim_time: bool,
 ) -> None:
     """The parameters of one node or of all.
 
@@ -170,55 +168,43 @@ def list_(
       ros2 param list /arm --param-prefixes left --filter "left.k.*"
     """
     matches = _matcher(expression)
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
+    if node_name is None:
+        graph.settle()
+        names = sorted(set(graph.node_names(include_hidden_nodes)))
+    else:
+        names = [find_node(graph, node_name, include_hidden_nodes)]
+    for name in names:
+        try:
+            client = client_of(graph, name)
+            listed = answer(graph, name, client.list_parameters(prefixes=list(prefixes) or None)).result.names
+            params = sorted(filter(matches, listed))
+            types = _described(graph, name, client, params) if param_type else {}
+        except CommandError as refusal:
+            if node_name is not None:
+                raise
+            refusal.show()
+            continue
         if node_name is None:
-            graph.settle()
-            names = sorted({node.full_name for node in graph.nodes() if include_hidden_nodes or not node.hidden})
-        else:
-            names = [find_node(graph, node_name, include_hidden_nodes)]
-        for name in names:
-            try:
-                client = client_of(graph, name)
-                listed = answer(graph, name, client.list_parameters(prefixes=list(prefixes) or None)).result.names
-                params = sorted(filter(matches, listed))
-                types = _described(graph, name, client, params) if param_type else {}
-            except CommandError as refusal:
-                if node_name is not None:
-                    raise
-                refusal.show()
-                continue
-            if node_name is None:
-                click.echo(f"{name}:")
-            for parameter in params:
-                click.echo(f"  {parameter} (type: {types[parameter]})" if param_type else f"  {parameter}")
+            click.echo(f"{name}:")
+        for parameter in params:
+            click.echo(f"  {parameter} (type: {types[parameter]})" if param_type else f"  {parameter}")
 
 
-@click.command(context_settings=CONTEXT)
+@param.command()
 @click.argument("node_name")
 @click.argument("parameter_name")
-@_hidden_nodes
 @click.option("--hide-type", is_flag=True, help="The value alone.")
-@discovery_options
-def get(
-    node_name: str,
-    parameter_name: str,
-    include_hidden_nodes: bool,
-    hide_type: bool,
-    spin_time: float | None,
-    use_sim_time: bool,
-) -> None:
+@_of_a_node
+def get(graph: GraphView, name: str, client: Any, parameter_name: str, hide_type: bool) -> None:
     """The value of a parameter.
 
     \b
       ros2 param get /joint_state_monitor use_sim_time
       Boolean value is: False
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = find_node(graph, node_name, include_hidden_nodes)
-        client = client_of(graph, name)
-        values = answer(graph, name, client.get_parameters([parameter_name])).values
-        if not values:
-            raise CommandError("Parameter not set", _parameters_of(graph, name, client))
+    values = answer(graph, name, client.get_parameters([parameter_name])).values
+    if not values:
+        raise CommandError("Parameter not set", _parameters_of(graph, name, client))
     kind = values[0].type
     label = _TYPES.get(kind, ("", f"Unknown parameter type '{kind}'"))[1]
     value = _plain(value_of(values[0]))
@@ -229,32 +215,21 @@ def get(
 
 
 # Negative values begin as an option does.
-@click.command(name="set", context_settings={**CONTEXT, "ignore_unknown_options": True})
+@param.command(name="set", context_settings={"ignore_unknown_options": True})
 @click.argument("node_name")
 @click.argument("parameter_name")
 @click.argument("value")
-@_hidden_nodes
-@discovery_options
-def set_(
-    node_name: str,
-    parameter_name: str,
-    value: str,
-    include_hidden_nodes: bool,
-    spin_time: float | None,
-    use_sim_time: bool,
-) -> None:
+@_of_a_node
+def set_(graph: GraphView, name: str, client: Any, parameter_name: str, value: str) -> None:
     """Give a parameter another value, in YAML: 3 is an integer, 3.0 a double, true a boolean.
 
     \b
       ros2 param set /joint_state_monitor use_sim_time true
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        from rcl_interfaces.msg import Parameter
+    from rcl_interfaces.msg import Parameter
 
-        name = find_node(graph, node_name, include_hidden_nodes)
-        client = client_of(graph, name)
-        wanted = Parameter(name=parameter_name, value=parameter_value(value))
-        result = answer(graph, name, client.set_parameters([wanted])).results[0]
+    wanted = Parameter(name=parameter_name, value=parameter_value(value))
+    result = answer(graph, name, client.set_parameters([wanted])).results[0]
     if result.successful:
         click.echo(_with_reason("Set parameter successful", result.reason))
     else:
@@ -262,71 +237,51 @@ def set_(
         click.echo(_with_reason("Setting parameter failed", result.reason), err=True)
 
 
-@click.command(context_settings=CONTEXT)
+@param.command()
 @click.argument("node_name")
 @click.argument("parameter_name")
-@_hidden_nodes
-@discovery_options
-def delete(
-    node_name: str, parameter_name: str, include_hidden_nodes: bool, spin_time: float | None, use_sim_time: bool
-) -> None:
+@_of_a_node
+def delete(graph: GraphView, name: str, client: Any, parameter_name: str) -> None:
     """Delete a parameter of a node, which most nodes refuse for those they declared.
 
     \b
       ros2 param delete /joint_state_monitor gain
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = find_node(graph, node_name, include_hidden_nodes)
-        client = client_of(graph, name)
-        result = answer(graph, name, client.delete_parameters([parameter_name])).results[0]
-        if not result.successful:
-            raise CommandError(_with_reason("Deleting parameter failed", result.reason))
+    result = answer(graph, name, client.delete_parameters([parameter_name])).results[0]
+    if not result.successful:
+        raise CommandError(_with_reason("Deleting parameter failed", result.reason))
     click.echo(_with_reason("Deleted parameter successfully", result.reason))
 
 
-@click.command(context_settings=CONTEXT)
+@param.command()
 @click.argument("node_name")
 @click.argument("parameter_names", nargs=-1, required=True)
-@_hidden_nodes
-@discovery_options
-def describe(
-    node_name: str,
-    parameter_names: tuple[str, ...],
-    include_hidden_nodes: bool,
-    spin_time: float | None,
-    use_sim_time: bool,
-) -> None:
+@_of_a_node
+def describe(graph: GraphView, name: str, client: Any, parameter_names: tuple[str, ...]) -> None:
     """What is known of a parameter: its type and range.
 
     \b
       ros2 param describe /joint_state_monitor use_sim_time
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = find_node(graph, node_name, include_hidden_nodes)
-        client = client_of(graph, name)
-        descriptors = answer(graph, name, client.describe_parameters(list(parameter_names))).descriptors
-        if not descriptors:
-            raise CommandError("Parameter not set", _parameters_of(graph, name, client))
+    descriptors = answer(graph, name, client.describe_parameters(list(parameter_names))).descriptors
+    if not descriptors:
+        raise CommandError("Parameter not set", _parameters_of(graph, name, client))
     for descriptor in descriptors:
         for line in _description(descriptor):
             click.echo(line)
 
 
-@click.command(context_settings=CONTEXT)
+@param.command()
 @click.argument("node_name")
-@_hidden_nodes
-@discovery_options
-def dump(node_name: str, include_hidden_nodes: bool, spin_time: float | None, use_sim_time: bool) -> None:
+@_of_a_node
+def dump(graph: GraphView, name: str, client: Any) -> None:
     """All parameters of a node, as a parameter file for `ros2 run … --ros-args --params-file FILE`.
 
     \b
       ros2 param dump /joint_state_monitor > monitor.yaml
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = find_node(graph, node_name, include_hidden_nodes)
-        client = client_of(graph, name)
-        names = sorted(answer(graph, name, client.list_parameters()).result.names)
-        values = answer(graph, name, client.get_parameters(names)).values if names else []
+    names = sorted(answer(graph, name, client.list_parameters()).result.names)
+    values = answer(graph, name, client.get_parameters(names)).values if names else []
     tree: dict[str, Any] = {}
     for parameter, value in zip(names, values, strict=True):
         *branches, leaf = parameter.split(".")
@@ -337,30 +292,19 @@ def dump(node_name: str, include_hidden_nodes: bool, spin_time: float | None, us
     click.echo(yaml.dump({name: {"ros__parameters": tree}}, default_flow_style=False))
 
 
-@click.command(context_settings=CONTEXT)
+@param.command()
 @click.argument("node_name")
 @click.argument("parameter_file", type=click.Path(path_type=Path))
-@_hidden_nodes
 @click.option("--no-use-wildcard", is_flag=True, help="Leave out what the file has under /**.")
-@discovery_options
-def load(
-    node_name: str,
-    parameter_file: Path,
-    include_hidden_nodes: bool,
-    no_use_wildcard: bool,
-    spin_time: float | None,
-    use_sim_time: bool,
-) -> None:
+@_of_a_node
+def load(graph: GraphView, name: str, client: Any, parameter_file: Path, no_use_wildcard: bool) -> None:
     """Set a running node's parameters from a parameter file, one after another.
 
     \b
       ros2 param load /joint_state_monitor monitor.yaml
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        name = find_node(graph, node_name, include_hidden_nodes)
-        parameters = parameters_of_file(parameter_file, name, use_wildcard=not no_use_wildcard)
-        client = client_of(graph, name)
-        results = answer(graph, name, client.set_parameters(parameters)).results
+    parameters = parameters_of_file(parameter_file, name, use_wildcard=not no_use_wildcard)
+    results = answer(graph, name, client.set_parameters(parameters)).results
     refused = []
     for parameter, result in zip(parameters, results, strict=True):
         outcome = "successful" if result.successful else "failed"

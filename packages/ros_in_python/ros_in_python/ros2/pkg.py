@@ -9,17 +9,11 @@ from pathlib import Path
 import click
 
 from ros_in_python.ros2 import executables as search
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry
+from ros_in_python.ros2.cli import CommandError, Menu, MenuEntry
 
 pkg = Menu(
     name="pkg",
-    entries={
-        "create": MenuEntry("ros_in_python.ros2.create:create", "Make a new package."),
-        "executables": MenuEntry("ros_in_python.ros2.pkg:executables", "What `ros2 run` can start."),
-        "list": MenuEntry("ros_in_python.ros2.pkg:list_", "All packages."),
-        "prefix": MenuEntry("ros_in_python.ros2.pkg:prefix", "Where a package is installed."),
-        "xml": MenuEntry("ros_in_python.ros2.pkg:xml", "A package's package.xml, or one tag of it."),
-    },
+    entries={"create": MenuEntry("ros_in_python.ros2.create:create", "Make a new package.")},
     help="""List packages and their executables; a built colcon workspace here counts.
 
     \b
@@ -28,7 +22,7 @@ pkg = Menu(
 )
 
 
-@click.command(name="list", context_settings=CONTEXT)
+@pkg.command(name="list")
 def list_() -> None:
     """All packages.
 
@@ -39,7 +33,7 @@ def list_() -> None:
         click.echo(name)
 
 
-@click.command(context_settings=CONTEXT)
+@pkg.command()
 @click.argument("package_name", required=False)
 @click.option("--full-path", is_flag=True, help="Each one's file.")
 def executables(package_name: str | None, full_path: bool) -> None:
@@ -64,7 +58,7 @@ def executables(package_name: str | None, full_path: bool) -> None:
                 click.echo(f"{sys.executable} -m {module}" if full_path else f"{name} {executable}")
 
 
-@click.command(context_settings=CONTEXT)
+@pkg.command()
 @click.argument("package_name")
 @click.option("--share", is_flag=True, help="The package's share folder in it.")
 def prefix(package_name: str, share: bool) -> None:
@@ -81,7 +75,7 @@ def prefix(package_name: str, share: bool) -> None:
     click.echo(str(found / "share" / package_name if share else found))
 
 
-@click.command(context_settings=CONTEXT)
+@pkg.command()
 @click.argument("package_name")
 @click.option("-t", "--tag", help="Print only this tag's text, such as version.")
 def xml(package_name: str, tag: str | None) -> None:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ros_in_python.ros2 import interfaces
-from ros_in_python.ros2.cli import CONTEXT, CommandError, Menu, MenuEntry, discovery_options
-from ros_in_python.ros2.opening import open_graph
+from ros_in_python.ros2.cli import CommandError, Menu, show_names
+from ros_in_python.ros2.names import absolute, seen
+from ros_in_python.ros2.opening import with_graph
 from ros_in_python.ros2.topic.selection import reading_options
 
 if TYPE_CHECKING:
@@ -19,14 +20,6 @@ if TYPE_CHECKING:
 
 service = Menu(
     name="service",
-    entries={
-        "call": MenuEntry("ros_in_python.ros2.service:call", "Call a service and print its answer."),
-        "echo": MenuEntry("ros_in_python.ros2.service:echo", "Print the requests and answers of a service."),
-        "find": MenuEntry("ros_in_python.ros2.service:find", "The services of a type."),
-        "info": MenuEntry("ros_in_python.ros2.service:info", "How many clients and servers a service has."),
-        "list": MenuEntry("ros_in_python.ros2.service:list_", "All services."),
-        "type": MenuEntry("ros_in_python.ros2.service:type_", "The type of a service."),
-    },
     help="""List services, call one.
 
     \b
@@ -36,112 +29,94 @@ service = Menu(
 )
 
 
-@click.command(name="list", context_settings=CONTEXT)
+@service.command(name="list")
 @click.option("-t", "--show-types", is_flag=True, help="Show each service's type too.")
 @click.option("-c", "--count-services", is_flag=True, help="Print only the number.")
 @click.option("-a", "--include-hidden-services", is_flag=True, help="Hidden ones too.")
-@discovery_options
-def list_(
-    show_types: bool, count_services: bool, include_hidden_services: bool, spin_time: float | None, use_sim_time: bool
-) -> None:
+@with_graph
+def list_(graph: GraphView, show_types: bool, count_services: bool, include_hidden_services: bool) -> None:
     """All services.
 
     \b
       ros2 service list -t
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        graph.settle()
-        services = _visible(graph, include_hidden_services)
-    if count_services:
-        click.echo(str(len(services)))
-        return
-    for found in services:
-        click.echo(str(found) if show_types else found.name)
+    graph.settle()
+    services = _visible(graph, include_hidden_services)
+    show_names([str(found) if show_types else found.name for found in services], count_services)
 
 
-@click.command(name="type", context_settings=CONTEXT)
+@service.command(name="type")
 @click.argument("service_name")
-@discovery_options
-def type_(service_name: str, spin_time: float | None, use_sim_time: bool) -> None:
+@with_graph
+def type_(graph: GraphView, service_name: str) -> None:
     """The type of a service.
 
     \b
       ros2 service type /joint_monitor/get_parameters
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        found = _wanted(graph, service_name)
-    for kind in found.types:
-        click.echo(kind)
+    found = _wanted(graph, service_name)
+    show_names(found.types, only_count=False)
 
 
-@click.command(context_settings=CONTEXT)
+@service.command()
 @click.argument("service_type")
 @click.option("-c", "--count-services", is_flag=True, help="Print only the number.")
 @click.option("-a", "--include-hidden-services", is_flag=True, help="Hidden ones too.")
-@discovery_options
-def find(
-    service_type: str, count_services: bool, include_hidden_services: bool, spin_time: float | None, use_sim_time: bool
-) -> None:
+@with_graph
+def find(graph: GraphView, service_type: str, count_services: bool, include_hidden_services: bool) -> None:
     """The services of a type.
 
     \b
       ros2 service find std_srvs/srv/Trigger
     """
     wanted = interfaces.full_name(service_type, "srv")
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        graph.settle(lambda: any(wanted in found.types for found in graph.services()))
-        names = [found.name for found in _visible(graph, include_hidden_services) if wanted in found.types]
-    for line in [str(len(names))] if count_services else names:
-        click.echo(line)
+    graph.settle(lambda: any(wanted in found.types for found in graph.services()))
+    names = [found.name for found in _visible(graph, include_hidden_services) if wanted in found.types]
+    show_names(names, count_services)
 
 
-@click.command(context_settings=CONTEXT)
+@service.command()
 @click.argument("service_name")
-@discovery_options
-def info(service_name: str, spin_time: float | None, use_sim_time: bool) -> None:
+@with_graph
+def info(graph: GraphView, service_name: str) -> None:
     """How many clients and servers a service has.
 
     \b
       ros2 service info /stand_up
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        found = _wanted(graph, service_name)
-        clients, servers = graph.node.count_clients(found.name), graph.node.count_services(found.name)
+    found = _wanted(graph, service_name)
+    clients, servers = graph.node.count_clients(found.name), graph.node.count_services(found.name)
     click.echo(f"Type: {found.types[0] if len(found.types) == 1 else list(found.types)}")
     click.echo(f"Clients count: {clients}")
     click.echo(f"Services count: {servers}")
 
 
-@click.command(context_settings=CONTEXT)
+@service.command()
 @click.argument("service_name")
 @click.argument("service_type")
 @click.argument("values", default="{}")
 @click.option(
     "-r", "--rate", type=click.FloatRange(min=0, min_open=True), metavar="N", help="Repeat N times per second."
 )
-@discovery_options
-def call(
-    service_name: str, service_type: str, values: str, rate: float | None, spin_time: float | None, use_sim_time: bool
-) -> None:
+@with_graph
+def call(graph: GraphView, service_name: str, service_type: str, values: str, rate: float | None) -> None:
     """Call a service with a request given in YAML, and print its answer.
 
     \b
       ros2 service call /stand_up std_srvs/srv/SetBool '{data: true}'
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        from ros_in_python.ros2.graph import absolute
-        from ros_in_python.ros2.messages import fill, read_values
+    from ros_in_python.ros2.messages import fill, read_values
 
-        kind = interfaces.service_class(service_type)
-        request = kind.Request()
-        fill(request, read_values(values, "request"))
-        name = absolute(service_name, "service")
-        client = graph.node.create_client(kind, name)
-        _wait_until_ready(graph, client, name, interfaces.full_name(service_type, "srv"))
-        while True:
-            _ask(graph, client, request, None if rate is None else 1 / rate)
-            if rate is None:
-                return
+    kind = interfaces.service_class(service_type)
+    request = kind.Request()
+    fill(request, read_values(values, "request"))
+    name = absolute(service_name, "service")
+    client = graph.node.create_client(kind, name)
+    _wait_until_ready(graph, client, name, interfaces.full_name(service_type, "srv"))
+    while True:
+        _ask(graph, client, request, None if rate is None else 1 / rate)
+        if rate is None:
+            return
 
 
 def _ask(graph: GraphView, client: Any, request: Any, period: float | None) -> None:
@@ -189,15 +164,11 @@ def _alike(graph: GraphView, name: str) -> str:
 
 
 def _visible(graph: GraphView, include_hidden: bool) -> list[TypedName]:
-    from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
-
-    return [found for found in graph.services() if include_hidden or not topic_or_service_is_hidden(found.name)]
+    return [found for found in graph.services() if include_hidden or not found.hidden]
 
 
 def _wanted(graph: GraphView, service_name: str) -> TypedName:
     """Return the service of this name. Raises `CommandError`, with those that there are, if it does not exist."""
-    from ros_in_python.ros2.graph import absolute, seen
-
     name = absolute(service_name, "service")
     graph.settle(lambda: any(found.name == name for found in graph.services()))
     for found in graph.services():
@@ -208,30 +179,26 @@ def _wanted(graph: GraphView, service_name: str) -> TypedName:
     )
 
 
-@click.command(context_settings=CONTEXT)
+@service.command()
 @click.argument("service_name")
 @click.argument("service_type", required=False)
 @reading_options
-@discovery_options
-def echo(service_name: str, service_type: str | None, **options: Any) -> None:
+@with_graph
+def echo(graph: GraphView, service_name: str, service_type: str | None, **options: Any) -> None:
     """Print the requests and answers of a service, whose node has to publish them: configure_introspection().
 
     \b
       ros2 service echo /stand_up
     """
-    with open_graph(spin_time=options.pop("spin_time"), use_sim_time=options.pop("use_sim_time")) as graph:
-        from rclpy.qos import qos_profile_services_default
+    from rclpy.qos import qos_profile_services_default
 
-        from ros_in_python.ros2.graph import absolute
-        from ros_in_python.ros2.topic.echo import listen
+    from ros_in_python.ros2.topic.echo import listen
 
-        name = absolute(service_name, "service")
-        if service_type is None:
-            service_type = _wanted(graph, service_name).types[0]
-        topic, kind = f"{name}/_service_event", interfaces.service_class(service_type)
-        graph.settle(lambda: bool(graph.publishers(topic)))
-        if not graph.publishers(topic):
-            click.echo(
-                f"No node publishes the calls of {name} yet: see Node.configure_introspection in rclpy.", err=True
-            )
-        listen(graph, topic, kind.Event, (), qos_profile_services_default, options)
+    name = absolute(service_name, "service")
+    if service_type is None:
+        service_type = _wanted(graph, service_name).types[0]
+    topic, kind = f"{name}/_service_event", interfaces.service_class(service_type)
+    graph.settle(lambda: bool(graph.publishers(topic)))
+    if not graph.publishers(topic):
+        click.echo(f"No node publishes the calls of {name} yet: see Node.configure_introspection in rclpy.", err=True)
+    listen(graph, topic, kind.Event, (), qos_profile_services_default, options)

@@ -33,7 +33,7 @@ def helps() -> list[list[str]]:
     for noun in NOUNS:
         group = ros2.get_command(click.Context(ros2), noun)
         if isinstance(group, Menu):
-            places += [[noun, verb] for verb in group.entries]
+            places += [[noun, verb] for verb in group.list_commands(click.Context(group))]
     return places
 
 

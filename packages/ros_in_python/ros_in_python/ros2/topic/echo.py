@@ -12,15 +12,15 @@ import yaml
 
 from ros_in_python.field_path import Step
 from ros_in_python.ros2 import interfaces, qos
-from ros_in_python.ros2.cli import CONTEXT, discovery_options
-from ros_in_python.ros2.opening import open_graph
+from ros_in_python.ros2.names import absolute
+from ros_in_python.ros2.opening import with_graph
 from ros_in_python.ros2.topic.selection import check_path, field, field_path, filter_option, reading_options
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
 
 
-@click.command(context_settings=CONTEXT)
+@click.command()
 @click.argument("topic_name")
 @click.argument("message_type", required=False)
 @click.option("--once", is_flag=True, help="Print the first message and exit.")
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 @click.option("--no-lost-messages", is_flag=True, help="Don't report lost messages.")
 @click.option("--lost-messages", is_flag=True, expose_value=False, hidden=True)
 @qos.qos_options("sensor_data")
-@discovery_options
-def echo(topic_name: str, message_type: str | None, **options: Any) -> None:
+@with_graph
+def echo(graph: GraphView, topic_name: str, message_type: str | None, **options: Any) -> None:
     """Print the messages of a topic; Ctrl-C ends it.
 
     \b
@@ -45,20 +45,18 @@ def echo(topic_name: str, message_type: str | None, **options: Any) -> None:
     It asks for the QoS that the topic's publishers offer, so that it hears every one.
     """
     asked = qos.asked(options)
-    with open_graph(spin_time=options.pop("spin_time"), use_sim_time=options.pop("use_sim_time")) as graph:
-        from ros_in_python.ros2.graph import absolute
-        from ros_in_python.ros2.topic.selection import type_or_refusal
+    from ros_in_python.ros2.topic.selection import type_or_refusal
 
-        name = absolute(topic_name)
-        path = field_path(options["field"])
-        message = None if message_type is None else interfaces.message_class(message_type)
-        qos.profile(asked)
-        graph.settle(lambda: bool(graph.publishers(name)))
-        if message is None:
-            message = type_or_refusal(graph, name)
-        if not options["raw"]:
-            check_path(message, path)
-        listen(graph, name, message, path, qos.suiting(graph, name, asked), options)
+    name = absolute(topic_name)
+    path = field_path(options["field"])
+    message = None if message_type is None else interfaces.message_class(message_type)
+    qos.profile(asked)
+    graph.settle(lambda: bool(graph.publishers(name)))
+    if message is None:
+        message = type_or_refusal(graph, name)
+    if not options["raw"]:
+        check_path(message, path)
+    listen(graph, name, message, path, qos.suiting(graph, name, asked), options)
 
 
 def listen(

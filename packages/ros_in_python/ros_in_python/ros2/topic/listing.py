@@ -7,54 +7,36 @@ from typing import TYPE_CHECKING
 import click
 
 from ros_in_python.ros2 import interfaces
-from ros_in_python.ros2.cli import CONTEXT, CommandError, discovery_options
-from ros_in_python.ros2.opening import open_graph
+from ros_in_python.ros2.cli import CommandError, show_names
+from ros_in_python.ros2.names import absolute, seen
+from ros_in_python.ros2.opening import with_graph
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
 
 
-@click.command(name="list", context_settings=CONTEXT)
+@click.command(name="list")
 @click.option("-t", "--show-types", is_flag=True, help="Show each topic's type too.")
 @click.option("-v", "--verbose", is_flag=True, help="Count publishers and subscribers.")
 @click.option("-c", "--count-topics", is_flag=True, help="Print only the number of topics.")
 @click.option("-a", "--include-hidden-topics", is_flag=True, help="Also hidden topics (an underscore before a part).")
-@discovery_options
-def list_(
-    show_types: bool,
-    verbose: bool,
-    count_topics: bool,
-    include_hidden_topics: bool,
-    spin_time: float | None,
-    use_sim_time: bool,
-) -> None:
+@with_graph
+def list_(graph: GraphView, show_types: bool, verbose: bool, count_topics: bool, include_hidden_topics: bool) -> None:
     """All topics.
 
     \b
       ros2 topic list -t
       /joint_commands [sensor_msgs/msg/JointState]
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
-
-        graph.settle()
-        topics = [
-            topic for topic in graph.topics() if include_hidden_topics or not topic_or_service_is_hidden(topic.name)
-        ]
-        counts = {
-            topic.name: (len(graph.publishers(topic.name)), len(graph.subscriptions(topic.name))) for topic in topics
-        }
-    if count_topics:
-        click.echo(str(len(topics)))
-    elif verbose:
-        if topics:
-            published = [(str(topic), counts[topic.name][0]) for topic in topics]
-            subscribed = [(str(topic), counts[topic.name][1]) for topic in topics]
-            click.echo(_counted("Published topics:", published, "publisher"))
-            click.echo(_counted("Subscribed topics:", subscribed, "subscriber"))
-    else:
-        for topic in topics:
-            click.echo(str(topic) if show_types else topic.name)
+    graph.settle()
+    topics = [topic for topic in graph.topics() if include_hidden_topics or not topic.hidden]
+    if count_topics or not verbose:
+        show_names([str(topic) if show_types else topic.name for topic in topics], count_topics)
+    elif topics:
+        published = [(str(topic), len(graph.publishers(topic.name))) for topic in topics]
+        subscribed = [(str(topic), len(graph.subscriptions(topic.name))) for topic in topics]
+        click.echo(_counted("Published topics:", published, "publisher"))
+        click.echo(_counted("Subscribed topics:", subscribed, "subscriber"))
 
 
 def _counted(title: str, topics: list[tuple[str, int]], what: str) -> str:
@@ -62,14 +44,12 @@ def _counted(title: str, topics: list[tuple[str, int]], what: str) -> str:
     return "".join(f"{line}\n" for line in (title, *lines))
 
 
-@click.command(context_settings=CONTEXT)
+@click.command()
 @click.argument("topic_type")
 @click.option("-c", "--count-topics", is_flag=True, help="Print only the number.")
 @click.option("-a", "--include-hidden-topics", is_flag=True, help="Also hidden topics (an underscore before a part).")
-@discovery_options
-def find(
-    topic_type: str, count_topics: bool, include_hidden_topics: bool, spin_time: float | None, use_sim_time: bool
-) -> None:
+@with_graph
+def find(graph: GraphView, topic_type: str, count_topics: bool, include_hidden_topics: bool) -> None:
     """The topics of a type.
 
     \b
@@ -77,35 +57,24 @@ def find(
       /joint_commands
     """
     wanted = interfaces.full_name(topic_type, "msg")
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
-
-        graph.settle(lambda: any(wanted in topic.types for topic in graph.topics()))
-        names = [
-            topic.name
-            for topic in graph.topics()
-            if wanted in topic.types and (include_hidden_topics or not topic_or_service_is_hidden(topic.name))
-        ]
-    for line in [str(len(names))] if count_topics else names:
-        click.echo(line)
+    graph.settle(lambda: any(wanted in topic.types for topic in graph.topics()))
+    topics = [topic for topic in graph.topics() if include_hidden_topics or not topic.hidden]
+    show_names([topic.name for topic in topics if wanted in topic.types], count_topics)
 
 
-@click.command(context_settings=CONTEXT)
+@click.command()
 @click.argument("topic_name")
 @click.option("-v", "--verbose", is_flag=True, help="Show node, type and QoS of each publisher and subscription.")
-@discovery_options
-def info(topic_name: str, verbose: bool, spin_time: float | None, use_sim_time: bool) -> None:
+@with_graph
+def info(graph: GraphView, topic_name: str, verbose: bool) -> None:
     """Who publishes and subscribes, with which QoS.
 
     \b
       ros2 topic info -v /joint_commands
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        from ros_in_python.ros2.graph import absolute
-
-        name = absolute(topic_name)
-        types = _types(graph, name, topic_name)
-        publishers, subscriptions = graph.publishers(name), graph.subscriptions(name)
+    name = absolute(topic_name)
+    types = _types(graph, name, topic_name)
+    publishers, subscriptions = graph.publishers(name), graph.subscriptions(name)
     gap = "\n\n" if verbose else "\n"
     click.echo(f"Type: {types[0] if len(types) == 1 else list(types)}{gap}", nl=False)
     for what, ends in (("Publisher", publishers), ("Subscription", subscriptions)):
@@ -115,28 +84,21 @@ def info(topic_name: str, verbose: bool, spin_time: float | None, use_sim_time: 
                 click.echo(f"{end}{gap}", nl=False)
 
 
-@click.command(name="type", context_settings=CONTEXT)
+@click.command(name="type")
 @click.argument("topic_name")
-@discovery_options
-def type_(topic_name: str, spin_time: float | None, use_sim_time: bool) -> None:
+@with_graph
+def type_(graph: GraphView, topic_name: str) -> None:
     """The type of a topic.
 
     \b
       ros2 topic type /joint_commands
       sensor_msgs/msg/JointState
     """
-    with open_graph(spin_time=spin_time, use_sim_time=use_sim_time) as graph:
-        from ros_in_python.ros2.graph import absolute
-
-        types = _types(graph, absolute(topic_name), topic_name)
-    for kind in types:
-        click.echo(kind)
+    show_names(_types(graph, absolute(topic_name), topic_name), only_count=False)
 
 
 def _types(graph: GraphView, name: str, written: str) -> tuple[str, ...]:
     """Return the types of the topic `name`, once it exists. Raises `CommandError`, which calls it `written`."""
-    from ros_in_python.ros2.graph import seen
-
     graph.settle(lambda: bool(graph.topic_types(name)))
     types = graph.topic_types(name)
     if not types:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ros_in_python.ros2 import interfaces, qos
-from ros_in_python.ros2.cli import CONTEXT, CommandError, discovery_options
+from ros_in_python.ros2.cli import CommandError, discovery_options
+from ros_in_python.ros2.names import absolute
 from ros_in_python.ros2.opening import open_graph
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ REPORT_EVERY_S = 1.0
 CONFIRMATION = 2.0
 
 
-@click.command(context_settings=CONTEXT)
+@click.command()
 @click.argument("topic_name")
 @click.argument("message_type")
 @click.argument("values", default="{}")
@@ -66,7 +67,6 @@ def pub(topic_name: str, message_type: str, values: str, **options: Any) -> None
     with open_graph(
         node_name=options["node_name"], spin_time=options["spin_time"], use_sim_time=options["use_sim_time"]
     ) as graph:
-        from ros_in_python.ros2.graph import absolute
         from ros_in_python.ros2.messages import fill, read_values
 
         kind = interfaces.message_class(message_type)

@@ -10,6 +10,7 @@ import click
 from ros_in_python.field_path import NoSuchField, Step, fields_in, steps_of, value_at, written
 from ros_in_python.ros2 import interfaces
 from ros_in_python.ros2.cli import CommandError
+from ros_in_python.ros2.names import seen
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
@@ -147,8 +148,6 @@ def wait_for_type(graph: GraphView, topic: str) -> Any:
 
 def type_or_refusal(graph: GraphView, topic: str) -> Any:
     """Return the class of a topic's messages. Raises `CommandError`, after the real one's warning, if there is none."""
-    from ros_in_python.ros2.graph import seen
-
     message = type_on_graph(graph, topic)
     if message is None:
         print(f"WARNING: topic [{topic}] does not appear to be published yet", flush=True)
