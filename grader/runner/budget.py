@@ -104,14 +104,18 @@ class Budget:
 #: The name of liblockstep's own thread, which checks the other threads repeatedly while the process is not idle.
 SUPERVISOR = b"(lockstep"
 
+#: The flag of a thread that is ending (PF_EXITING of Linux's sched.h). The last thread of a program gives its memory
+#: back, for which it may wait in the kernel for every other program that has mapped the same libraries.
+EXITING = 0x4
+
 
 @dataclass(frozen=True)
 class ThreadTimes:
     """How long each of a program's threads has run (ns), by its folder in /proc.
 
-    `ready` is whether anything that it needs waits for a CPU or the disk: one of its threads, or who has to report that
-    its first process has ended. `supervisors` are the threads of liblockstep that wait for a CPU. They have to hand
-    over time and messages, but also look again and again whether anything happens.
+    `ready` is whether anything that it needs waits for a CPU, or inside the kernel for the disk or a lock: one of its
+    threads, or who has to report that its first process has ended. `supervisors` are the threads of liblockstep that
+    wait for a CPU. They have to hand over time and messages, but also look again and again whether anything happens.
     """
 
     threads: Mapping[Path, int]
@@ -135,11 +139,12 @@ def thread_times(first: int, pids: Collection[int]) -> ThreadTimes:
                 # The state follows the program's name, which may contain any character but ends with the last bracket.
                 name, _, rest = (thread / "stat").read_bytes().rpartition(b") ")
                 ran = int((thread / "schedstat").read_bytes().split()[0])
-                state = rest[:1]
+                state, *numbers = rest.split()
                 alive |= pid == first and state not in (b"Z", b"X")
-                if not name.endswith(SUPERVISOR):
+                looks_again = name.endswith(SUPERVISOR) and not int(numbers[5]) & EXITING
+                ready |= state == b"D" or (state == b"R" and not looks_again)
+                if not looks_again:
                     threads[thread] = ran
-                    ready |= state in (b"R", b"D")
                 elif state == b"R":
                     supervisors[thread] = ran
     return ThreadTimes(threads, supervisors, ready or not alive)

@@ -11,21 +11,21 @@ from xdist.workermanage import WorkerController
 #: expensive to make: a chapter that has run, a whole site, a class that was graded, a sandbox at each level.
 TOGETHER = (
     *("audit", "classroom", "graph", "handout", "interface_compiler", "interfaces"),
-    *("site", "submit"),
+    *("report", "sandbox", "site", "submit"),
 )
-
-#: These run one after another, as one piece: the attacks leave other programs little of the machine, and there is a
-#: race, not found yet, in which a right program then seems not to end on Ctrl-C.
-IN_ORDER = ("hostile", "sandbox", "grading", "report")
 
 #: What takes longest, in this order: pieces, and folders whose files are pieces. It is started first: started last, it
 #: would leave the other workers idle.
 LONGEST = (
-    *("in_order", "audit", "classroom", "site", "handout", "interface_compiler", "interfaces", "submit"),
+    *("audit", "classroom", "site", "handout", "interface_compiler", "interfaces", "sandbox", "submit"),
     "kernel/test_commands.py",
-    *("build/test_execution.py", "gradescope"),
+    *("build/test_execution.py", "grading/test_solutions.py", "gradescope", "grading/test_course_solutions.py"),
     *(
+        "hostile/test_through_the_grader.py",
+        "hostile/test_attacks_on_the_grader.py",
         "kernel",
+        "report",
+        "grading",
         "ros_in_python",
         "runner",
         "new",
@@ -38,8 +38,6 @@ def piece_of(nodeid: str) -> str:
     """Return the piece of work that a test belongs to: a folder or package of `TOGETHER`, or its file."""
     *folders, file = Path(nodeid.partition("::")[0]).parts
     folder = folders[1] if folders[0] == "packages" else folders[-1]
-    if folder in IN_ORDER:
-        return "in_order"
     return folder if folder in TOGETHER else f"{folder}/{file}"
 
 

@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -15,7 +16,8 @@ import pytest
 from grader.runner.budget import Allowance, Budget
 
 #: A program that sleeps, with a thread of liblockstep's name that always has something to do. With `idle` as its
-#: argument, that thread gets a CPU only while nothing else wants it.
+#: argument, that thread gets a CPU only while nothing else wants it. With `kernel` and a pipe it waits inside the
+#: kernel, for a child that can't start before somebody opens the pipe.
 SLEEPS = """
 import ctypes, os, signal, sys, threading
 
@@ -24,6 +26,8 @@ def supervise():
     if 'idle' in sys.argv:
         os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
     print('ready', flush=True)
+    if 'kernel' in sys.argv:
+        os.posix_spawn('/bin/true', ['true'], {}, file_actions=[(os.POSIX_SPAWN_OPEN, 0, sys.argv[-1], os.O_RDONLY, 0)])
     while True:
         pass
 
@@ -42,15 +46,15 @@ def budget_of(pid: int) -> Budget:
 
 
 @contextmanager
-def sleeping(*arguments: str) -> Iterator[Budget]:
-    """The budget of the program that sleeps, on the same core as this process."""
+def sleeping(*arguments: str) -> Iterator[int]:
+    """The process id of the program that sleeps, on the same core as this process."""
     before = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {min(before)})
     process = subprocess.Popen([sys.executable, "-c", SLEEPS, *arguments], stdout=subprocess.PIPE)
     try:
         assert process.stdout
         process.stdout.readline()
-        yield budget_of(process.pid)
+        yield process.pid
     finally:
         process.kill()
         process.communicate()
@@ -73,7 +77,8 @@ def test_a_program_that_has_ended_is_not_blocked_while_nobody_has_noticed() -> N
 def test_a_program_is_not_blocked_while_the_thread_that_hands_it_its_time_waits_for_a_cpu(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    with sleeping("idle") as budget:
+    with sleeping("idle") as pid:
+        budget = budget_of(pid)
         now = [time.monotonic()]
         monkeypatch.setattr(time, "monotonic", lambda: now[0])
         for _ in range(100):  # this process takes the core meanwhile
@@ -82,9 +87,28 @@ def test_a_program_is_not_blocked_while_the_thread_that_hands_it_its_time_waits_
     assert budget.blocked < 1.0, "of 2 s: it may have had a turn or two"
 
 
+def states(pid: int) -> set[str]:
+    """Return the states of a process's threads."""
+    return {file.read_text().rpartition(") ")[2][0] for file in Path(f"/proc/{pid}/task").glob("*/stat")}
+
+
+def test_a_program_is_not_blocked_while_the_kernel_makes_that_thread_wait(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with sleeping("kernel", str(tmp_path / "pipe")) as pid:
+        while states(pid) != {"S", "D"}:
+            os.sched_yield()
+        budget = budget_of(pid)
+        for _ in range(30):
+            time.sleep(0.002)
+            budget.look()
+        (tmp_path / "pipe").write_text("")  # lets the child start, and end
+    assert budget.blocked == 0
+
+
 def test_a_program_whose_only_ready_thread_has_had_its_turn_is_blocked() -> None:
     deadline = time.monotonic() + 60
-    with sleeping() as budget:
+    with sleeping() as pid:
+        budget = budget_of(pid)
         while budget.blocked < 0.05 and time.monotonic() < deadline:
             time.sleep(0.002)
             budget.look()
