@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 #: Exit codes. 2 is click's own, for usage.
 FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
 
+_PATH = click.Path(path_type=Path)
+_TABLE = click.Path(path_type=Path, exists=True, dir_okay=False)
+
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("exercise")
@@ -30,10 +33,8 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
     "--mistake", metavar="NAME", default="", help="Grade a usual mistake from the exercise's solutions folder."
 )
 @click.option("--json", "json_", is_flag=True, help="Print the grade as JSON, for programs.")
-@click.option("--plot", type=click.Path(path_type=Path), help="Draw your node's output over the solution's (.svg).")
-@click.option(
-    "--bag", type=click.Path(path_type=Path), help="Write every scenario as a rosbag2 (MCAP) into this folder."
-)
+@click.option("--plot", type=_PATH, help="Draw your node's output over the solution's (.svg).")
+@click.option("--bag", type=_PATH, help="Write every scenario as a rosbag2 (MCAP) into this folder.")
 @click.option("-v", "--verbose", is_flag=True, help="Print the node's log, too.")
 @click.option("--real-time", is_flag=True, help="Run in real time, not as fast as possible.")
 @click.option("--seed", default=1, show_default=True, help="The seed for scenarios with random values.")
@@ -42,24 +43,21 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
     type=click.Choice([level.value for level in Isolation]),
     help="How to isolate the node from this machine.  [default: the strongest that works here]",
 )
-@click.option("--out", type=click.Path(path_type=Path), help="A class: the folder for the results.")
+@click.option("--out", type=_PATH, help="A class: the folder for the results.")
+# From here on, the names are those of the fields of ClassRequest.
 @click.option("--jobs", type=click.IntRange(1, 64), help="A class: how many submissions to grade at once.")
 @click.option(
-    "--format", "form", metavar="NAME", default="", help="A class: how to read it, such as canvas, if it is not clear."
+    "--format", metavar="NAME", default="", help="A class: how to read it, such as canvas, if it is not clear."
 )
 @click.option(
     "--attempts", type=click.Choice(["last", "first", "best"]), help="A class: which of several attempts counts."
 )
 @click.option(
     "--roster",
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    type=_TABLE,
     help="A class: everybody in it, as a CSV file with the column student, or a list that your platform exports.",
 )
-@click.option(
-    "--groups",
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="A class: a CSV file with the columns group, student.",
-)
+@click.option("--groups", type=_TABLE, help="A class: a CSV file with the columns group, student.")
 @click.option("--skip", is_flag=True, help="A class: grade everything that is clear, and end with exit code 1.")
 @click.option(
     "--regrade",
@@ -69,11 +67,7 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
     metavar="[STUDENT]",
     help="A class: grade unchanged submissions again, of all students or of one, and show what is different.",
 )
-@click.option(
-    "--overrides",
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="A class: a CSV file with the columns student, points or due, reason.",
-)
+@click.option("--overrides", type=_TABLE, help="A class: a CSV file with the columns student, points or due, reason.")
 @click.option("--scheduler", metavar="ADDRESS", default="", help="A class: grade on this Dask cluster.")
 @click.option(
     "--rejudge",
@@ -81,7 +75,7 @@ FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
     help="A class: judge the stored recordings with the checks as they are now, without running anything, and show "
     "what is different before any grade is replaced.",
 )
-@click.option("--yes", is_flag=True, help="With --rejudge: replace the grades without asking.")
+@click.option("--yes", "replace", is_flag=True, help="With --rejudge: replace the grades without asking.")
 @click.option("--publish", is_flag=True, help="A class: also write one zip per student, to hand out.")
 def grade(
     exercise: str,
@@ -95,18 +89,7 @@ def grade(
     seed: int,
     isolation: str | None,
     out: Path | None,
-    jobs: int | None,
-    form: str,
-    attempts: str | None,
-    roster: Path | None,
-    groups: Path | None,
-    skip: bool,
-    regrade: tuple[str, ...],
-    overrides: Path | None,
-    scheduler: str,
-    rejudge: bool,
-    yes: bool,
-    publish: bool,
+    **of_class: Any,
 ) -> None:
     """Grade one SUBMISSION for an EXERCISE, or a whole class: run the node, and say what is right and what is wrong.
 
@@ -153,21 +136,7 @@ def grade(
         if out and not mistake:
             _refuse_a_single_program(submission)
             _refuse_results_among_submissions(Path(submission), out)
-            class_options = {
-                "jobs": jobs,
-                "format": form,
-                "attempts": attempts or "",
-                "roster": roster,
-                "groups": groups,
-                "skip": skip,
-                "regrade": regrade,
-                "overrides": overrides,
-                "scheduler": scheduler,
-                "rejudge": rejudge,
-                "replace": yes,
-                "publish": publish,
-            }
-            sys.exit(_class(loaded, Path(submission), out, options, class_options))
+            sys.exit(_class(loaded, Path(submission), out, options, of_class))
         is_class = submission.endswith(".csv") or (Path(submission).is_dir() and not is_one(Path(submission), loaded))
         if not mistake and is_class:
             raise click.UsageError(f"{submission}: to grade a class, give a folder for the results with --out.")
@@ -218,9 +187,7 @@ def _options(options: dict[str, Any]) -> Options:
     return Options(**options)
 
 
-def _class(
-    exercise: Exercise, submissions: Path, out: Path, options: dict[str, Any], class_options: dict[str, Any]
-) -> int:
+def _class(exercise: Exercise, submissions: Path, out: Path, options: dict[str, Any], of_class: dict[str, Any]) -> int:
     """Grade a class. The imports are here so that a single submission is graded sooner."""
     from rich.console import Console
 
@@ -231,9 +198,9 @@ def _class(
     from grader.classroom.results import Busy, NotWritable, OtherExercise
     from grader.classroom.submissions import SubmissionsError
 
-    if class_options["format"] not in ("", *FORMATS):
-        raise click.UsageError(f"--format {class_options['format']}: there are {', '.join(FORMATS)}.")
-    class_request = ClassRequest(submissions, out, _options(options), **class_options)
+    if of_class["format"] not in ("", *FORMATS):
+        raise click.UsageError(f"--format {of_class['format']}: there are {', '.join(FORMATS)}.")
+    class_request = ClassRequest(submissions, out, _options(options), **of_class)
     try:
         return grade_class(exercise, class_request, Console(soft_wrap=False, highlight=False))
     except NotWritable as error:

@@ -37,7 +37,7 @@ class CollectOptions:
     """
 
     format: str = ""
-    attempts: str = ""
+    attempts: str | None = None
     zone: tzinfo | None = None
     roster: tuple[RosterRow, ...] = ()
     groups: tuple[Group, ...] = ()

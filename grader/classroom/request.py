@@ -31,7 +31,7 @@ class ClassRequest:
     options: Options
     jobs: int | None = None
     format: str = ""
-    attempts: str = ""
+    attempts: str | None = None
     roster: Path | None = None
     groups: Path | None = None
     skip: bool = False
