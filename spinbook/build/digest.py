@@ -10,6 +10,7 @@ import platform
 from collections.abc import Iterable
 from pathlib import Path
 
+import ros_in_python
 import spinbook
 
 
@@ -48,8 +49,10 @@ def _files(path: Path) -> Iterable[Path]:
 
 @functools.cache
 def code_digest(*folders: str) -> str:
-    """Return a digest of Spinbook's own code in these folders: its output may change with it."""
-    return folders_digest(Path(spinbook.__file__).parent, *folders)
+    """Return a digest of Spinbook's own code in these folders, and of ros_in_python: its output may change with it."""
+    root = Path(spinbook.__file__).parent
+    assert all((root / folder).exists() for folder in folders), folders
+    return digest(folders_digest(root, *folders), folders_digest(Path(ros_in_python.__file__).parent, "."))
 
 
 @functools.cache

@@ -26,7 +26,7 @@ from spinbook.kernel.process import KeptProcess
 DEADLINE_S = 600.0
 _TO_SAY_SO_S = 20.0
 #: The parts of Spinbook that a notebook's cells use.
-_USED_BY_CELLS = ("check", "chapter", "course", "graph", "kernel", "ros2", "turtlesim", "package", "interfaces")
+_USED_BY_CELLS = ("chapter", "course", "graph", "kernel", "package", "interfaces")
 
 
 @dataclass(frozen=True)

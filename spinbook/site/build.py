@@ -33,21 +33,7 @@ class Site:
 
 
 #: The code of Spinbook that affects a site, including the outputs of its notebooks.
-_CODE = (
-    "site",
-    "browser",
-    "chapter",
-    "build",
-    "chapters.py",
-    "course",
-    "kernel",
-    "ros2",
-    "turtlesim",
-    "package",
-    "graph",
-    "animation.py",
-    "interfaces",
-)
+_CODE = ("site", "browser", "chapter", "build", "chapters.py", "course", "kernel", "package", "graph", "interfaces")
 
 
 def unchanged_site(course: Course, *, as_it_ran: bool) -> Site | None:
