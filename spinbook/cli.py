@@ -20,7 +20,8 @@ from spinbook.problem import SpinbookError
 @dataclass(frozen=True)
 class Verb:
     """A verb: its click command as `module:name`, and one line for `spinbook --help`. Without the module `needs`, the
-    verb can only show its help. If it `runs` exercises, the course's interfaces that they use are compiled first.
+    verb can only show its help. If it `runs` exercises, it needs rclpy, and the course's interfaces that they use are
+    compiled first.
     """
 
     command: str
@@ -48,49 +49,29 @@ AUTHORS = {
     ),
 }
 INSTRUCTORS = {
-    "grade": Verb("grader.command:grade", "Grade one submission, or a whole class.", needs="rclpy", runs=True),
-    "trace": Verb(
-        "grader.report.trace:trace", "Show what happens in one scenario of an exercise.", needs="rclpy", runs=True
-    ),
-    "audit": Verb(
-        "grader.audit.command:audit", "Show whether an exercise's checks catch what is wrong.", needs="rclpy", runs=True
-    ),
+    "grade": Verb("grader.command:grade", "Grade one submission, or a whole class.", runs=True),
+    "trace": Verb("grader.report.trace:trace", "Show what happens in one scenario of an exercise.", runs=True),
+    "audit": Verb("grader.audit.command:audit", "Show whether an exercise's checks catch what is wrong.", runs=True),
     "replay": Verb(
-        "grader.classroom.replay:replay",
-        "Show what a student's program did, as plots and bags.",
-        needs="rclpy",
-        runs=True,
+        "grader.classroom.replay:replay", "Show what a student's program did, as plots and bags.", runs=True
     ),
     "gradebook": Verb("spinbook.gradebook:gradebook", "Write one page and one table for all exercises."),
     "gradescope": Verb(
-        "grader.gradescope.command:gradescope", "Write an autograder to upload to Gradescope.", needs="rclpy", runs=True
+        "grader.gradescope.command:gradescope", "Write an autograder to upload to Gradescope.", runs=True
     ),
     "classroom50": Verb(
-        "grader.classroom50.command:classroom50",
-        "Write an autograder for Classroom 50 and GitHub Actions.",
-        needs="rclpy",
-        runs=True,
+        "grader.classroom50.command:classroom50", "Write an autograder for Classroom 50 and GitHub Actions.", runs=True
     ),
 }
 STUDENTS = {
-    "check": Verb(
-        "spinbook.submit.command:check", "Say what the public checks say of your node.", needs="rclpy", runs=True
-    ),
+    "check": Verb("spinbook.submit.command:check", "Say what the public checks say of your node.", runs=True),
     "try": Verb(
-        "spinbook.submit.trying:try_out",
-        "Play what surrounds your node in an exercise, in real time.",
-        needs="rclpy",
-        runs=True,
+        "spinbook.submit.trying:try_out", "Play what surrounds your node in an exercise, in real time.", runs=True
     ),
     "hint": Verb(
         "spinbook.submit.command:hint", "Show the next hint about the first check that failed.", needs="rclpy"
     ),
-    "submit": Verb(
-        "spinbook.submit.command:submit",
-        "Run the public checks, and write one file to upload.",
-        needs="rclpy",
-        runs=True,
-    ),
+    "submit": Verb("spinbook.submit.command:submit", "Run the public checks, and write one file to upload.", runs=True),
     "update": Verb("spinbook.update.command:update", "Update your folder to a newer handout; your work stays."),
 }
 EVERYBODY = {
@@ -130,10 +111,12 @@ class Verbs(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Refuse a verb whose `needs` is missing, unless only its help was requested."""
         name, command, rest = super().resolve_command(ctx, args)
-        needed = VERBS[name].needs if name in VERBS else ""
-        if name and needed and not set(rest) & {"-h", "--help"} and importlib.util.find_spec(needed) is None:
+        if name is None or name not in VERBS or set(rest) & {"-h", "--help"}:
+            return name, command, rest
+        needed = "rclpy" if VERBS[name].runs else VERBS[name].needs
+        if needed and importlib.util.find_spec(needed) is None:
             raise _missing(name, needed)
-        if name in VERBS and VERBS[name].runs and not set(rest) & {"-h", "--help"}:
+        if VERBS[name].runs:
             _compile_interfaces(rest)
         return name, command, rest
 
