@@ -39,17 +39,8 @@ DEADLINE = "deadline"
 KEYS: dict[str, dict[str, bool]] = {
     "": dict.fromkeys(
         (
-            "title",
-            "points",
-            "file",
-            "class",
-            "node",
-            "reference_node",
-            "advice",
-            "count_hints",
-            "packages",
-            "many_answers",
-            "nodes",
+            *("title", "points", "file", "class", "node", "reference_node", "advice", "count_hints", "packages"),
+            *("many_answers", "nodes"),
         ),
         False,
     ),

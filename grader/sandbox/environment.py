@@ -10,22 +10,9 @@ from groundwork.clean_environment import GUARD, without_foreign
 
 #: What Python and ROS 2 themselves need. Nothing else from this process's environment reaches a sandbox.
 RUNTIME_VARIABLES = (
-    "PATH",
-    "LANG",
-    "LD_LIBRARY_PATH",
-    GUARD,
-    "PYTHONPATH",
-    "PYTHONHASHSEED",
-    "PYTHONDONTWRITEBYTECODE",
-    "PYTHONNOUSERSITE",
-    "OPENBLAS_NUM_THREADS",
-    "MALLOC_ARENA_MAX",
-    "AMENT_PREFIX_PATH",
-    "RMW_IMPLEMENTATION",
-    "ROS_DISTRO",
-    "ROS_VERSION",
-    "ROS_PYTHON_VERSION",
-    "CONDA_PREFIX",
+    *("PATH", "LANG", "LD_LIBRARY_PATH", GUARD, "PYTHONPATH", "PYTHONHASHSEED", "PYTHONDONTWRITEBYTECODE"),
+    *("PYTHONNOUSERSITE", "OPENBLAS_NUM_THREADS", "MALLOC_ARENA_MAX", "AMENT_PREFIX_PATH", "RMW_IMPLEMENTATION"),
+    *("ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION", "CONDA_PREFIX"),
 )
 
 #: What the grader's own processes get besides: where files are, and how texts are written.

@@ -128,18 +128,8 @@ class SandboxedProgram:
 
 
 PRELOAD = (
-    "rclpy",
-    "rclpy.action",
-    "rclpy.executors",
-    "rclpy.qos",
-    "numpy",
-    "rcl_interfaces.msg",
-    "rcl_interfaces.srv",
-    "rosgraph_msgs.msg",
-    "builtin_interfaces.msg",
-    "std_msgs.msg",
-    "geometry_msgs.msg",
-    "sensor_msgs.msg",
+    *("rclpy", "rclpy.action", "rclpy.executors", "rclpy.qos", "numpy", "rcl_interfaces.msg", "rcl_interfaces.srv"),
+    *("rosgraph_msgs.msg", "builtin_interfaces.msg", "std_msgs.msg", "geometry_msgs.msg", "sensor_msgs.msg"),
     "type_description_interfaces.msg",  # for a service that each node has
     "type_description_interfaces.srv",
 )

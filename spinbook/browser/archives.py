@@ -31,27 +31,11 @@ _LEXERS = ("__init__.py", "_mapping.py", "python.py", "diff.py")
 #: Of ROS in Python, what needs numpy, or libraries that a page does not have: an import says so (process.py).
 _WITHOUT_A_PAGE = ("cv_bridge", "rosbag2_py", "tf_transformations")
 _SPINBOOK = (
-    "__init__.py",
-    "problem.py",
-    "kernel/__init__.py",
-    "kernel/entry.py",
-    "kernel/recorder_lines.py",
-    "kernel/robot_recorder.py",
-    "kernel/surroundings.py",
-    "kernel/timeline.py",
-    "kernel/timeline_picture.py",
-    "kernel/timeline_recorder.py",
-    "kernel/plot",
-    "browser",
-    "graph",
-    "chapter/__init__.py",
-    "chapter/bindings.py",
-    "chapter/interface_fields.py",
-    "chapter/node_classes.py",
-    "chapter/syntax.py",
-    "chapter/terminal.py",
-    "chapter/variable_types.py",
-    "chapter/wrong_fields.py",
+    *("__init__.py", "problem.py", "kernel/__init__.py", "kernel/entry.py", "kernel/recorder_lines.py"),
+    *("kernel/robot_recorder.py", "kernel/surroundings.py", "kernel/timeline.py", "kernel/timeline_picture.py"),
+    *("kernel/timeline_recorder.py", "kernel/plot", "browser", "graph", "chapter/__init__.py", "chapter/bindings.py"),
+    *("chapter/interface_fields.py", "chapter/node_classes.py", "chapter/syntax.py", "chapter/terminal.py"),
+    *("chapter/variable_types.py", "chapter/wrong_fields.py"),
 )
 #: The parts of the grader that run scenarios and judge recordings. The rest starts programs and sandboxes them.
 _GRADER = ("__init__.py", "checking", "exercise", "recording", "runner", "scenario", "submission", "report")

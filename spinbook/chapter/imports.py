@@ -27,21 +27,9 @@ _DISTRIBUTIONS = {
 #: Packages that exist but may not be installed here, so that none is taken for a misspelling of another.
 _REAL = frozenset(
     [
-        "nav2_msgs",
-        "control_msgs",
-        "moveit_msgs",
-        "vision_msgs",
-        "tf2_msgs",
-        "shape_msgs",
-        "stereo_msgs",
-        "map_msgs",
-        "object_recognition_msgs",
-        "trajectory_msgs",
-        "visualization_msgs",
-        "diagnostic_msgs",
-        "actionlib_msgs",
-        "geographic_msgs",
-        "audio_common_msgs",
+        *("nav2_msgs", "control_msgs", "moveit_msgs", "vision_msgs", "tf2_msgs", "shape_msgs", "stereo_msgs"),
+        *("map_msgs", "object_recognition_msgs", "trajectory_msgs", "visualization_msgs", "diagnostic_msgs"),
+        *("actionlib_msgs", "geographic_msgs", "audio_common_msgs"),
     ]
 )
 #: Python modules of ROS 2 that PyPI does not have.

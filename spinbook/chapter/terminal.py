@@ -34,21 +34,8 @@ MOVING_ABOUT = frozenset({"cd", "source", ".", "export", "unset", "clear"})
 #: Commands that show or make files: a notebook can skip them if the fence has a command that runs.
 _BESIDE = frozenset(
     [
-        "mkdir",
-        "touch",
-        "ls",
-        "pwd",
-        "cat",
-        "nano",
-        "vim",
-        "vi",
-        "gedit",
-        "code",
-        "tree",
-        "chmod",
-        "echo",
-        "sleep",
-        "exit",
+        *("mkdir", "touch", "ls", "pwd", "cat", "nano", "vim", "vi", "gedit", "code", "tree", "chmod", "echo"),
+        *("sleep", "exit"),
     ]
 )
 _SHELL_SYNTAX = re.compile(r"[|;<>`]|&&|\$\(|(?<!\S)&(?!\S)|&$")

@@ -26,14 +26,7 @@ _SKIPPED = frozenset(
 #: Files about a repository, not of a book.
 _NOT_CHAPTERS = frozenset(
     {
-        "contributing",
-        "changelog",
-        "license",
-        "code_of_conduct",
-        "security",
-        "summary",
-        "_sidebar",
-        "_navbar",
+        *("contributing", "changelog", "license", "code_of_conduct", "security", "summary", "_sidebar", "_navbar"),
         "_coverpage",
     }
     | {"claude", "agents", "gemini", "authors", "pull_request_template"}
