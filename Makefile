@@ -10,6 +10,12 @@ BIN    := $(VENV)/bin
 # Set by another environment's ROS wheels, it would keep ours from finding their libraries.
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 
+# Another installation's modules and settings; a sourced ROS 2, which sets ROS_DISTRO, needs its PYTHONPATH.
+unexport PYTHONHOME PYTHONOPTIMIZE PYTHONWARNINGS LD_PRELOAD
+ifndef ROS_DISTRO
+unexport PYTHONPATH
+endif
+
 # Without __pycache__, each of some thousand Pythons would compile Spinbook's modules again.
 unexport PYTHONDONTWRITEBYTECODE
 

@@ -16,8 +16,10 @@ LOG=$VENV/setup.log
 say() { printf '%s\n' "$@" >&2; }
 fail() { say "" "$@"; exit 1; }
 
-# Another environment's wheels mark what they have done to LD_LIBRARY_PATH; each Python here does it for itself.
-unset _ROS_WHEELS_BOOTSTRAP_COMPLETE
+# Another environment's wheels mark what they have done to LD_LIBRARY_PATH; each Python here does it for itself. What
+# another installation has set would keep Python from starting, or hide its modules; a sourced ROS 2 gets its path back.
+MODULES=${PYTHONPATH:-}
+unset _ROS_WHEELS_BOOTSTRAP_COMPLETE PYTHONPATH PYTHONHOME PYTHONSTARTUP PYTHONINSPECT PYTHONOPTIMIZE PYTHONWARNINGS LD_PRELOAD
 
 refuse_read_only() {
     if [ -w . ]; then return; fi
@@ -94,7 +96,8 @@ To use python3 all the same: make PYTHON=python3 ..."
 
 read_wishes() {
     wanted=$("$PYTHON" -c 'import os, sys; print("python", os.path.realpath(sys.executable))')
-    ros=$("$PYTHON" -I spinbook/doctor/ros_origin.py) || exit 1
+    ros=$(PYTHONPATH=$MODULES "$PYTHON" -I spinbook/doctor/ros_origin.py) || exit 1
+    if [ "$ros" != wheels ]; then export PYTHONPATH="$MODULES"; fi
     wanted=$(printf '%s\nplace %s\nros %s' "$wanted" "$place" "$ros")
     LOCKS=constraints.txt
     # Nothing may shadow a sourced ROS 2, so its wheels are then left out.
@@ -143,7 +146,7 @@ begin() {
 
 # pip sees this environment alone: neither what PYTHONPATH names nor what is set for other uses of pip.
 pip() {
-    env -u PYTHONPATH -u PYTHONHOME -u PIP_TARGET -u PIP_PREFIX -u PIP_CONSTRAINT -u PIP_NO_DEPS PIP_USER=0 \
+    env -u PYTHONPATH -u PIP_TARGET -u PIP_PREFIX -u PIP_CONSTRAINT -u PIP_NO_DEPS PIP_USER=0 \
         "$VENV/bin/python" -m pip --disable-pip-version-check --quiet "$@" >>"$LOG" 2>&1
 }
 
@@ -195,7 +198,11 @@ give_up() {
 
 # It is ready when rclpy really loads, whichever it is.
 try_ros() {
-    "$VENV/bin/python" -c 'import spinbook, std_msgs.msg, rclpy.impl.implementation_singleton' >>"$LOG" 2>&1 && return
+    "$VENV/bin/python" -c '
+import os, sys
+from groundwork.clean_environment import without_foreign
+test = "import spinbook, std_msgs.msg, rclpy.impl.implementation_singleton"
+os.execve(sys.executable, [sys.executable, "-c", test], without_foreign(dict(os.environ)))' >>"$LOG" 2>&1 && return
     : >"$MARK"  # what is installed may be damaged, so the next set-up starts over
     case "$ros" in
         wheels) give_up "Everything is installed, but ROS 2's Python library does not load." ;;

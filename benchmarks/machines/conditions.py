@@ -64,13 +64,22 @@ def variables_of_others(scratch: Path) -> list[Condition]:
     for library in ("librcl.so", "libstdc++.so.6", "libpython3.so"):
         (libraries / library).write_text("not a library")
     ros = {"ROS_DISTRO": "foxy", "AMENT_PREFIX_PATH": "/nowhere", "RMW_IMPLEMENTATION": "rmw_nowhere_cpp"}
+    quiet = {"ROS_LOG_DIR": "/proc/nowhere", "RCUTILS_LOGGING_SEVERITY": "FATAL", "CYCLONEDDS_URI": "file:///nowhere"}
+    guard = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
+    tools = {"PYTEST_ADDOPTS": "--collect-only", "PYTEST_PLUGINS": "nothing", "MPLBACKEND": "TkAgg"}
     return [
         Condition("PYTHONPATH polluted", {"PYTHONPATH": os.fspath(polluted)}),
         Condition("LD_LIBRARY_PATH polluted", {"LD_LIBRARY_PATH": os.fspath(libraries)}),
+        Condition("LD_LIBRARY_PATH with gaps", {"LD_LIBRARY_PATH": ":/usr/lib:.:"}),
+        Condition("the wheels' guard, path lost", {guard: "1", "LD_LIBRARY_PATH": None}),
+        Condition("the wheels' guard, another's path", {guard: "1", "LD_LIBRARY_PATH": os.fspath(libraries)}),
+        Condition("PYTHONHOME of another Python", {"PYTHONHOME": "/nowhere"}),
         Condition("LD_PRELOAD of nothing", {"LD_PRELOAD": "/nowhere/libnothing.so"}),
         Condition("PYTHON* set", {"PYTHONOPTIMIZE": "2", "PYTHONHASHSEED": "7", "PYTHONSAFEPATH": "1"}),
         Condition("PYTHONWARNINGS=error", {"PYTHONWARNINGS": "error"}),
         Condition("ROS variables of Foxy", ros),
+        Condition("ROS logs silent, and nowhere", quiet),
+        Condition("variables of pytest, matplotlib", {**tools, "OMP_NUM_THREADS": "0", "VIRTUAL_ENV": "/nowhere"}),
         Condition("ROS_DOMAIN_ID=kitchen", {"ROS_DOMAIN_ID": "kitchen"}),
     ]
 
@@ -95,6 +104,7 @@ def kinds_of_text() -> list[Condition]:
         Condition("locale C, ASCII", {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}),
         Condition("locale that is not there", {"LC_ALL": "tr_TR.ISO-8859-9", "LANG": "tr_TR"}),
         Condition("stdout in Latin-1", {"PYTHONIOENCODING": "latin-1"}),
+        Condition("stdout in ASCII", {"PYTHONIOENCODING": "ascii", "LANG": "C"}),
         Condition("TZ of Chatham", {"TZ": "Pacific/Chatham"}),
         Condition("TZ wrong", {"TZ": "Middle/Earth"}),
         Condition("no TERM, no colours", {"TERM": None, "NO_COLOR": "1", "COLUMNS": "20"}),
@@ -107,6 +117,7 @@ def limits() -> list[Condition]:
         Condition("umask 077", prefix=("sh", "-c", 'umask 077; exec "$@"', "sh")),
         Condition("umask 000", prefix=("sh", "-c", 'umask 000; exec "$@"', "sh")),
         limited("files 128", "-n 128"),
+        limited("processes 64", "-u 64"),
         limited("stack 1 MB", "-s 1024"),
         limited("no core, 100 MB a file", "-c 0 -f 204800"),
         limited("memory 1 GB", "-v 1048576"),
@@ -125,13 +136,13 @@ def parts_missing(scratch: Path) -> list[Condition]:
         Condition("no namespaces", prefix=(*NO_NAMESPACES, FORBID, "sh"), needs=("unshare",)),
         Condition("no network", prefix=("unshare", "--net"), needs=("unshare",)),
         Condition("no /proc", prefix=("unshare", "--mount", "sh", "-c", no_proc, "sh"), needs=("unshare",)),
-        Condition(
-            "not root",
-            {"HOME": "/nonexistent"},
-            ("setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"),
-            ("setpriv",),
-        ),
+        Condition("not root", {"HOME": "/nonexistent"}, _as_user(65534), ("setpriv",)),
+        Condition("a user without a name or HOME", {"HOME": None}, _as_user(54321), ("setpriv",)),
     ]
+
+
+def _as_user(number: int) -> tuple[str, ...]:
+    return ("setpriv", f"--reuid={number}", f"--regid={number}", "--clear-groups")
 
 
 def _path_without(folder: Path, *names: str) -> str:

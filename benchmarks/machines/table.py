@@ -1,4 +1,4 @@
-"""Odd machines: what `doctor`, a grade, a class of two and a handout's check come to on each.
+"""Odd machines: what `doctor`, a grade, a class of two, a handout's check and `%check` come to on each.
 
     python benchmarks/machines/table.py                           every condition
     python benchmarks/machines/table.py "PYTHONPATH polluted"     some of them
@@ -25,6 +25,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+import nbformat
 from conditions import Condition, conditions
 
 ROOT = Path(__file__).parents[2]
@@ -52,7 +53,12 @@ class Place:
     handout: Path
     submissions: Path
     results: Path
-    spinbook: tuple[str, ...]
+    python: str
+
+    @property
+    def spinbook(self) -> str:
+        """The command, of this Python."""
+        return os.fspath(Path(self.python).with_name("spinbook"))
 
 
 #: What a command must come to: the sentence that is wrong about it, or nothing.
@@ -61,10 +67,10 @@ Judgement = Callable[[Ended, Place], str | None]
 
 @dataclass(frozen=True)
 class Job:
-    """Something that a user does: a title, the words behind `spinbook`, the folder, and what it must come to."""
+    """Something that a user does: a title, the command, the folder, and what it must come to."""
 
     title: str
-    words: Callable[[Place], tuple[str, ...]]
+    command: Callable[[Place], tuple[str, ...]]
     folder: Callable[[Place], Path]
     wrong: Judgement
 
@@ -92,15 +98,29 @@ def diagnosis(ended: Ended, _: Place) -> str | None:
 
 
 JOBS = (
-    Job("doctor", lambda _: ("doctor",), lambda place: place.course, diagnosis),
-    Job("one grade", lambda _: ("grade", EXERCISE, SOLUTION), lambda place: place.course, full_marks),
+    Job("doctor", lambda place: (place.spinbook, "doctor"), lambda place: place.course, diagnosis),
+    Job(
+        "one grade", lambda place: (place.spinbook, "grade", EXERCISE, SOLUTION), lambda place: place.course, full_marks
+    ),
     Job(
         "class of two",
-        lambda place: ("grade", EXERCISE, f"{place.submissions}", "--out", f"{place.results}"),
+        lambda place: (place.spinbook, "grade", EXERCISE, f"{place.submissions}", "--out", f"{place.results}"),
         lambda place: place.course,
         grades_of_the_class,
     ),
-    Job("handout's check", lambda _: ("check", EXERCISE, "answer.py"), lambda place: place.handout, full_marks),
+    Job(
+        "handout's check",
+        lambda place: (place.spinbook, "check", EXERCISE, "answer.py"),
+        lambda place: place.handout,
+        full_marks,
+    ),
+    # IPython runs a notebook's cells in one process, without Jupyter, which reads a terminal's variables itself.
+    Job(
+        "%check",
+        lambda place: (place.python, "-m", "IPython", "--no-banner", "answer.ipynb"),
+        lambda place: place.handout,
+        full_marks,
+    ),
 )
 
 
@@ -113,7 +133,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory(prefix="spinbook-machines-") as scratch:
         os.chmod(scratch, 0o755)  # noqa: PTH101  # another user's commands read it
         if options.root:
-            return table_of_a_root(options.root)
+            return table_of_a_root(options.root, options.names)
         known = conditions(Path(scratch))
         if unknown := set(options.names) - {condition.name for condition in known}:
             parser.error(f"no such condition: {', '.join(unknown)}. There are: {', '.join(c.name for c in known)}")
@@ -141,7 +161,7 @@ def table(place: Place, chosen: list[Condition]) -> int:
 def outcome(condition: Condition, job: Job, place: Place) -> str:
     """Run a job under a condition; return its field of the table."""
     shutil.rmtree(place.results, ignore_errors=True)
-    command = [*condition.prefix, *place.spinbook, *job.words(place)]
+    command = [*condition.prefix, *job.command(place)]
     ended = run(command, job.folder(place), condition.environment())
     if TRACEBACK in ended.text:
         return f"WRONG: a traceback that ends with {_last_line(ended.text)}"
@@ -176,7 +196,7 @@ def prepared(scratch: Path) -> Place:
         scratch / "student",
         scratch / "submissions",
         scratch / "results",
-        (os.fspath(Path(sys.executable).with_name("spinbook")),),
+        sys.executable,
     )
     tracked = ("course.toml", "chapters", "exercises", "solutions", "interfaces")
     place.course.mkdir()
@@ -195,7 +215,7 @@ def prepared(scratch: Path) -> Place:
 
 def unpack_handout(place: Place) -> None:
     """Make the handout, unpack it, and put the right answer into it."""
-    made = run([*place.spinbook, "handout"], place.course, os.environ)
+    made = run([place.spinbook, "handout"], place.course, os.environ)
     if made.code:
         sys.exit(f"The handout could not be made:\n{made.text}")
     [archive] = (place.course / "build" / "handout").glob("*.zip")
@@ -205,6 +225,10 @@ def unpack_handout(place: Place) -> None:
     for file in folder.iterdir():
         file.rename(place.handout / file.name)
     shutil.copy(place.course / SOLUTION, place.handout / "answer.py")
+    solution = (place.course / SOLUTION).read_text("utf-8")
+    cells = ("%load_ext spinbook", f"%%node {EXERCISE}\n{solution}", f"%check {EXERCISE}")
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
+    nbformat.write(notebook, place.handout / "answer.ipynb")
 
 
 def write_class(place: Place) -> None:
@@ -214,14 +238,14 @@ def write_class(place: Place) -> None:
         (place.submissions / student / f"{EXERCISE}.py").write_text(text, encoding="utf-8")
 
 
-def table_of_a_root(root: Path) -> int:
-    """Copy the project into a bare root folder, set it up there, and print the whole table of that machine."""
+def table_of_a_root(root: Path, names: list[str]) -> int:
+    """Copy the project into a bare root folder, set it up there, and print the table of that machine."""
     archive = subprocess.run(["git", "archive", "HEAD"], cwd=ROOT, capture_output=True, check=True).stdout
-    (root / "spinbook").mkdir()
+    (root / "spinbook").mkdir(exist_ok=True)
     subprocess.run(["tar", "-x", "-C", root / "spinbook"], input=archive, check=True)
     with mounted(root):
-        inside = "cd /spinbook && make setup && exec .venv/bin/python benchmarks/machines/table.py"
-        return subprocess.run(["chroot", root, "sh", "-c", inside], check=False).returncode
+        inside = 'cd /spinbook && make setup && exec .venv/bin/python benchmarks/machines/table.py "$@"'
+        return subprocess.run(["chroot", root, "sh", "-c", inside, "sh", *names], check=False).returncode
 
 
 @contextmanager

@@ -196,8 +196,15 @@ def test_two_at_once_take_turns_and_the_second_has_nothing_to_do(checkout: Check
         process.communicate()
 
 
-def test_another_environments_bootstrap_is_not_passed_on(checkout: Checkout) -> None:
-    checkout.set_up(_ROS_WHEELS_BOOTSTRAP_COMPLETE="1", PYTHONPATH="/nowhere")
+def test_variables_of_another_installation_do_not_matter(checkout: Checkout, tmp_path: Path) -> None:
+    for module in ("enum", "platform", "sitecustomize"):
+        (tmp_path / f"{module}.py").write_text("raise RuntimeError('of another installation')\n")
+    settings = {"PYTHONPATH": f"{tmp_path}", "PYTHONHOME": "/nowhere", "PYTHONWARNINGS": "error", "LD_PRELOAD": "no.so"}
+
+    code, said = checkout.set_up(_ROS_WHEELS_BOOTSTRAP_COMPLETE="1", **settings)
+
+    assert code == 0
+    assert "installation" not in said
     assert all(call.endswith("PYTHONPATH=unset guard=unset") for call in pips(checkout))
 
 

@@ -56,7 +56,7 @@ def without_foreign(environment: dict[str, str], workspaces: bool = True) -> dic
     _put(kept, "AMENT_PREFIX_PATH", prefixes)
     for_cmake = _entries(environment, "CMAKE_PREFIX_PATH")
     _put(kept, "CMAKE_PREFIX_PATH", [entry for entry in for_cmake if _is_inside(entry, [*own, *prefixes])])
-    if os.path.join(sys.prefix, "lib") not in _entries(kept, "LD_LIBRARY_PATH"):
+    if _of_wheels() not in _entries(kept, "LD_LIBRARY_PATH"):
         kept.pop(GUARD, None)  # another installation's wheels have set it
     if _uses_foreign_user_site():
         kept["PYTHONNOUSERSITE"] = "1"
@@ -134,10 +134,15 @@ def _modules(environment: dict[str, str], roots: list[str], has_own_ros: bool) -
 
 
 def _libraries(entries: list[str], roots: list[str]) -> list[str]:
-    own = [entry for entry in entries if _is_inside(entry, roots)]
+    own = [entry for entry in entries if entry == _of_wheels() or _is_inside(entry, roots)]
     foreign = [entry for entry in entries if entry not in own]
     # A cluster's Python may need libraries in folders that only this variable names.
     return [*own, *foreign] if foreign and not _starts_with(own) else own
+
+
+def _of_wheels() -> str:
+    """Return the folder that PyPI's ROS wheels add to `LD_LIBRARY_PATH` whatever this Python's prefix is."""
+    return os.path.join(sys.prefix, "lib")
 
 
 _starts: dict[str, bool] = {}

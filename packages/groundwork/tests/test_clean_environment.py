@@ -100,6 +100,17 @@ def test_a_sourced_ros_stays_as_it_is_where_there_are_no_wheels(
     assert without_foreign(environment, workspaces=False) == environment
 
 
+@pytest.mark.parametrize("prefix", ["/usr", "/usr/local"])
+def test_a_systems_python_keeps_what_its_wheels_have_set(prefix: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Without the guard, the next Python would put the folders, and a middleware before them, in an order of its own.
+    for name in ("prefix", "exec_prefix", "base_prefix", "base_exec_prefix"):
+        monkeypatch.setattr(sys, name, prefix)
+    packages = f"{prefix}/lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
+    set_by_wheels = {"LD_LIBRARY_PATH": f"{packages}/ros_rclpy.libs:{prefix}/lib", GUARD: "1"}
+
+    assert without_foreign({**set_by_wheels, "LD_PRELOAD": "/nowhere/lib.so"}) == set_by_wheels
+
+
 def test_the_guard_of_another_installations_wheels_is_left_out() -> None:
     assert GUARD not in without_foreign({GUARD: "1", "LD_LIBRARY_PATH": "/another/lib"})
 
