@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 #: Modules that a program imports, in a version that breaks whatever gets it.
-POLLUTION = ("rclpy", "numpy", "json", "pytest", "yaml", "std_msgs", "sitecustomize", "sensor_msgs")
+OF_ROS = ("rclpy", "std_msgs", "sensor_msgs")
+POLLUTION = (*OF_ROS, "numpy", "json", "pytest", "yaml", "sitecustomize")
 COMPILERS = ("cc", "gcc", "g++", "c++", "clang", "clang++")
 #: Inside a user namespace of its own, the command may make no further one.
 NO_NAMESPACES = ("unshare", "--user", "--map-root-user", "sh", "-c")
@@ -59,8 +60,11 @@ def variables_of_others(scratch: Path) -> list[Condition]:
     polluted, libraries = scratch / "polluted", scratch / "libraries"
     for folder in (polluted, libraries):
         folder.mkdir()
+    another_ros = scratch / "another-ros"
+    another_ros.mkdir()
     for module in POLLUTION:
-        (polluted / f"{module}.py").write_text("raise RuntimeError('a module of another installation')\n")
+        for folder in (polluted, another_ros) if module in OF_ROS else (polluted,):
+            (folder / f"{module}.py").write_text("raise RuntimeError('a module of another installation')\n")
     for library in ("librcl.so", "libstdc++.so.6", "libpython3.so"):
         (libraries / library).write_text("not a library")
     ros = {"ROS_DISTRO": "foxy", "AMENT_PREFIX_PATH": "/nowhere", "RMW_IMPLEMENTATION": "rmw_nowhere_cpp"}
@@ -69,6 +73,7 @@ def variables_of_others(scratch: Path) -> list[Condition]:
     tools = {"PYTEST_ADDOPTS": "--collect-only", "PYTEST_PLUGINS": "nothing", "MPLBACKEND": "TkAgg"}
     return [
         Condition("PYTHONPATH polluted", {"PYTHONPATH": os.fspath(polluted)}),
+        Condition("PYTHONPATH of another ROS", {"PYTHONPATH": os.fspath(another_ros)}),
         Condition("LD_LIBRARY_PATH polluted", {"LD_LIBRARY_PATH": os.fspath(libraries)}),
         Condition("LD_LIBRARY_PATH with gaps", {"LD_LIBRARY_PATH": ":/usr/lib:.:"}),
         Condition("the wheels' guard, path lost", {guard: "1", "LD_LIBRARY_PATH": None}),

@@ -35,6 +35,8 @@ SOLUTION = f"solutions/{EXERCISE}/solution.py"
 LONGEST_S = 300
 #: What a refusal reads like: a sentence that does not come from Python.
 TRACEBACK = "Traceback (most recent call last)"
+#: What ends a command before a line of Spinbook runs, and who prints it: IPython only imports what is on PYTHONPATH.
+NOT_OURS = {"Fatal Python error": "Python", "IPython/__init__.py": "IPython"}
 
 
 @dataclass(frozen=True)
@@ -163,6 +165,8 @@ def outcome(condition: Condition, job: Job, place: Place) -> str:
     shutil.rmtree(place.results, ignore_errors=True)
     command = [*condition.prefix, *job.command(place)]
     ended = run(command, job.folder(place), condition.environment())
+    if by := next((name for text, name in NOT_OURS.items() if text in ended.text), None):
+        return f"refused by {by}: {_last_line(ended.text)}"
     if TRACEBACK in ended.text:
         return f"WRONG: a traceback that ends with {_last_line(ended.text)}"
     wrong = job.wrong(ended, place)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import sys
 from collections.abc import Mapping
 from datetime import datetime, timezone
@@ -31,8 +30,6 @@ from groundwork.plain_text import print_in_any_encoding
 def main(folder: Path, repository: Path, isolation: str = "") -> int:
     """Grade what is in `repository`; return the exit code."""
     cache_next_to_course(folder)
-    for name in ("result.json", "release-body.md"):
-        _remove(repository / name)  # the student may have written one
     try:
         exercise = load(folder)
         grade = _grade(exercise, repository, isolation)
@@ -52,13 +49,6 @@ def main(folder: Path, repository: Path, isolation: str = "") -> int:
             file.write(text)
     print(f"{grade.score:g} of {grade.points:g} points")
     return 0
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir() and not path.is_symlink():
-        shutil.rmtree(path)
-    else:
-        path.unlink(missing_ok=True)
 
 
 def _grade(exercise: Exercise, repository: Path, isolation: str) -> Grade:

@@ -32,7 +32,7 @@ def examine_sandbox(name: str) -> MachineFinding:
         return warning(
             name,
             f"landlock only ({reasons})",
-            f"It denies students' code files, processes and the network, but not every user's Unix sockets. {_ALLOW}",
+            f"It denies students' code files and all sockets, but shows it the command lines of processes. {_ALLOW}",
         )
     return missing(name, f"none ({reasons})", f"Spinbook does not run students' code without a sandbox. {_ALLOW}")
 

@@ -168,3 +168,18 @@ def test_a_students_modules_and_results_in_the_repository_do_not_count(grader: P
 
     assert json.loads((repository / "result.json").read_text())["score"] == 0
     shutil.rmtree(repository)
+
+
+def test_a_students_result_does_not_stay_where_the_grader_could_not_be_installed(tmp_path: Path) -> None:
+    shutil.copy(ROOT / "grader" / "classroom50" / "autograder.py", tmp_path)
+    (tmp_path / "setup.sh").write_text("echo no network; exit 100\n")
+    repository = tmp_path / "repository"
+    repository.mkdir()
+    (repository / "result.json").write_text('{"score": 99}')
+
+    done = subprocess.run(
+        [sys.executable, tmp_path / "autograder.py"], cwd=repository, capture_output=True, text=True, check=False
+    )
+
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", "no network\n")
+    assert not list(repository.iterdir())

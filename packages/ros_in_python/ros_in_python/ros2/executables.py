@@ -219,12 +219,15 @@ def find(package: str, executable: str, cwd: Path) -> Invocation:
 
 
 def _is_of_this_python(program: Path) -> bool:
-    """Return whether a script's first line names the Python of this environment."""
+    """Return whether a script starts with the Python of this environment, which its first lines name."""
     with program.open("rb") as file:
-        line = file.readline(1000)
-    words = line.removeprefix(b"#!").decode(errors="replace").split() if line.startswith(b"#!") else []
+        first, second = (file.readline(5000).decode(errors="replace") for _ in range(2))
+    words = first.removeprefix("#!").split() if first.startswith("#!") else []
+    if words == ["/bin/sh"] and second.startswith("'''exec' "):
+        # What pip writes if the path is too long for a first line.
+        words = shlex.split(second.removeprefix("'''exec' "))
     if words and Path(words[0]).name == "env":
-        words = [shutil.which(word) or "" for word in words[1:2]]
+        words = [shutil.which(word) or "" for word in words[1:] if not word.startswith("-") and "=" not in word][:1]
     return bool(words) and Path(words[0]).parent == Path(sys.executable).parent
 
 

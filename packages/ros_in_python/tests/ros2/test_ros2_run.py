@@ -134,6 +134,9 @@ def test_an_installed_turtlesim_comes_first(tmp_path: Path, monkeypatch: pytest.
     [
         (f"#!{sys.executable}", True),
         ("#!/usr/bin/env python", True),
+        ("#!/usr/bin/env -S PYTHONUNBUFFERED=1 python -u", True),
+        (f"#!/bin/sh\n'''exec' {sys.executable} \"$0\" \"$@\"\n' '''", True),
+        ("#!/bin/sh\n'''exec' /opt/another/bin/python3 \"$0\" \"$@\"\n' '''", False),
         ("#!/opt/another/bin/python3", False),
         ("#!/usr/bin/env bash", False),
         ("\x7fELF", False),
