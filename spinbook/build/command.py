@@ -177,7 +177,7 @@ def _report_executed(console: Console, executed: ExecutionResult) -> None:
     if executed.node_errors and not executed.failures:
         since = "unchanged since its last run" if executed.cached else f"ran in {executed.seconds:.0f} s"
         count = len(executed.node_errors)
-        what = f"but something went wrong in its nodes ({count} report{'s' * (count > 1)})"
+        what = f"but something went wrong in its nodes or threads ({count} report{'s' * (count > 1)})"
         console.print(f"  ✗ {name}: {since}, {what}", markup=False, style="red")
     elif executed.cached:
         console.print(f"  ✓ {name}: unchanged since its last run", markup=False)

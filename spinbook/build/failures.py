@@ -100,14 +100,21 @@ def _node_error(
 ) -> CellFailure:
     before = cells[: cells.index(shown_in) + 1]
     module, node = about["file"].removesuffix(".py"), about["node"]
-    made = next(
-        (cell for cell in reversed(before) if (_about(cell).get("node") == module if module else _starts(cell, node))),
-        shown_in,
-    )
-    # The first line of its cell is the magic's.
-    line = _line(made) + max(about["line"] - 2, 0)
+    made = next((cell for cell in reversed(before) if _is_of(cell, module, node)), shown_in)
+    # A node's cell begins with its magic, a snippet's perhaps with imports that the chapter does not show.
+    above = 1 if _about(made).get("node") else _about(made).get("above", 0)
+    line = _line(made) + max(about["line"] - 1 - above, 0)
     quoted = "\n".join(row.removeprefix("    | ") for row in about["words"].split("\n")[1:])
     return CellFailure(chapter, line, f"{about['node']} went wrong: {about['what']}", quoted)
+
+
+def _is_of(cell: dict[str, Any], module: str, node: str) -> bool:
+    """Return whether a cell is where an error happened: in its module, in the cell itself, or in a node it starts."""
+    return (
+        module in {_about(cell).get("node"), f"Cell In[{cell.get('execution_count')}]"}
+        if module
+        else _starts(cell, node)
+    )
 
 
 def _starts(cell: dict[str, Any], node: str) -> bool:

@@ -215,7 +215,7 @@ def _shell(fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
     if runnable and not refused:
         fence = replace(fence, code=without_gaps(code, output)) if output else fence
         return ClassifiedFence(fence, CellKind.SHELL, commands=commands, output=output), []
-    ros = next((command for command in refused if command.is_ros), None) or next(
+    ros = next((command for command in refused if command.is_ros or command.meant), None) or next(
         (command for command in refused if re.search(r"\bros2 (run|launch|\w+ \w+)", command.text)), None
     )
     if runnable or ros:
@@ -227,6 +227,10 @@ def _shell(fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
 
 def _not_run(fence: Fence, command: UnsupportedCommand, file: Path) -> Problem:
     line = fence.first_code_line + command.line - 1
+    if command.meant:
+        return Problem(
+            file, line, f"{command.why} (`{command.text}`).", f"Did you mean `{command.meant}`?", Severity.NOT_RUN
+        )
     problem = f"this shell fence is shown and not run: {command.why} (`{command.text}`)."
     fix = "Put what can run into a fence of its own, or write `static` after the language to say that this is meant."
     return Problem(file, line, problem, fix, Severity.WARNING, group="a real shell")

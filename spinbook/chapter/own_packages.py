@@ -35,6 +35,7 @@ _ONE = frozenset(
     "--package-format",
 }
 _SEVERAL = frozenset({"--dependencies"})
+CREATE_OPTIONS = _ONE | _SEVERAL
 #: Files of a package that are not programs.
 _NOT_PROGRAMS = frozenset({"setup.py", "__init__.py", "conftest.py"})
 
@@ -89,6 +90,12 @@ def created_package(words: Sequence[str]) -> tuple[str, str]:
         # After the dependencies, the name is the last word.
         name = words[-1]
     return name, build_type
+
+
+def unknown_option(words: Sequence[str]) -> str:
+    """Return the first option that `ros2 pkg create` does not have; "" if there is none."""
+    options = (word.partition("=")[0] for word in words[3:] if word.startswith("--"))
+    return next((option for option in options if option not in CREATE_OPTIONS), "")
 
 
 def created_node(words: Sequence[str]) -> str:

@@ -116,11 +116,8 @@ class Programs:
             if "self" not in missing:
                 first = missing[0]
                 self._undefined_names[first] = item.fence.first_code_line + code.needs[first] - 1
-            return _static(
-                item,
-                f"it uses {names}, which no earlier snippet of the chapter defines",
-                f"it uses {names}, which nothing above defines.",
-            )
+            reason = f"it uses {names}, which no snippet that runs above defines"
+            return _static(item, reason, f"{reason}.")
         starts_ros = code.initializes and code.starts_ros
         if code.leaves or (code.wants_ros and not code.initializes and not self._has_ros):
             return _static(item, code.leaves or "nothing calls `rclpy.init` before it")
@@ -327,7 +324,7 @@ def _without_definition(file: Path, names: Mapping[str, int]) -> list[Problem]:
         return []
     listed = ", ".join(f"`{name}` (line {line})" for name, line in names.items())
     what = "a snippet is" if len(names) == 1 else "snippets are"
-    problem = f"{what} shown and not run, because nothing above defines {listed}."
+    problem = f"{what} shown and not run, because no snippet that runs above defines {listed}."
     fix = "Define it in a snippet above or import it, or write `static` after the language if it is only to be shown."
     return [Problem(file, min(names.values()), problem, fix, Severity.WARNING, group="a definition")]
 

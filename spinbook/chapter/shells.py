@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import itertools
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -17,7 +18,7 @@ from spinbook.chapter.foreign_commands import READ_KEYS, TO_FILL_IN, Reason, for
 from spinbook.chapter.imports import IN_ROS, ros_packages
 from spinbook.chapter.launch_files import NotSupportedError
 from spinbook.chapter.launches import Launches, launch_words
-from spinbook.chapter.own_packages import OwnPackages, created_node, created_package
+from spinbook.chapter.own_packages import CREATE_OPTIONS, OwnPackages, created_node, created_package, unknown_option
 from spinbook.chapter.program_names import ProgramNames
 from spinbook.chapter.terminal import Command, CommandKind, is_placeholder
 from spinbook.chapter.values_in_commands import wrong_values
@@ -260,14 +261,20 @@ class Shells:
         return any(_file_name(word) not in self._launches.files for word in named)
 
     def _compiled_here(self, command: Command) -> Command:
-        """Return a comment in place of `ros2 pkg create` of a package whose interfaces the chapters define."""
+        """Return a comment in place of a command that makes or builds packages whose interfaces the chapters define."""
         packages = {name.partition("/")[0] for name in self.interfaces}
-        if command.words[1:3] == ("pkg", "create") and created_package(command.words)[0] in packages:
+        makes = command.words[1:3] == ("pkg", "create") and created_package(command.words)[0] in packages
+        chosen = _selected(command.words) if command.kind is CommandKind.COLCON else []
+        if makes or (chosen and packages.issuperset(chosen)):
             return Command(CommandKind.NOTE, f"# {command.text}", (), command.line)
         return command
 
     def _create(self, command: Command) -> Reason | None:
         name, build_type = created_package(command.words)
+        if unknown := unknown_option(command.words):
+            close = difflib.get_close_matches(unknown, CREATE_OPTIONS, n=1)
+            fix = f"Did you mean `{close[0]}`?" if close else f"Its options: {', '.join(sorted(CREATE_OPTIONS))}."
+            return Reason(f"`ros2 pkg create` has no option `{unknown}`", fix, "")
         if build_type != "ament_python":
             return Reason(
                 "it makes a package for C++", "Python packages have --build-type ament_python.", "C++ packages"

@@ -7,26 +7,20 @@ notebook does not, so they become comments. Anything else is shown but not run.
 from __future__ import annotations
 
 import difflib
+import functools
 import re
 import shlex
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 
-#: What `ros2` can do without a ROS installation: noun -> verbs. `run` and `launch` take no verb.
-ROS2 = {
-    "topic": {"list", "echo", "hz", "bw", "delay", "info", "pub", "type", "find"},
-    "node": {"list", "info"},
-    "interface": {"show", "list", "package", "packages", "proto"},
-    "service": {"list", "call", "type", "find", "info"},
-    "action": {"list", "info", "send_goal", "type"},
-    "param": {"list", "get", "set", "describe", "dump", "load", "delete"},
-    "pkg": {"list", "executables", "prefix", "create"},
-    "lifecycle": {"nodes", "get", "set", "list"},
-    "daemon": {"status", "start", "stop"},
-    "run": set(),
-    "launch": set(),
-}
+import click
+
+from ros_in_python.ros2.cli import Menu
+from ros_in_python.ros2.command import NOUNS, ros2
+
+#: The nouns of `ros2` that a package follows, not a verb.
+_STARTING = frozenset({"run", "launch"})
 #: Next to a command that runs, this is the general form of it.
 _FORM = "it holds placeholders for what a reader fills in"
 _IN_A_TERMINAL = frozenset({"bag", "multicast", "doctor", "wtf"})
@@ -89,11 +83,12 @@ class Command:
 
 @dataclass(frozen=True)
 class UnsupportedCommand:
-    """A command that a notebook can't run, and why."""
+    """A command that a notebook can't run, and why; `meant` is the command of which it looks like a misspelling."""
 
     text: str
     line: int
     why: str
+    meant: str = ""
 
     @property
     def is_ros(self) -> bool:
@@ -231,7 +226,8 @@ def _read(text: str, line: int) -> Command | UnsupportedCommand:
     if program in MOVING_ABOUT:
         return Command(CommandKind.NOTE, f"# {text}", (), line)
     if program not in PROGRAMS:
-        return UnsupportedCommand(text, line, f"`{program}` is not ros2, colcon, rqt_plot or rqt_graph")
+        why = f"`{program}` is not ros2, colcon, rqt_plot or rqt_graph"
+        return UnsupportedCommand(text, line, why, _meant(program, PROGRAMS))
     if any(map(_is_to_fill_in, words[1:])):
         return UnsupportedCommand(text, line, _FORM)
     if _SHELL_SYNTAX.search(outside_quotes):
@@ -266,19 +262,33 @@ def _without_comment(text: str) -> str:
 
 
 def _meant(word: str, known: Iterable[str]) -> str:
-    close = difflib.get_close_matches(word, known, n=1, cutoff=0.7)
-    return f"did you mean `{close[0]}`?" if close else f"there are: {', '.join(sorted(known))}"
+    return next(iter(difflib.get_close_matches(word, known, n=1, cutoff=0.7)), "")
+
+
+def _unknown(text: str, line: int, before: str, word: str, known: Iterable[str]) -> UnsupportedCommand:
+    """Return a command whose `word`, after `before`, is not one of those that are known there."""
+    why, close = f"there is no `{before} {word}` here", _meant(word, known)
+    if close:
+        return UnsupportedCommand(text, line, why, f"{before} {close}")
+    return UnsupportedCommand(text, line, f"{why}; there are: {', '.join(sorted(known))}")
+
+
+@functools.cache
+def _verbs(noun: str) -> tuple[str, ...]:
+    """Return the verbs of `ros2 NOUN`."""
+    menu = None if noun in _STARTING else ros2.get_command(click.Context(ros2), noun)
+    return tuple(menu.entries) if isinstance(menu, Menu) else ()
 
 
 def _ros2(text: str, words: tuple[str, ...], line: int) -> Command | UnsupportedCommand:
     noun = words[1] if len(words) > 1 else ""
     if noun in _IN_A_TERMINAL:
         return UnsupportedCommand(text, line, f"`ros2 {noun}` runs in a terminal, not in a notebook")
-    if noun not in ROS2:
-        return UnsupportedCommand(text, line, f"there is no `ros2 {noun}` here; {_meant(noun, ROS2)}")
+    if noun not in NOUNS:
+        return _unknown(text, line, "ros2", noun, NOUNS)
     if noun == "run" and words[2:3] == words[3:4] and words[2:3] and words[2] in _WINDOWS:
         return _window(text.partition(words[2])[2].strip(), words[3:], line)
-    verb = words[2] if len(words) > 2 else ""
-    if ROS2[noun] and verb not in ROS2[noun] and not verb.startswith("-"):
-        return UnsupportedCommand(text, line, f"there is no `ros2 {noun} {verb}` here; {_meant(verb, ROS2[noun])}")
+    verb, verbs = words[2] if len(words) > 2 else "", _verbs(noun)
+    if verbs and verb not in verbs and not verb.startswith("-"):
+        return _unknown(text, line, f"ros2 {noun}", verb, verbs)
     return Command(CommandKind.ROS2, text, words, line)

@@ -75,6 +75,7 @@ class Obstacle:
         count = len(places)
         only = f", {self.unlocks} of them nothing else," if self.unlocks < count else ""
         where = f" in {len(self.chapters)} chapters" if len(self.chapters) > 1 else f" in {self.chapters[0]}"
+        where = "" if many.startswith("chapters") and count > 1 else where
         return f"{count:4} {one if count == 1 else many}{only}{where}. {self.problems[0].fix}"
 
 

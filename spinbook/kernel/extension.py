@@ -44,6 +44,7 @@ def load(shell: Any) -> None:
     shell.events.register("pre_run_cell", lambda info: report_errors(session))
     shell.events.register("post_run_cell", lambda result: report_errors(session))
     shell.set_custom_exc((Exception,), _show_own_frames)
+    session.threads.watch(shell)
     shell.events.register("pre_run_cell", SpinInCell(session.ran).before_cell)
     _find_scripts()
     atexit.register(farewell, session)
@@ -62,7 +63,7 @@ def _leave_other_installations() -> None:
 
 
 def report_errors(session: Session) -> None:
-    """Show what has gone wrong in the notebook's nodes since the last call."""
+    """Show what has gone wrong in the notebook's nodes and threads since the last call."""
     for error in session.new_errors():
         display({"text/plain": error.in_words}, raw=True, metadata={ERROR: error.plain})
 

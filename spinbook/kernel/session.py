@@ -23,6 +23,7 @@ from spinbook.kernel.node_errors import AS_EXPECTED, NodeError, how_it_ended
 from spinbook.kernel.node_registry import NodeRegistry, RunningNode, StopResult
 from spinbook.kernel.process import CellFailed, KeptProcess, Status
 from spinbook.kernel.reader_frames import readable
+from spinbook.kernel.thread_errors import ThreadErrors
 from spinbook.kernel.timeline_cell import TimelineProcess
 from spinbook.package.files import Module
 from spinbook.package.workspace import add_file, add_module
@@ -67,6 +68,7 @@ class Session:
     domain: Domain
     package: Package = field(default_factory=lambda: Package(name="notebook_nodes", workspace="notebook_ws"))
     nodes: NodeRegistry = field(init=False)
+    threads: ThreadErrors = field(default_factory=ThreadErrors)
     ran: dict[str, str] = field(default_factory=dict)
     """The code of each node's cell as it last ran, by the node's name."""
     ran_at: dict[str, float] = field(default_factory=dict)
@@ -75,8 +77,8 @@ class Session:
     """Code that later nodes use, by its name."""
     earlier: dict[str, str] = field(default_factory=dict)
     """The earlier version of each node whose newer one has no `main` of its own."""
-    is_newer: bool = False
-    """Whether the node that starts now ran before with other code."""
+    runs: dict[str, str] = field(default_factory=dict)
+    """The code with which each node was last started, by the node's name."""
     starts: dict[str, tuple[Path, NodeStart]] = field(default_factory=dict)
     """The file of each node and how it is started, by the node's name."""
     head: int = 1
@@ -151,7 +153,6 @@ class Session:
             raise CellFailed(f"A node can't have the package's name, {name}.")
         if name in (after or ()):
             self._keep_earlier(name)
-        self.is_newer = self.ran.get(name, code) != code
         self.ran[name] = code
         self.ran_at[name] = time.time()
         whole = code if after is None else self._whole(name, code, after)
@@ -173,9 +174,10 @@ class Session:
         return None if above is None else (tail[-1], max(line - above, 1))
 
     def new_errors(self) -> list[NodeError]:
-        """Return what has gone wrong in nodes since the last call, meant if the cell's commands expected it."""
+        """Return what has newly gone wrong in nodes and threads; meant if the cell's commands expected it."""
         expected, self.expects_error = self.expects_error, False
-        return [replace(error, meant=error.meant or expected) for error in self.nodes.new_errors()]
+        errors = [*self.nodes.new_errors(), *self.threads.taken()]
+        return [replace(error, meant=error.meant or expected) for error in errors]
 
     def write_file(self, path: str, text: str) -> None:
         """Put a launch or parameter file into the package. Raises CellFailed for any other path."""
@@ -249,8 +251,10 @@ class Session:
         """Start a process that continues in the background, and show its log for a while. Raises CellFailed."""
         if self.nodes.get(name):
             if self.nodes.status(name).running:
-                print(f"(restarting {name}{' with its new version' if self.is_newer else ''})")
+                is_newer = self.runs.get(name, "") != self.ran.get(name, "")
+                print(f"(restarting {name}{' with its new version' if is_newer else ''})")
             self.nodes.stop(name)
+        self.runs[name] = self.ran.get(name, "")
         node = self.nodes.start(name, argv, settings, cwd, expects_error=bound.expects_error)
         self._show(node, bound)
 

@@ -10,14 +10,19 @@ from spinbook.graph.layout import drawings
 from spinbook.graph.model import NodeGraph
 from spinbook.graph.picture import node_graph_svgs
 
+_WORDS = (
+    "This picture was not drawn by hand: it is the ROS graph, watched while the outputs of this page were made. "
+    "Round shapes are nodes. Boxes are topics, with their types, and with their rates where these were measured."
+)
+_DASHED = "Along a dashed arrow nothing flowed: no other end that fits was there at the same time."
 #: The home page shows this many parts of a graph, as an example.
 _PARTS = 2
 
 
 def node_graph_of(course: Course, chapter: Chapter) -> NodeGraph | None:
-    """Return the graph that was recorded while the chapter ran; None if no node ran."""
+    """Return the graph that was recorded while the chapter ran; None if no node had a topic."""
     graph = read_node_graph(course.build_folder / "executed" / f"{chapter.name}.graph.json")
-    return graph if graph and graph.nodes else None
+    return graph if graph and graph.topics else None
 
 
 def read_node_graph(file: Path) -> NodeGraph | None:
@@ -45,15 +50,9 @@ def node_graph_excerpt(graph: NodeGraph) -> str:
 
 def node_graph_section(graph: NodeGraph) -> str:
     """Return the section of a chapter's page, in Markdown."""
-    return f"""\
-## The nodes, as they were seen
-
-This picture was not drawn by hand: it is the ROS graph, watched while the outputs of this page were made. Round shapes
-are nodes. Boxes are topics, with their types, and with their rates where these were measured. Along a dashed arrow
-nothing flowed: no other end that fits was there at the same time.
-
-{node_graph_html(graph)}
-"""
+    picture = node_graph_html(graph)
+    words = f"{_WORDS} {_DASHED}" if "stroke-dasharray" in picture else _WORDS
+    return f"## The nodes, as they were seen\n\n{words}\n\n{picture}\n"
 
 
 def _together(parts: list[str]) -> str:

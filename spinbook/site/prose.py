@@ -30,7 +30,7 @@ from spinbook.site.page import Repository
 
 #: A mermaid drawing's code -> the HTML that shows it, in one line.
 Draw = Callable[[str], str]
-#: The folder of the chapters' pictures, in the staged folder and in the site.
+#: The folder of the chapters' pictures and linked files, in the staged folder and in the site.
 PICTURES = "pictures"
 _SHOWN = frozenset({".png", ".jpg", ".jpeg", ".gif", ".svg", ".webp", ".avif", ".mp4", ".webm"})
 
@@ -39,8 +39,8 @@ _SHOWN = frozenset({".png", ".jpg", ".jpeg", ".gif", ".svg", ".webp", ".avif", "
 class Links:
     """Resolves the links of the text. `pages` maps files of the course to pages; all paths are relative to the course.
 
-    `pictures` collects the files that the pages show: path in the site -> content. `anchors` are the headings' ids
-    on the site, by file and the id that JupyterLab gives them.
+    `pictures` collects the files that the pages show or lead to: path in the site -> content. `anchors` are the
+    headings' ids on the site, by file and the id that JupyterLab gives them.
     """
 
     pages: Mapping[str, str]
@@ -58,14 +58,21 @@ class Links:
         if full in self.pages:
             slug = self.anchors.get((full, unquote(anchor[1:])))
             return posixpath.relpath(self.pages[full], page_folder or ".") + (f"#{slug}" if slug else anchor)
-        if is_image and file is not None and file.suffix.lower() in _SHOWN:
-            return posixpath.relpath(self._picture(file), page_folder or ".")
+        if file is not None and (file.suffix.lower() in _SHOWN if is_image else self._has_no_other_place(file)):
+            return posixpath.relpath(self._copied(file, is_image), page_folder or ".")
         link = self.repository.link(Path(full))
         return quote(link, safe=":/?#=&%") + anchor if link else None
 
-    def _picture(self, file: Path) -> str:
+    def _has_no_other_place(self, file: Path) -> bool:
+        """Return whether readers get a linked file only if it is on the site: the course has no repository."""
+        is_file = (self.repository.root / file).is_file()
+        return is_file and not self.repository.url and file.parts[0] != "solutions"
+
+    def _copied(self, file: Path, is_image: bool) -> str:
         data = (self.repository.root / file).read_bytes()
-        name = f"{PICTURES}/{hashlib.sha256(data).hexdigest()[:16]}{file.suffix.lower()}"
+        # Readers save a linked file under its own name.
+        ending = file.suffix.lower() if is_image else "/" + re.sub(r"[^\w.-]+", "-", file.name)
+        name = f"{PICTURES}/{hashlib.sha256(data).hexdigest()[:16]}{ending}"
         self.pictures[name] = data
         return name
 

@@ -8,6 +8,7 @@ import re
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from io import StringIO
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -27,8 +28,8 @@ from spinbook.site.contents import SiteContents
 from spinbook.site.extension import NAME
 from spinbook.site.page import FRAME_SUFFIX, HOME, NOT_FOUND, own_pages
 
-#: The pictures and the other files of Sphinx's output that are published.
-_IMAGES = "_images"
+#: The pictures, linked files and other files of Sphinx's output that are published.
+_COPIED = ("_images/*", "_downloads/*/*")
 _SEARCH_DATA = "search-data.js"
 _OURS = ("early.js", "site.js", "run.js", "search.js", "site.css", "print.css", "icon.svg", _SEARCH_DATA)
 
@@ -47,10 +48,10 @@ def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], 
         # Servers show this page at any address.
         published[lost] = _RELATIVE.sub(rb'\1="' + address.encode() + rb'\2"', published[lost])
     used = b"\n".join(published.values())
-    for image in (html / _IMAGES).glob("*"):
-        # Sphinx keeps pictures of earlier builds: skip those that no page uses.
-        if image.name.encode() in used:
-            published[image.relative_to(html)] = image.read_bytes()
+    for file in chain.from_iterable(map(html.glob, _COPIED)):
+        # Sphinx keeps files of earlier builds: skip those that no page uses.
+        if file.relative_to(html).as_posix().encode() in used:
+            published[file.relative_to(html)] = file.read_bytes()
     published |= {Path("_static", name): data for name, data in scripts.items()}
     for path, content in files.items():
         published[Path(path)] = content.encode("utf-8") if isinstance(content, str) else content

@@ -97,6 +97,8 @@ CHAPTERS = {
     "run": f"# One\n\n{pump('motor', 'raise KeyError(9)').replace('import sys', 'import sys; sys.argv[1]')}\n"
     f'```bash until="call 1" seconds=30\nros2 run robot motor fast\n```\n\n{SLEEP}',
 }
+SNIPPET = "def work():\n    raise LookupError(4)\n\nthread = threading.Thread(target=work)\n"
+CHAPTERS["snippet"] = f"# One\n\n```python\nimport threading\n\n{SNIPPET}thread.start()\nthread.join()\n```\n"
 CHAPTERS["launched"] = CHAPTERS["launched"].replace('.py" static', '.py" until="call 1"')
 
 
@@ -126,6 +128,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> BuiltCourse:
         ("signals", "import os", "pipe went wrong: It was ended by signal 6 (SIGABRT)."),
         ("swallowed", "import os", "drain went wrong: it logged FATAL: *."),
         ("thread", "threading.Thread(", "tank went wrong: KeyError: 1."),
+        ("snippet", "raise LookupError", "thread work went wrong: LookupError: 4."),
         ("closing", "raise OSError", "lid went wrong: OSError: 5. It ended with exit code 1."),
         ("run", "raise KeyError", "motor went wrong: KeyError: 9. It ended with exit code 1."),
         ("launched", "raise RuntimeError", "line went wrong: RuntimeError: 3"),
@@ -190,5 +193,5 @@ def test_the_site_marks_the_chapter_and_the_output(built: BuiltCourse) -> None:
     assert re.search(r'✗ Something went wrong when this chapter ran: <a href="#(wrong-code-\w+)">see its output', page)
     assert re.search(r'id="wrong-code-\w+">✗ Output: something went wrong</p>', page)
     assert "✗ valve: valve.py, line 21: ValueError: 42." in page, "as in the page's editor, without %%node"
-    assert home.count("✗ Something went wrong when this chapter ran.") == 7
+    assert home.count("✗ Something went wrong when this chapter ran.") == 8
     assert "went-wrong" not in (site / "chapters" / "plain.html").read_text()

@@ -72,7 +72,12 @@ FAULTS: dict[str, tuple[bytes, int, list[str], str]] = {
     "dead link": (b"# T\n\nsee [there](nowhere.md)\n", 3, ["nowhere.md", "no such file"], WARNING),
     "misspelt attribute": (b"# T\n\n```bash secnods=3\nros2 topic list\n```\n", 3, ["`secnods`", "Known are"], WARNING),
     "pipe in a shell fence": (b"# T\n\n```bash\nros2 topic list | grep x\n```\n", 4, ["not run", "pipes"], WARNING),
-    "unknown ros2 verb": (b"# T\n\n```bash\nros2 topic lsit\n```\n", 4, ["ros2 topic lsit", "list"], WARNING),
+    "unknown ros2 verb": (
+        b"# T\n\n```bash\nros2 topic lsit\n```\n",
+        4,
+        ["ros2 topic lsit", "Did you mean `ros2 topic list`?"],
+        NOT_RUN,
+    ),
     "missing module": (
         b"# T\n\n```python\nfrom geometry_msgs.srv import GetPlan\n```\n",
         4,

@@ -44,6 +44,7 @@ CELLS = {
             "demo_interfaces/msg/Reading.msg",
             "demo_interfaces/action/Countdown.action",
             "tripler",
+            "# colcon build --packages-select demo_interfaces; "
             'ros2 service call /triple demo_interfaces/srv/Triple "{m: 3}"',
         ],
         ["an interface of example_interfaces, which is installed"],
@@ -51,7 +52,12 @@ CELLS = {
     "methods_that_spin": (["asker"], ["nothing makes a node of its class"]),
     "mistakes_in_commands": (
         ['ros2 topic pub /x geometry_msgs/msg/Twist "{linear: {x: 1.0, w: 2}}"'],
-        ["did you mean `topic`?", "did you mean `hz`?", "has no `Strng`", "has no program `turtlesim_nod`"],
+        [
+            "there is no `ros2 topci` here",
+            "there is no `ros2 topic hzz` here",
+            "has no `Strng`",
+            "has no program `turtlesim_nod`",
+        ],
     ),
     "mistakes_in_programs": (["wrong", "snippet"], ["nothing calls `rclpy.init`"]),
     "named_below": (
@@ -81,10 +87,10 @@ CELLS = {
 #: Chapter -> line, and what is said about it; warnings about missing file names are left out.
 PROBLEMS = {
     "across_chapters": [(12, "Its node cells make these: adder, asker")],
-    "interfaces_as_shown": [(47, "Did you mean `n`?"), (61, "Did you mean `n`?")],
+    "interfaces_as_shown": [(47, "Did you mean `n`?"), (62, "Did you mean `n`?")],
     "mistakes_in_commands": [
-        (4, "did you mean `topic`?"),
-        (8, "did you mean `hz`?"),
+        (4, "Did you mean `ros2 topic`?"),
+        (8, "Did you mean `ros2 topic hz`?"),
         (12, "`Vector3` has no field `w`"),
         (16, "Did you mean `String`?"),
         (20, "It has these: draw_square"),

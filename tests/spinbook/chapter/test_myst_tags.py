@@ -128,5 +128,5 @@ def test_skipped_cells_are_in_the_notebook_and_not_run(course: CourseFolder) -> 
 def test_what_a_skipped_cell_would_define_is_not_there_below(course: CourseFolder) -> None:
     prose = [cell.source for cell in course.notebook("tags").cells if cell.cell_type == "markdown"]
 
-    assert "it uses `never`, which nothing above defines" in prose[-1]
+    assert "it uses `never`, which no snippet that runs above defines" in prose[-1]
     assert not any("+++" in text for text in prose)

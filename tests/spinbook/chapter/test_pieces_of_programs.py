@@ -223,6 +223,7 @@ def test_a_demo_node_is_not_the_chapters_own_node_of_that_name(tmp_path: Path) -
         ("ros2 run arm other", "no fence above shows `other`"),
         ("colcon build", "no cell above makes"),
         ("ros2 pkg create --build-type ament_cmake arm", "C++"),
+        ("ros2 pkg create --bui1d-type ament_python arm", "has no option `--bui1d-type`"),
         ("ros2 topic pub /a nav2_msgs/msg/Route {}", "needs `nav2_msgs`"),
         ("ros2 topic echo /scan", "nothing above makes `/scan`"),
         ("ros2 topic echo ...", "holds placeholders"),

@@ -179,7 +179,7 @@ def test_snippets_that_use_what_nothing_defines_are_one_warning(tmp_path: Path) 
     (problem,) = reading(tmp_path, *snippets, method).problems
 
     assert problem.severity is Severity.WARNING
-    assert "nothing above defines `first` (line 4), `third` (line 10)." in problem.problem
+    assert "no snippet that runs above defines `first` (line 4), `third` (line 10)." in problem.problem
     assert "Define it in a snippet above" in problem.fix
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from fences import IMPORTS, MAIN, TALKER, reading
 
+from groundwork.problem import Severity
 from spinbook.chapter.wrong_fields import wrong_fields
 
 MSGS = "from std_msgs.msg import Float64, String\nfrom geometry_msgs.msg import PoseArray, Twist\n"
@@ -202,6 +203,18 @@ def test_right_values_in_commands_are_left_alone(tmp_path: Path) -> None:
 def test_a_misspelt_command_is_corrected(tmp_path: Path) -> None:
     (verb,) = reading(tmp_path, "```bash\nros2 topic ech /x\n```\n").problems
     (noun,) = reading(tmp_path, "```bash\nros2 tpic list\n```\n").problems
+    (program,) = reading(tmp_path, "```bash\nrso2 topic list\n```\n").problems
 
-    assert "there is no `ros2 topic ech` here; did you mean `echo`?" in verb.problem
-    assert "there is no `ros2 tpic` here; did you mean `topic`?" in noun.problem
+    assert (verb.problem, verb.fix) == (
+        "there is no `ros2 topic ech` here (`ros2 topic ech /x`).",
+        "Did you mean `ros2 topic echo`?",
+    )
+    assert noun.fix == "Did you mean `ros2 topic`?"
+    assert program.fix == "Did you mean `ros2`?"
+    assert {verb.severity, noun.severity, program.severity} == {Severity.NOT_RUN}
+
+
+def test_each_verb_of_our_own_ros2_can_stand_in_a_chapter(tmp_path: Path) -> None:
+    commands = "ros2 service echo /rosout/x\nros2 pkg xml std_msgs\nros2 topic find std_msgs/msg/String\n"
+
+    assert reading(tmp_path, f"```bash\n{commands}```\n").problems == ()

@@ -55,6 +55,9 @@ def test_a_newer_version_of_a_class_runs_with_the_main_of_the_one_above_again_an
     assert again.text.startswith(f"{started})\n")
     assert "I am new" in shown.text
     assert "I am new" in again.text
+    newest = kernel.run(newer.replace("'new'", "'newest'"))
+    assert newest.text.startswith(f"{started} with its new version)\n")
+    assert "(restarting speaker)\n" in kernel.run("%ros2 --until newest run robot speaker").text
 
 
 def test_a_newer_version_in_another_file_replaces_the_earlier_one(kernel: Kernel) -> None:

@@ -325,4 +325,14 @@ def test_a_drawing_is_the_site_s_own_file_and_no_link_into_the_repository() -> N
     assert "[it](https://github.com/example/course/blob/main/course.toml)" in shown
 
 
+def test_a_linked_file_is_on_the_site_of_a_course_without_a_repository(tmp_path: Path) -> None:
+    (tmp_path / "log one.csv").write_text("a,b\n")
+    links = Links({}, Repository(tmp_path, ""))
+    shown = rich("[it](<log one.csv>), [code](solutions/a.py)\n", links, "", "chapters", lambda code: DRAWN)
+
+    ((name, data),) = links.pictures.items()
+    assert (name.rpartition("/")[2], data) == ("log-one.csv", b"a,b\n")
+    assert f"[it](../{name})" in shown
+
+
 DRAWN = '<figure><img src="../_drawings/a.svg" alt="a"></figure>'
