@@ -6,7 +6,7 @@ import contextlib
 import signal
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime
 from functools import partial
@@ -26,7 +26,7 @@ from grader.classroom.local import LocalBackend, at_once
 from grader.classroom.misconceptions import Signature, failures_of, grouped
 from grader.classroom.overview import overview_page
 from grader.classroom.rejudge import difference, rejudge
-from grader.classroom.request import Backend, ClassRequest, host_error, no_grade
+from grader.classroom.request import Backend, ClassRequest, ClusterLost, NoCluster, host_error, no_grade
 from grader.classroom.results import ClassGrading, ClassPlan, NotWritable, Results, Tries, not_written
 from grader.classroom.roster import read_roster
 from grader.classroom.signatures import signatures
@@ -66,10 +66,10 @@ def grade_class(exercise: Exercise, class_request: ClassRequest, console: Consol
         collected = replace(
             collected, handed_in=tuple(one for one in collected.handed_in if one.student.id in submissions)
         )
-        with Results(class_request.out) as results, WorkerPool() as workers:
+        with Results(class_request.out) as results, WorkerPool(Path(unpacked)) as workers:
             results.check_exercise(exercise.name)
             grading = grading_of(exercise, class_request.options, workers)
-            with _backend(grading, class_request) as backend:
+            with _backend(grading, class_request, partial(say, console)) as backend:
                 class_grading = ClassGrading(exercise, backend, results, adjuster, grading)
                 for one, error in unreadable:
                     class_grading.give_up(
@@ -120,13 +120,23 @@ def _graded(
             _grade(class_grading, plan, submissions, console)
         return _finish(class_grading, grading, collected, console, class_request.publish)
     except KeyboardInterrupt:
-        kept, wanted = len(class_grading.entries), len(collected.students)
-        console.print(f"Stopped. {kept} of {wanted} are graded and kept. Run the same command to continue.")
+        console.print(f"Stopped. {_kept(class_grading, collected)} Run the same command to continue.")
         return STOPPED
+    except ClusterLost as error:
+        say(console, f"{error} {_kept(class_grading, collected)} Run the same command to continue.", "red")
+        return FAULTS
     except NotWritable as error:
         say(console, f"{error} Free some room, or give another folder with --out.", "red")
         say(console, "What was graded is kept. Run the same command to continue.", "red")
         return FAULTS
+
+
+def _kept(class_grading: ClassGrading, collected: Submissions) -> str:
+    """Return how many submissions have a score that is stored and counts; no other entry is a grade."""
+    stored = [class_grading.results.entry(who) for who in class_grading.entries]
+    kept = {entry.student.id for entry, _ in filter(None, stored) if entry.grade.has_score}
+    students = {one.student.id for one in collected.handed_in}
+    return f"{len(kept & students)} of {len(students)} are graded and kept."
 
 
 def _record_others(class_grading: ClassGrading, grading: Grading, collected: Submissions) -> None:
@@ -219,11 +229,14 @@ def _signatures(grading: Grading, entries: Sequence[Entry], console: Console) ->
 
 
 @contextlib.contextmanager
-def _backend(grading: Grading, class_request: ClassRequest) -> Iterator[Backend]:
+def _backend(grading: Grading, class_request: ClassRequest, tell: Callable[[str], None]) -> Iterator[Backend]:
     if class_request.scheduler:
-        from grader.classroom.dask import dask_backend
+        try:
+            from grader.classroom.dask import dask_backend
+        except ImportError:
+            raise NoCluster("Dask is not installed here: pip install 'spinbook[cluster]'") from None
 
-        with dask_backend(grading, class_request.scheduler) as workers:
+        with dask_backend(grading, class_request.scheduler, tell) as workers:
             yield workers
     else:
         yield LocalBackend(grading, class_request.jobs or at_once())

@@ -1,157 +1,102 @@
-"""Grades submissions on a Dask cluster."""
+"""Grades a class on a Dask cluster."""
 
 from __future__ import annotations
 
 import contextlib
-import hashlib
-import tempfile
-import threading
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import TYPE_CHECKING
+import logging
+import queue
+import time
+from collections.abc import Callable, Iterator, Mapping, Set
+from dataclasses import dataclass, field
+from typing import Any
 
-from grader.classroom.local import own_core
-from grader.classroom.request import GradedSubmission, NoCluster, host_error
+from distributed import Client, Future, Scheduler, TimeoutError  # before Python 3.11 not the built-in one
+
+from grader.classroom.dask_worker import LEFT, describe_worker, differences, grade_on_worker, pack_exercise
+from grader.classroom.request import ClusterLost, GradedSubmission, NoCluster, host_error
 from grader.classroom.results import grade_key
-from grader.exercise.exercise import Exercise
-from grader.exercise.loading import COURSE, load
-from grader.grading.grade import Options
-from grader.grading.grading import Grading, grading_of
+from grader.grading.grading import Grading
 from grader.grading.reference import versions
-from grader.report.feedback_plot import picture
-from grader.sandbox.middleware import require_middleware
 from grader.submission.submission import Submission
-from grader.workers.pool import WorkerPool
-from groundwork.files import cached, write_if_changed
-from interface_compiler.near import CURRENT, STORE, current
-
-if TYPE_CHECKING:
-    from distributed import Client
-
-
-@dataclass(frozen=True)
-class ExerciseFiles:
-    """The files that grading needs, by path inside the course's folder.
-
-    `interfaces` are those that were compiled for the course, by path inside their prefix, which is called `prefix`.
-    """
-
-    exercise: str
-    files: dict[str, bytes]
-    prefix: str = ""
-    interfaces: dict[str, bytes] = field(default_factory=dict)
-
-    @property
-    def digest(self) -> str:
-        """The SHA-256 of all names and contents."""
-        total = hashlib.sha256(self.exercise.encode())
-        for name, content in (*sorted(self.files.items()), *sorted(self.interfaces.items())):
-            total.update(f"{name} {len(content)}\n".encode())
-            total.update(content)
-        return total.hexdigest()
-
-    def unpack(self, into: Path) -> Path:
-        """Write the files into the folder `into`; return the exercise's folder."""
-        _write(into, self.files)
-        if self.prefix:
-            store = self._keep_interfaces()
-            (into / STORE).parent.mkdir(parents=True)
-            (into / STORE).symlink_to(store)
-        return into / "exercises" / self.exercise
-
-    def _keep_interfaces(self) -> Path:
-        """Write the interfaces where they stay: Python has loaded them when the next exercise needs them."""
-        store = cached("cluster-interfaces") / self.prefix
-        if not (store / CURRENT).is_file():
-            _write(store / self.prefix, self.interfaces)
-            write_if_changed(store / CURRENT, self.prefix)
-        return store
-
-
-def _write(into: Path, files: Mapping[str, bytes]) -> None:
-    for name, content in files.items():
-        file = into / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        write_if_changed(file, content)
-
-
-def pack_exercise(exercise: Exercise) -> ExerciseFiles:
-    """Return the exercise's folder, the author's solution, and the interfaces that were compiled for the course."""
-    name = exercise.name
-    found = [file for file in sorted(exercise.folder.rglob("*")) if file.is_file() and "__pycache__" not in file.parts]
-    files = {f"exercises/{name}/{file.relative_to(exercise.folder).as_posix()}": file.read_bytes() for file in found}
-    if exercise.solution_file:
-        files[f"solutions/{name}/solution.py"] = exercise.solution_file.read_bytes()
-    course = next((folder for folder in exercise.folder.parents if (folder / COURSE).is_file()), None)
-    prefix = current(course / STORE) if course else None
-    if prefix is None:
-        return ExerciseFiles(name, files)
-    inside = (file for file in sorted(prefix.rglob("*")) if file.is_file() and "__pycache__" not in file.parts)
-    interfaces = {file.relative_to(prefix).as_posix(): file.read_bytes() for file in inside}
-    return ExerciseFiles(name, {**files, COURSE: b""}, prefix.name, interfaces)
-
-
-@dataclass(frozen=True)
-class PreparedGrading:
-    """One exercise, prepared for grading. Close `resources` when it is no longer needed."""
-
-    grading: Grading
-    key: str
-    resources: contextlib.ExitStack
-
-
-_ready: dict[str, PreparedGrading] = {}
-_lock = threading.Lock()
-
-
-def describe_worker() -> dict[str, str]:
-    """Return the versions on this worker that grades depend on. Raises `MiddlewareUnavailable`."""
-    require_middleware()
-    return versions()
-
-
-def grade_on_worker(
-    packed: ExerciseFiles, options: Options, key: str, who: str, submission: Submission
-) -> GradedSubmission:
-    """Return one submission's grade, without recordings, and its plot.
-
-    `key` is the caller's `grade_key`. If this worker's key differs, the result is a `host-error` that says so.
-    """
-    bench = _prepared_grading(packed, options)
-    runner = bench.grading.runner
-    if bench.key != key:
-        text = f"a worker of the cluster has other versions than this machine: {versions()}"
-        return GradedSubmission(who, host_error(runner, submission, text), None)
-    with own_core() as core:
-        runner = replace(runner, options=replace(options, parallel=1, core=core))
-        grade = replace(bench.grading, runner=runner).grade(submission)
-    return GradedSubmission(who, replace(grade, recordings={}, references={}), picture(grade, runner.exercise))
-
-
-def _prepared_grading(packed: ExerciseFiles, options: Options) -> PreparedGrading:
-    """Return the prepared exercise. The first task prepares it for all that follow; only the newest one is kept."""
-    name = f"{packed.digest} {options}"
-    with _lock:
-        if name not in _ready:
-            while _ready:
-                _ready.popitem()[1].resources.close()
-            with contextlib.ExitStack() as resources:
-                folder = resources.enter_context(tempfile.TemporaryDirectory(prefix="spinbook-exercise-"))
-                exercise = load(packed.unpack(Path(folder)))  # before the workers start: they use its interfaces, too
-                workers = resources.enter_context(WorkerPool())
-                grading = grading_of(exercise, options, workers)
-                _ready[name] = PreparedGrading(grading, grade_key(grading), resources.pop_all())
-        return _ready[name]
-
+from groundwork.words import counted
 
 # Every worker has the same versions of Spinbook and of ROS 2, and gets the exercise with its first task. For how
 # `dask.distributed` handles the tasks of a worker that died, see
 # https://distributed.dask.org/en/stable/resilience.html.
 
-
 #: How long to wait for the scheduler's answer, and then for its first worker (s).
 SCHEDULER_S, WORKER_S = 10.0, 60.0
+
+#: Without a result for this time, the command looks at the cluster and says what it waits for (s).
+LOOK_S = 10.0
+
+#: A worker or scheduler that has been silent for so many looks is given up.
+SILENT_LOOKS = 6
+
+
+@dataclass
+class ClusterWatch:
+    """Looks at the cluster while no results come, tells the instructor, and removes workers that have fallen silent.
+
+    It counts looks, not seconds, as a busy computer may have held this process for as long as a worker.
+    """
+
+    client: Client
+    say: Callable[[str], None]
+    unanswered: int = 0
+    """How many looks the scheduler has left without an answer."""
+    seen: dict[str, tuple[float, int]] = field(default_factory=dict)
+    """By worker: its last sign of life by the scheduler's clock, and how many looks that has been the last one."""
+
+    def look(self, waiting: int) -> None:
+        """Say what the command waits for. Raises `ClusterLost`."""
+        workers = self._workers()
+        if workers is None:
+            return
+        self.seen = {worker: self._looks(worker, info["last_seen"]) for worker, info in workers.items()}
+        silent = [worker for worker, (_, looks) in self.seen.items() if looks >= SILENT_LOOKS]
+        if silent:
+            remove_workers(self.client, silent)
+            self.say(f"No sign of life for {SILENT_LOOKS * LOOK_S:g} s, so others take over: {', '.join(silent)}.")
+        self._say_what_is_awaited(waiting, self.seen.keys() - silent)
+
+    def _looks(self, worker: str, sign: float) -> tuple[float, int]:
+        last, looks = self.seen.get(worker, (None, 0))
+        return sign, looks + 1 if sign == last else 0
+
+    def _say_what_is_awaited(self, waiting: int, workers: Set[str]) -> None:
+        on = counted(len(workers), "worker") if workers else "a worker to join"
+        quiet = {worker: self.seen[worker][1] * LOOK_S for worker in sorted(workers) if self.seen[worker][1]}
+        silent = "".join(f" {worker} has been silent for {quiet_s:g} s." for worker, quiet_s in quiet.items())
+        self.say(f"Waiting for {counted(waiting, 'submission')} on {on}.{silent}")
+
+    def _workers(self) -> Mapping[str, Any] | None:
+        """Return what the scheduler knows of its workers, by address; None if it does not answer at the moment."""
+        try:
+            info = self.client.sync(self._identity, callback_timeout=LOOK_S)
+        except (OSError, TimeoutError):
+            self.unanswered += 1
+            if self.unanswered >= SILENT_LOOKS:
+                raise ClusterLost("The scheduler does not answer any more.") from None
+            self.say("The scheduler does not answer. Waiting for it.")
+            return None
+        self.unanswered = 0
+        workers: Mapping[str, Any] = info["workers"]
+        return workers
+
+    async def _identity(self) -> Any:
+        assert self.client.scheduler
+        return await self.client.scheduler.identity(n_workers=-1)
+
+
+def remove_workers(client: Client, addresses: list[str]) -> None:
+    """Let the scheduler forget these workers, so that others get their submissions."""
+
+    async def remove(dask_scheduler: Scheduler) -> None:
+        for address in addresses:
+            await dask_scheduler.remove_worker(address, stimulus_id="spinbook-silent")
+
+    client.run_on_scheduler(remove)
 
 
 @dataclass(frozen=True)
@@ -160,6 +105,7 @@ class DaskBackend:
 
     grading: Grading
     client: Client
+    say: Callable[[str], None]
 
     @property
     def key(self) -> str:
@@ -167,41 +113,60 @@ class DaskBackend:
         return grade_key(self.grading)
 
     def grade(self, submissions: Mapping[str, Submission]) -> Iterator[GradedSubmission]:
-        """See `Backend`. If a worker dies, its submission is tried again; after four deaths it is a `host-error`."""
-        from distributed import as_completed
+        """See `Backend`. If a worker dies, its submission is tried again; after four deaths it is a `host-error`.
 
-        if not submissions:
-            return
+        Raises `ClusterLost` when the scheduler is gone.
+        """
         runner = self.grading.runner
-        packed = pack_exercise(runner.exercise)
+        task = (pack_exercise(runner.exercise), runner.options, _of_this_machine(self.grading), self.key)
         asked = {
-            self.client.submit(grade_on_worker, packed, runner.options, self.key, who, submission, pure=False): who
+            self.client.submit(grade_on_worker, *task, who, submission, pure=False): who
             for who, submission in submissions.items()
         }
+        done: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
+        for future in asked:
+            future.add_done_callback(done.put)
         try:
-            for future in as_completed(list(asked), loop=self.client.loop):
-                who = asked[future]
-                error = future.exception()
-                if error is None:
-                    yield future.result()
-                else:
-                    text = f"the cluster could not grade it: {type(error).__name__}: {error}"
-                    grade = host_error(runner, submissions[who], text)
-                    yield GradedSubmission(who, grade, None)
+            while asked:
+                future = self._next(done, len(asked))
+                who = asked.pop(future)
+                yield self._result(future, who, submissions[who])
         finally:
-            self.client.cancel(list(asked))
+            for future in asked:
+                future.release()
+
+    def _next(self, done: queue.SimpleQueue[Future[Any]], waiting: int) -> Future[Any]:
+        watch = ClusterWatch(self.client, self.say)
+        while True:
+            try:
+                return done.get(timeout=LOOK_S)
+            except queue.Empty:
+                watch.look(waiting)
+
+    def _result(self, future: Future[Any], who: str, submission: Submission) -> GradedSubmission:
+        if future.cancelled():
+            raise ClusterLost("The connection to the scheduler is lost.")
+        error = future.exception()
+        if error is None:
+            graded: GradedSubmission = future.result()
+            return graded
+        text = f"the cluster could not grade it: {type(error).__name__}: {error}"
+        return GradedSubmission(who, host_error(self.grading.runner, submission, text), None)
+
+
+def _of_this_machine(grading: Grading) -> dict[str, str]:
+    return {**versions(), "sandbox": str(grading.runner.isolation)}
 
 
 @contextlib.contextmanager
-def dask_backend(grading: Grading, address: str) -> Iterator[DaskBackend]:
+def dask_backend(grading: Grading, address: str, say: Callable[[str], None]) -> Iterator[DaskBackend]:
     """Yield the cluster whose scheduler is at `address`, such as tcp://10.0.0.5:8786. It has at least one worker.
 
-    Raises `NoCluster` if there is none, or if a worker's versions differ from this machine's.
+    `say` tells the instructor about the cluster. Raises `NoCluster` if there is none, or if a worker's versions or
+    sandbox differ from this machine's.
     """
-    try:
-        from distributed import Client
-    except ImportError:
-        raise NoCluster("Dask is not installed here: pip install 'spinbook[cluster]'") from None
+    for name in ("distributed", "distributed.client"):
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # what it logs, with tracebacks, is said here
     try:
         client = Client(address, timeout=SCHEDULER_S, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
@@ -212,17 +177,33 @@ def dask_backend(grading: Grading, address: str) -> Iterator[DaskBackend]:
             client.wait_for_workers(1, timeout=WORKER_S)
         except TimeoutError:
             raise NoCluster(f"--scheduler {address}: it has no worker. Start some: dask worker {address}") from None
-        _same_versions(versions(), client.run(describe_worker, on_error="return"))
-        yield DaskBackend(grading, client)
+        _check_workers(client, grading, say)
+        client.subscribe_topic(LEFT, lambda event: say(event[1]))
+        yield DaskBackend(grading, client, say)
 
 
-def _same_versions(ours: Mapping[str, str], text: Mapping[str, object]) -> None:
-    for worker, theirs in sorted(text.items()):
-        if not isinstance(theirs, dict):
-            raise NoCluster(f"The worker {worker} can't grade: {type(theirs).__name__}: {theirs}")
-        if differs := [
-            f"{name} {theirs.get(name)}, here {ours[name]}" for name in ours if theirs.get(name) != ours[name]
-        ]:
-            raise NoCluster(
-                f"The worker {worker} has other versions: {'; '.join(differs)}. Install the same versions there."
-            )
+def _check_workers(client: Client, grading: Grading, say: Callable[[str], None]) -> None:
+    """Compare each worker with this machine, and remove those that do not answer. Raises `NoCluster`."""
+    asked = {
+        worker: client.submit(describe_worker, grading.runner.options, workers=[worker], pure=False)
+        for worker in sorted(client.scheduler_info()["workers"])
+    }
+    ours, silent, deadline = _of_this_machine(grading), [], time.monotonic() + WORKER_S
+    for worker, future in asked.items():
+        try:
+            _refuse_other(worker, future, ours, max(0.1, deadline - time.monotonic()))
+        except TimeoutError:
+            silent.append(worker)
+    if silent:
+        remove_workers(client, silent)
+        say(f"No answer within {WORKER_S:g} s, so not used: {', '.join(silent)}.")
+
+
+def _refuse_other(worker: str, future: Future[Any], ours: Mapping[str, str], timeout_s: float) -> None:
+    if error := future.exception(timeout=timeout_s):
+        raise NoCluster(f"The worker {worker} can't grade: {type(error).__name__}: {error}")
+    if differs := differences(ours, future.result()):
+        raise NoCluster(
+            f"The worker {worker} differs: {differs}. Install the same versions there; if only the sandbox differs, "
+            "name one that both have: --isolation landlock."
+        )

@@ -56,6 +56,10 @@ class NoCluster(Exception):
     """Raised if the cluster can't be used; the text tells the instructor why."""
 
 
+class ClusterLost(Exception):
+    """Raised if the scheduler is gone while a class is graded; the text tells the instructor."""
+
+
 class Backend(Protocol):
     """Grades submissions in parallel."""
 

@@ -141,8 +141,8 @@ class WorkerPool:
     Any thread may call `do` and `reserve`; use it as a context manager.
     """
 
-    def __init__(self) -> None:
-        """Start the worker.
+    def __init__(self, *folders: Path) -> None:
+        """Start the worker. When this process ends, however it ends, the worker removes the `folders`.
 
         Raises:
             MiddlewareUnavailable: if the grader's middleware is not available on this machine.
@@ -150,6 +150,7 @@ class WorkerPool:
         require_middleware()
         # A cancelled job ends at once; its files are removed with the pool.
         self._temporary = Path(tempfile.mkdtemp(prefix="spinbook-"))
+        self._folders = (self._temporary, *folders)
         self._lock = threading.Lock()
         self._closed = False
         self._shared = SharedObjects()
@@ -159,7 +160,7 @@ class WorkerPool:
     def _start(self) -> None:
         self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._worker = subprocess.Popen(
-            module_command("grader.workers.worker", str(theirs.fileno()), str(self._temporary)),
+            module_command("grader.workers.worker", str(theirs.fileno()), *map(str, self._folders)),
             pass_fds=[theirs.fileno()],
             stdin=subprocess.DEVNULL,
             start_new_session=True,
@@ -233,9 +234,9 @@ class WorkerPool:
             except OSError:
                 if self._closed:
                     raise
-                self._control.close()
-                self._worker.kill()
+                self._worker.kill()  # before it can see the end of the socket, and remove the folders
                 self._worker.wait()
+                self._control.close()
                 self._start()
                 socket.send_fds(self._control, [command], [descriptor])
 

@@ -70,12 +70,12 @@ def _share() -> None:
     gc.freeze()
 
 
-# python -m grader.workers.worker DESCRIPTOR FOLDER
+# python -m grader.workers.worker DESCRIPTOR FOLDER...
 
 
 def main() -> None:
-    """Serve jobs until the other end of the control socket is closed; remove the folder with the jobs' files."""
-    descriptor, folder = sys.argv[1:]
+    """Serve jobs until the other end of the control socket is closed; remove the folders with the jobs' files."""
+    descriptor, *folders = sys.argv[1:]
     control = socket.socket(fileno=int(descriptor))
     with ForkServer() as fork_server:
         preload()
@@ -111,7 +111,8 @@ def main() -> None:
                 os.kill(pid, signal.SIGKILL)
             with contextlib.suppress(ChildProcessError):
                 os.waitpid(pid, 0)
-    shutil.rmtree(folder, ignore_errors=True)
+    for folder in folders:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _reap(working: set[int]) -> None:

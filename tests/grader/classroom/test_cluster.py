@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Coroutine, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
 from small_class import POINTS, ROOT, SmallClass, wait_until, without_timings
 
-from grader.classroom.dask import pack_exercise
+from grader.classroom.dask_worker import differences, pack_exercise
+from grader.classroom.request import ClusterLost
 from grader.exercise import load
 from grader.scenario.declared import declared
 from interface_compiler import near, prefixes
@@ -54,14 +57,16 @@ def spinning(worker: subprocess.Popen[bytes]) -> bool:
 
 
 @pytest.mark.soak
-def test_a_worker_dies_while_it_grades_and_the_grades_are_those_of_one_machine(
+def test_a_worker_and_then_the_scheduler_die_and_the_grades_are_those_of_one_machine(
     tmp_path: Path, cache: Path, graded: tuple[SmallClass, str]
 ) -> None:
     small = SmallClass(tmp_path / "course", cache)
     places = {"cwd": tmp_path, "cache": cache}
     with ExitStack() as cluster:
         local = ("--host", "127.0.0.1", "--no-dashboard")
-        cluster.enter_context(started("scheduler", "--port", "0", "--scheduler-file", "where.json", *local, **places))
+        scheduler = cluster.enter_context(
+            started("scheduler", "--port", "0", "--scheduler-file", "where.json", *local, **places)
+        )
         where = tmp_path / "where.json"
         wait_until(lambda: where.exists() and where.stat().st_size)
         one = ("worker", "--scheduler-file", "where.json", "--nthreads", "1", "--no-nanny", *local)
@@ -74,8 +79,71 @@ def test_a_worker_dies_while_it_grades_and_the_grades_are_those_of_one_machine(
         printed, _ = process.communicate(timeout=240)
         assert process.returncode == 0, printed
         assert second.poll() is None
-    assert small.finals() == POINTS
-    assert without_timings(small.folder / "results") == without_timings(graded[0].folder / "results")
+        assert small.finals() == POINTS
+        assert without_timings(small.folder / "results") == without_timings(graded[0].folder / "results")
+
+        process = small.start("--scheduler", address, out="again")
+        small.wait_for_grades(1, process, out="again")
+        scheduler.kill()
+        printed, _ = process.communicate(timeout=240)
+        assert process.returncode == 3, printed
+        assert "The connection to the scheduler is lost." in printed
+        assert "Run the same command to continue." in printed
+        assert "Traceback" not in printed
+
+
+class Answers:
+    """What the scheduler of a cluster says of its workers, one answer after another, and whom it was to remove."""
+
+    def __init__(self, answers: Iterable[dict[str, float]]) -> None:
+        self._answers, self.removed = iter(answers), []
+
+    def sync(self, *asked: object, callback_timeout: float) -> dict[str, Any]:
+        if (signs := next(self._answers, None)) is None:
+            raise TimeoutError
+        return {"workers": {worker: {"last_seen": seen} for worker, seen in signs.items()}}
+
+    def run_on_scheduler(self, remove: Callable[..., Coroutine[Any, Any, None]]) -> None:
+        asyncio.run(remove(self))
+
+    async def remove_worker(self, address: str, stimulus_id: str) -> None:
+        self.removed.append(address)
+
+
+def test_a_worker_that_falls_silent_is_named_and_then_replaced_by_the_others() -> None:
+    from grader.classroom.dask import SILENT_LOOKS, ClusterWatch
+
+    cluster, said = Answers({"busy": float(look), "stopped": 1.0} for look in range(SILENT_LOOKS + 1)), []
+    watch = ClusterWatch(cluster, said.append)
+    for _ in range(SILENT_LOOKS):
+        watch.look(3)
+    assert said[0] == "Waiting for 3 submissions on 2 workers."
+    assert said[2] == "Waiting for 3 submissions on 2 workers. stopped has been silent for 20 s."
+    assert not cluster.removed
+    watch.look(1)
+    assert cluster.removed == ["stopped"]
+    assert said[-2:] == [
+        "No sign of life for 60 s, so others take over: stopped.",
+        "Waiting for 1 submission on 1 worker.",
+    ]
+
+
+def test_a_scheduler_that_stays_silent_is_given_up() -> None:
+    from grader.classroom.dask import SILENT_LOOKS, ClusterWatch
+
+    said: list[str] = []
+    watch = ClusterWatch(Answers(()), said.append)
+    for _ in range(SILENT_LOOKS - 1):
+        watch.look(3)
+    assert said == ["The scheduler does not answer. Waiting for it."] * (SILENT_LOOKS - 1)
+    with pytest.raises(ClusterLost):
+        watch.look(3)
+
+
+def test_a_worker_differs_by_its_versions_or_its_sandbox() -> None:
+    ours = {"python": "3.11.2", "sandbox": "namespaces"}
+    assert not differences(ours, ours)
+    assert differences(ours, {"python": "3.11.2", "sandbox": "landlock"}) == "sandbox landlock, here namespaces"
 
 
 def test_a_scheduler_that_does_not_answer_is_reported_in_a_sentence(small_class: SmallClass, cache: Path) -> None:

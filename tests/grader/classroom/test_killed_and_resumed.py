@@ -46,10 +46,10 @@ def test_interrupted_then_killed_then_resumed_it_is_as_if_nothing_had_been(
     undisturbed: dict[str, str], small_class: SmallClass, process_mark: ProcessMark
 ) -> None:
     printed = interrupted(small_class)
-    assert "are graded and kept. Run the same command to continue." in printed
+    there = len(small_class.finals())
+    assert f"{there} of {len(POINTS)} are graded and kept. Run the same command to continue." in printed
     assert "Traceback" not in printed
     process_mark.wait_until_none(60)
-    there = len(small_class.finals())
     assert 1 <= there < len(POINTS)
 
     kept = killed(small_class, there + 1)

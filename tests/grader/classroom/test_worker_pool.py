@@ -93,13 +93,13 @@ def test_a_pool_that_was_closed_does_no_more_jobs() -> None:
 def test_a_pool_leaves_nothing_among_temporary_files_even_if_its_process_was_killed(
     temporary_files: Path,
 ) -> None:
-    code = "import sys\nfrom grader.workers import WorkerPool\n"
-    code += "with WorkerPool():\n    print('ready', flush=True)\n    sys.stdin.read()"
+    code = "import sys, tempfile\nfrom pathlib import Path\nfrom grader.workers import WorkerPool\n"
+    code += "with WorkerPool(Path(tempfile.mkdtemp())):\n    print('ready', flush=True)\n    sys.stdin.read()"
     command = [sys.executable, "-c", code]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stdout
         assert process.stdout.readline() == b"ready\n"
-        assert list(temporary_files.iterdir())
+        assert len(list(temporary_files.iterdir())) == 2
         process.kill()
     wait_until(lambda: not list(temporary_files.iterdir()))
 
