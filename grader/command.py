@@ -158,7 +158,7 @@ def grade(
 
 def _refuse_a_single_program(submission: str) -> None:
     """Refuse `--out` with one program, because it is for the results of a class."""
-    if kind_of(submission) in ("python", "notebook") and not Path(submission).is_dir():
+    if kind_of(submission) in ("python", "notebook", "launch file") and not Path(submission).is_dir():
         raise click.UsageError(
             f"{submission}: this is one submission, and --out is for a class. Leave out --out, or give the folder, "
             "zip file or CSV file of a class."

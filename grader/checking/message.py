@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from grader.recording.events import Truth
-from grader.recording.fields import Part
+from grader.recording.fields import OnTopic, Part
 from grader.recording.recording import ReceivedMessage, Recording, SentMessage
 from grader.scenario.times import SECOND, START
-from ros_in_python.field_path import field_of
 
 
-class Message(Part):
+class Message(OnTopic, Part):
     """A message that was sent or received: its fields by name, its `stamp` (s), its topic, and when it arrived (s).
 
     For a sent message, `heard` says whether the student's node subscribed to its topic at that moment. For a received
     message, `after` is the number of messages that had been sent by then. `at_ns` is its simulated time in nanoseconds.
     """
+
+    at: float
+    at_ns: int
+    topic: str
+    heard: bool
+    after: int
 
     def __init__(self, kept: SentMessage | ReceivedMessage) -> None:
         super().__init__(kept.fields)
@@ -27,28 +31,12 @@ class Message(Part):
         self.after = kept.after if isinstance(kept, ReceivedMessage) else 0
         self.topic = kept.topic
 
-    @property
-    def stamp(self) -> float:
-        """Return the header's stamp in seconds."""
-        return self.stamp_ns / SECOND
-
-    @property
-    def stamp_ns(self) -> int:
-        """Return the header's stamp in nanoseconds."""
-        stamp = self._fields["header"]["stamp"]
-        return int(stamp["sec"]) * SECOND + int(stamp["nanosec"])
-
-    def value(self, field: str) -> Any:
-        """Return a field by its full name, such as `header.frame_id`."""
-        return field_of(self._fields, field)
-
-    def by(self, key: str, field: str) -> dict[str, Any]:
-        """Return two lists as a dictionary: `by("name", "velocity")` gives each joint's velocity."""
-        return dict(zip(self.value(key), self.value(field), strict=False))
-
 
 class WorldState(Part):
     """What a world's truth() returned after a step, its values by name; `at` is when that was (s)."""
+
+    at: float
+    at_ns: int
 
     def __init__(self, truth: Truth) -> None:
         super().__init__(truth.values)

@@ -205,7 +205,7 @@ class _Function:
         if value is None:
             return
         kind, type_ = value
-        known = {*known_names.fields(type_), *_OF_MESSAGES} if kind == "message" else _names_of(type_)
+        known = _names_in(type_) if kind == "message" else _names_of(type_)
         if node.attr not in known and (kind == "record" or known_names.fields(type_)):
             subject = type_ if kind == "message" else f"the record {type_.__name__}"
             candidates = known_names.fields(type_) if kind == "message" else known
@@ -296,6 +296,12 @@ class _Function:
             return parts[method]
         on_outputs = ("must_match", "must_vary", "must_match_series", "must_stamp")
         return list(known.received) if method in on_outputs else []
+
+
+def _names_in(message: str) -> set[str]:
+    """Return the attributes of a message of this type. One without a header has no stamp."""
+    fields = {*known_names.fields(message)}
+    return fields | (_OF_MESSAGES if fields & {"header", "stamp"} else _OF_MESSAGES - {"stamp", "stamp_ns"})
 
 
 def _names_of(record: type) -> set[str]:

@@ -10,12 +10,12 @@ from functools import cached_property
 from typing import Any, NoReturn
 
 from grader.checking.cause import UNKNOWN, Cause, as_cause
-from grader.checking.comparator import difference, shown_apart
+from grader.checking.comparator import difference, shown, shown_apart
 from grader.checking.hint_texts import hints
 from grader.checking.message import Exchange, Message, WorldState, exchanges
 from grader.checking.observed import observed
 from grader.checking.patterns import COMPUTER_CLOCK, common, other_text
-from grader.checking.verdict import Finding, Wrong
+from grader.checking.verdict import Finding, Wrong, with_values
 from grader.exercise.exercise import Exercise, Role, ServiceOrAction, Topic
 from grader.recording.recording import Ending, ReceivedMessage, Recording, SentMessage
 from grader.scenario.times import SECOND, START
@@ -121,17 +121,17 @@ class RecordedRun:
     ) -> NoReturn:
         """End the check: `text` says what is wrong with the answers to this exchange's message.
 
-        `part` is the wrong part of the message, such as the joint. Reports show `expected` and `got` separately.
-        `cause` is what is probably behind it; what the whole run shows has priority.
+        `part` is the wrong part of the message, such as the joint. Reports show `expected` and `got` separately; those
+        that are no texts, such as numbers, are also added to the text. `cause` is what is probably behind it; what the
+        whole run shows has priority.
 
         Example: `run.wrong(run.exchanges[0], "the sign is wrong.", expected=1, got=-1)`
         """
         where = f"Message {exchange.number} of {len(self.sent)} ({exchange.sent.at:.2f} s after the start"
         where += f"; {self.title})" if self.title else ")"
-        message = f"{where}{f', {part}' if part else ''}: {text}"
-        self._end(
-            Finding(message, self.scenario, exchange.number, exchange.sent.at, part, str(expected), str(got)), cause
-        )
+        place = f"{where}{f', {part}' if part else ''}"
+        finding = _finding(place, text, part, expected, got)
+        self._end(replace(finding, scenario=self.scenario, message=exchange.number, at=exchange.sent.at), cause)
 
     def wrong_at(
         self,
@@ -144,7 +144,7 @@ class RecordedRun:
     ) -> NoReturn:
         """End the check: `text` says what is wrong at `at`, in ns of simulated time, or in the whole scenario.
 
-        `part` is what is wrong, such as a service or a goal. `cause` is as in `wrong`.
+        `part` is what is wrong, such as a service or a goal. `expected`, `got` and `cause` are as in `wrong`.
 
         Example: `run.wrong_at(run.recording.received[0].at, "the valve is open.", "/out")`
         """
@@ -152,9 +152,8 @@ class RecordedRun:
         where = "" if seconds is None else "Before the start" if seconds < 0 else f"At {seconds:.2f} s"
         if self.title:
             where += f" ({self.title})" if where else f"In “{self.title}”"
-        message = ", ".join(filter(None, (where, part)))
-        finding = f"{message}: {text}" if message else text
-        self._end(Finding(finding, self.scenario, None, seconds, part, str(expected), str(got)), cause)
+        finding = _finding(", ".join(filter(None, (where, part))), text, part, expected, got)
+        self._end(replace(finding, scenario=self.scenario, at=seconds), cause)
 
     def _end(self, finding: Finding, cause: str | Cause) -> NoReturn:
         known = self.observed or as_cause(cause)
@@ -247,7 +246,7 @@ class RecordedRun:
 
         They are the student's, or with `reference` those of the run with the solution. On a topic that only the grader
         or the world publishes, they are what these published. With `subscriber`, they are what that subscriber of the
-        scenario got. Each has its `at` in ns of simulated time.
+        scenario got. Each has what a `Message` has, but its `at`, like its `at_ns`, is in ns of simulated time.
 
         Example: `[message.data for message in run.messages_on("/out")]`
         """
@@ -279,6 +278,14 @@ class RecordedRun:
         if len(names) != 1:
             raise ValueError(f"name the {role}: exercise.toml has {', '.join(names) or 'none'} under [[{role}]].")
         return names[0]
+
+
+def _finding(place: str, text: str, part: str, expected: object, got: object) -> Finding:
+    """Return what is wrong, with the values of `expected` and `got` that are no texts and that `text` does not have."""
+    values = [value if isinstance(value, str) else shown(value) for value in (expected, got)]
+    absent = ["" if isinstance(v, str) or s in text else s for v, s in zip((expected, got), values, strict=True)]
+    message = with_values(text, zip(("expected", "got"), absent, strict=True))
+    return Finding(f"{place}: {message}" if place else message, part=part, expected=values[0], got=values[1])
 
 
 def _requests(recording: Recording) -> list[tuple[int, str, str]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal, NoReturn, TypeVar
 
@@ -60,9 +60,16 @@ def fail(text: str, *, expected: object = "", got: object = "", at: float | None
 
     Example: `fail("Two publishers on /out.", expected=1, got=2)`
     """
-    values = ", ".join([f"expected {expected}"] * (expected != "") + [f"got {got}"] * (got != ""))
-    message = f"{text} {values[0].upper()}{values[1:]}." if values else text
+    message = with_values(text, [("expected", expected), ("got", got)])
     raise Wrong(Finding(message, at=at, expected=str(expected), got=str(got)))
+
+
+def with_values(text: str, values: Iterable[tuple[str, object]]) -> str:
+    """Return a finding's text with a sentence for the values that are given: "Expected 1, got 2."."""
+    sentence = ", ".join(f"{word} {value}" for word, value in values if value != "")
+    if not sentence:
+        return text
+    return f"{text}{'.' * text[-1:].isalnum()} {sentence[0].upper()}{sentence[1:]}."
 
 
 #: `error`: the check itself crashed, which is never the student's fault.

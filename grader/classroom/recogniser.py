@@ -13,7 +13,7 @@ from grader.exercise.exercise import Exercise
 from grader.submission.file_kinds import kind_of
 
 #: The kinds of files that can be submissions.
-GRADABLE = ("python", "notebook", "archive")
+GRADABLE = ("python", "notebook", "archive", "launch file")
 
 #: A folder with one of these is one student's package, not a class.
 PACKAGE = {"package.xml", "setup.py", "setup.cfg", "CMakeLists.txt"}

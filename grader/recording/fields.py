@@ -6,6 +6,10 @@ import difflib
 from collections.abc import Mapping
 from typing import Any
 
+from ros_in_python.field_path import field_of
+
+SECOND = 1_000_000_000
+
 
 class Part:
     """Some fields of a message, by name."""
@@ -20,6 +24,33 @@ class Part:
         return f"Message({self._fields})"
 
 
+class OnTopic:
+    """What a whole message has besides its fields: its stamp, and fields by their full names."""
+
+    _fields: Mapping[str, Any]
+
+    @property
+    def stamp(self) -> float:
+        """Return the header's stamp in seconds."""
+        return self.stamp_ns / SECOND
+
+    @property
+    def stamp_ns(self) -> int:
+        """Return the header's stamp in nanoseconds. Raises AttributeError if there is none."""
+        stamp = self._fields.get("header", self._fields).get("stamp")
+        if stamp is None:
+            raise AttributeError("stamp")  # which __getattr__ turns into the names of the fields
+        return int(stamp["sec"]) * SECOND + int(stamp["nanosec"])
+
+    def value(self, field: str) -> Any:
+        """Return a field by its full name, such as `header.frame_id`."""
+        return field_of(self._fields, field)
+
+    def by(self, key: str, field: str) -> dict[str, Any]:
+        """Return two lists as a dictionary: `by("name", "velocity")` gives each joint's velocity."""
+        return dict(zip(self.value(key), self.value(field), strict=False))
+
+
 class NestedMessage(Part):
     """A message in a field of another one: equal to one with equal fields, which can be written as keys, too."""
 
@@ -32,8 +63,17 @@ class NestedMessage(Part):
     __hash__ = None  # type: ignore[assignment]  # as a dictionary
 
 
-class WithFields:
+class WithFields(OnTopic):
     """A recorded message, whose own attributes take precedence over `fields` of the same name."""
+
+    @property
+    def _fields(self) -> Mapping[str, Any]:  # type: ignore[override]
+        return self.__dict__["fields"]  # type: ignore[no-any-return]
+
+    @property
+    def at_ns(self) -> int:
+        """Return the same as `at`: every message has this name for it."""
+        return int(self.__dict__["at"])
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):  # pickle and copy ask for these before there are fields

@@ -106,6 +106,10 @@ class Ending:
 class Recording:
     """One run of one node through one scenario.
 
+    `sent` and `truth` are the scenario's, all else is what the program did. `nodes` are the full names of its nodes,
+    `end_points` its ends in the ROS graph, `exits` how programs ended, and `log` is what it printed. `uses_sim_time` is
+    whether its clock is the simulated one. `programs` is empty if there is only one.
+
     `seconds` is how long the run took in real time, and `lockstep_seconds` the part of it from the first message to the
     last.
     """

@@ -30,7 +30,7 @@ from grader.submission.file_kinds import (
     named_by_content,
     not_graded,
 )
-from grader.submission.launch_program import MAIN, launch_file_in, program_files
+from grader.submission.launch_program import MAIN, launch_file_in, launch_file_name, program_files
 from grader.submission.magics import cell_magic, without_commands
 from grader.submission.notebook import Notebook, NotebookCell, read_notebook
 from grader.submission.places import is_launcher
@@ -91,6 +91,8 @@ def code_of(name: str, content: bytes, exercise: Exercise) -> Code:
         return code_of_notebook(read_notebook(content), exercise, posixpath.basename(name))
     if kind == "python":
         return code_of_python(content, exercise)
+    if kind == "launch file" and exercise.nodes:
+        return _launched({launch_file_name(name, content, exercise): content}, exercise, text_of(content))
     what = NOT_UNPACKED if content.startswith(OTHER_ARCHIVES) else NEITHER
     raise Unreadable(f"Your file is {what}. Hand in a .py, .ipynb or .zip file.")
 

@@ -8,7 +8,7 @@ from typing import Literal
 
 from grader.submission.script_notebook import SAVED_AS_PYTHON
 
-Kind = Literal["python", "notebook", "archive", "other language", "other"]
+Kind = Literal["python", "notebook", "archive", "launch file", "other language", "other"]
 
 _SUFFIXES: dict[str, Kind] = {
     ".py": "python",
@@ -21,6 +21,7 @@ _SUFFIXES: dict[str, Kind] = {
     ".tar.bz2": "archive",
     ".tar.xz": "archive",
     ".txz": "archive",
+    **dict.fromkeys(("launch.xml", "launch.yaml", "launch.yml", ".launch"), "launch file"),
 }
 _LANGUAGES = {
     **dict.fromkeys((".cpp", ".cc", ".cxx", ".c++", ".hpp", ".hh", ".hxx", ".ino"), "C++"),
@@ -38,6 +39,7 @@ MOST_BYTES_OF: dict[Kind, int] = {
     "python": 1_000_000,
     "notebook": 30_000_000,
     "archive": 30_000_000,
+    "launch file": 1_000_000,
     "other language": 1_000_000,
     "other": 1_000_000,
 }
@@ -47,6 +49,10 @@ _ARCHIVES = (b"PK\x03\x04", b"PK\x05\x06", b"\x1f\x8b", b"BZh", b"\xfd7zXZ\x00")
 OTHER_ARCHIVES = (b"Rar!\x1a\x07", b"7z\xbc\xaf\x27\x1c", b"\x28\xb5\x2f\xfd")
 NOT_UNPACKED = "an archive that can't be read here"
 
+#: A launch file in XML or YAML; one in Python is Python.
+_IS_LAUNCH_FILE = re.compile(
+    rb"\A(?:\xef\xbb\xbf)?(?:\s*<[?!][^>]*>)*\s*<launch\b|^launch[ \t]*:[ \t]*(?:#.*|\[.*)?$", re.MULTILINE
+)
 _IS_PYTHON = re.compile(rb"\A#!.*python|^(?:import|from)[ \t]+rclpy\b", re.MULTILINE)
 #: A web page, rich text or Markdown may quote a program, but is not one.
 _IS_DOCUMENT = re.compile(rb"\A\s*(?:<|\{\\rtf)|^[ \t]*```", re.MULTILINE)
@@ -100,6 +106,8 @@ def kind_of_content(content: bytes, kind: Kind) -> Kind:
     """Return the kind by a file's content, such as a notebook that was saved as .py, or a zip as .ipynb."""
     if content.startswith(_ARCHIVES):
         return "archive"
+    if kind == "other" and _IS_LAUNCH_FILE.search(content):
+        return "launch file"
     is_json = content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{")
     if kind in ("python", "other") and is_json and re.search(rb'"(?:cells|worksheets)"\s*:', content):
         return "notebook"

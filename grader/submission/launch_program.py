@@ -17,6 +17,7 @@ from grader.submission.file_kinds import original_name
 from grader.submission.launch_files import LAUNCH_FILE
 from grader.submission.places import LAUNCHER
 from grader.submission.problems import AmbiguousProgram, Unreadable
+from grader.submission.unreadable import not_python, text_of
 
 #: The file that starts the launch.
 MAIN = "start_launch_file.py"
@@ -38,7 +39,7 @@ def launch_file_in(files: Mapping[str, bytes], exercise: Exercise) -> str:
     Raises `Unreadable` and `AmbiguousProgram`.
     """
     every = [name for name in sorted(files) if LAUNCH_FILE.search(original_name(name))]
-    own = [name for name in every if _stem(name) == _stem(exercise.file_name)]
+    own = [name for name in every if is_called(name, exercise)]
     texts = {name: files[name].decode(errors="replace") for name in every}
     included = {name for name in every for other in every if posixpath.basename(name) in texts[other]}
     fitting = own or [name for name in every if name not in included] or every
@@ -51,6 +52,22 @@ def launch_file_in(files: Mapping[str, bytes], exercise: Exercise) -> str:
         names = ", ".join(fitting)
         raise AmbiguousProgram(f"There are {len(fitting)} launch files in it, and they differ: {names}. Which counts?")
     return fitting[0]
+
+
+def is_called(name: str, exercise: Exercise) -> bool:
+    """Return whether a file has the name of the exercise's launch file, in Python, XML or YAML."""
+    return LAUNCH_FILE.search(original_name(name)) is not None and _stem(name) == _stem(exercise.file_name)
+
+
+def launch_file_name(name: str, content: bytes, exercise: Exercise) -> str:
+    """Return the name under which a lone launch file in XML or YAML runs. Raises `Unreadable`.
+
+    Its content decides which of the two it is: `ros2 launch` goes by the name, which may have been changed on the way.
+    """
+    if problem := not_python(content) if content.strip() else "Your file is empty.":
+        raise Unreadable(problem)
+    is_xml = text_of(content).lstrip().startswith("<")
+    return f"{_stem(exercise.file_name)}.launch.{'xml' if is_xml else 'yaml'}"
 
 
 def _stem(name: str) -> str:

@@ -20,6 +20,8 @@ _ONE_LINE = 40
 _LINES, _CHARACTERS = 3, 40
 #: Spinbook's own modules, in a wheel or in what a page loads.
 _OWN = re.compile(r"\.(whl|zip)/(spinbook|grader|groundwork|interface_compiler|rcl_python|rmw_lockstep|ros_in_python)/")
+#: Everybody's packages in what a page loads: rclpy and Jinja have lines and names that solutions and checks have, too.
+_FROM_PYPI = re.compile(r"/run/\w+\.zip/(?!exercises/)")
 #: How many characters of a secret are looked up before the whole of it is compared.
 _PIECE = 8
 
@@ -249,6 +251,8 @@ def _located(files: Mapping[str, bytes], search: _Search) -> Iterator[Leak]:
     for name, content in files.items():
         first: dict[str, Secret] = {}
         own = _OWN.search(name)
+        if _FROM_PYPI.search(name) and not own:
+            continue
         found = search.found_in(bare(f"{name}\n{_readable(name, content)}"))
         for secret in (secret for secret in found if secret.is_solution or not own):
             first.setdefault(secret.what, secret)

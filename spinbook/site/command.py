@@ -55,7 +55,7 @@ def site(start: Path, no_run: bool, strict: bool, serve: bool, port: int) -> Non
     if before is not None:
         _report(console, before)
         return
-    if not no_run and not _up_to_date(course, console, strict):
+    if not _up_to_date(course, console, strict, run=not no_run):
         console.print("The site was not built. Fix the errors above first.", style="red")
         sys.exit(1)
     try:
@@ -68,10 +68,10 @@ def site(start: Path, no_run: bool, strict: bool, serve: bool, port: int) -> Non
     _report(console, built)
 
 
-def _up_to_date(course: Course, console: Console, strict: bool) -> bool:
+def _up_to_date(course: Course, console: Console, strict: bool, *, run: bool) -> bool:
     from spinbook.site.notebooks import bring_up_to_date
 
-    return bring_up_to_date(course, console, is_strict=strict)
+    return bring_up_to_date(course, console, is_strict=strict, run=run)
 
 
 def _report(console: Console, built: Site) -> None:

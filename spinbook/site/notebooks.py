@@ -14,7 +14,7 @@ from urllib.parse import quote
 from rich.console import Console
 
 from spinbook.build.execution import NotebookJob, execute
-from spinbook.build.notebooks import build_notebooks
+from spinbook.build.notebooks import BuildResult, build_notebooks
 from spinbook.course.course import FILE, Course
 from spinbook.course.obstacles import ranked
 from spinbook.interfaces.definitions import compile_course
@@ -22,8 +22,8 @@ from spinbook.problem import SpinbookError
 from spinbook.site.page import Repository
 
 
-def bring_up_to_date(course: Course, console: Console, *, is_strict: bool) -> bool:
-    """Compile the course's interfaces, build each chapter's notebook, and run those whose code has changed.
+def bring_up_to_date(course: Course, console: Console, *, is_strict: bool, run: bool = True) -> bool:
+    """Compile the course's interfaces, build each chapter's notebook, and `run` those whose code has changed.
 
     Return False if something has to be fixed first. If `is_strict`, that includes cells that fail, errors of nodes, and
     code that is shown but not run.
@@ -42,6 +42,10 @@ def bring_up_to_date(course: Course, console: Console, *, is_strict: bool) -> bo
         console.print(line, markup=False)
     if any(item.failed for item in built):
         return False
+    return not run or _run_changed(course, console, built, is_strict=is_strict)
+
+
+def _run_changed(course: Course, console: Console, built: list[BuildResult], *, is_strict: bool) -> bool:
     chosen = [item for item in built if course.is_run(item.chapter)]
     if left := [item.name for item in built if item not in chosen]:
         console.print(

@@ -21,6 +21,7 @@ from grader.grading.reference import versions
 from grader.report.hint_steps import taken, taken_in_page
 from grader.sandbox.program import SandboxUnavailable
 from grader.submission.file_kinds import can_be_read, kind_of
+from grader.submission.launch_program import is_called
 from grader.submission.reader import NoSubmission, read
 from grader.submission.submission import Submission
 from grader.submission.upload import pack
@@ -45,13 +46,15 @@ class HandInCandidate:
 
 
 def candidates(exercise: Exercise, folder: Path) -> list[HandInCandidate]:
-    """Return the files that hold the exercise: notebooks and ROS 2 packages in `folder`, and the .py of its name, there
-    or in the exercise's own folder. If it is unclear which program is meant, the submission has a question in place of
-    a program.
+    """Return the files that hold the exercise: notebooks, ROS 2 packages and launch files of its name in `folder`, and
+    the .py of its name, there or in the exercise's own folder. If it is unclear which program is meant, the submission
+    has a question in place of a program.
 
     If there are several, unchanged starters do not count next to changed ones, and the same code counts once.
     """
     files = [folder / exercise.file_name, *sorted(folder.glob("*.ipynb")), *_packages(folder)]
+    if exercise.nodes:
+        files += [one for one in sorted(folder.glob("*launch.[xy]*ml")) if is_called(one.name, exercise)]
     files.append(exercise.folder / exercise.file_name)
     candidates = [
         HandInCandidate(file, read(str(file), exercise), _name(file, folder)) for file in files if file.exists()

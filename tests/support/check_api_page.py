@@ -5,7 +5,6 @@ Run it from the project's folder: PYTHONPATH=. .venv/bin/python tests/support/ch
 
 from __future__ import annotations
 
-import dataclasses
 import inspect
 import re
 import types
@@ -24,6 +23,7 @@ from grader.checking import (
     services,
     verdict,
 )
+from grader.checking.cause import Cause
 from grader.checking.message import Exchange, Message, WorldState
 from grader.checking.recorded_run import RecordedRun
 from grader.checking.run import Run
@@ -49,10 +49,22 @@ SUBJECTS: dict[str, types.ModuleType] = {
 }
 
 RECORDS = (
-    *(Message, Exchange, WorldState, recording.ReceivedMessage, recording.SentMessage, events.Call, events.Goal),
+    *(Message, Exchange, WorldState, recording.Recording, recording.ReceivedMessage, recording.SentMessage),
+    *(events.Call, events.Goal),
     *(events.GoalState, events.Feedback, events.Cancel, events.ParameterChange, events.ParameterReading),
-    *(events.ProgramExit, recording.Endpoint, recording.Ending),
+    *(events.ProgramExit, events.ProgramStart, events.Event, recording.Endpoint, recording.Ending, Cause),
 )
+
+_PLAIN = """\
+- `run.title`: the scenario's title
+- `run.seed`: what `scenarios(seed)` got
+- `run.exercise`: what exercise.toml says
+- `run.recording`: all that was recorded, see [Recording](#recording)
+- `run.reference`: the same of the run with your solution"""
+
+_TIMES = """\
+The `at` of a `Message` and of a `WorldState` is in seconds after the scenario's start. All other times are in ns of
+simulated time, in which the start is at 100 s: 2.5 s after it is 102_500_000_000."""
 
 #: What helpers share, and checks do not need.
 _INTERNAL = ("observed", "waits", "only", "output", "published_on")
@@ -82,14 +94,14 @@ def _page() -> Iterator[str]:
             yield from _function(f"run.{name}", entry)
         else:
             yield from _entry(f"run.{name}", _documented(entry))
-    yield "`run.title`: the scenario's title. `run.seed`: what `scenarios(seed)` got. `run.exercise`: exercise.toml.\n"
+    yield f"{_PLAIN}\n"
     for title, module in SUBJECTS.items():
         yield f"## {title}\n"
         for name, function in vars(Run).items():
             if inspect.isfunction(function) and function.__module__ == module.__name__:
                 yield from _function(f"run.{name}", function)
     yield "## Records\n"
-    yield "Times in records are ns of simulated time, except in the first three.\n"
+    yield f"{_TIMES}\n"
     for record in RECORDS:
         yield from _record(record)
 
@@ -124,13 +136,20 @@ def _entry(heading: str, documented: Any) -> Iterator[str]:
 def _record(record: type) -> Iterator[str]:
     yield f"### `{record.__name__}`\n"
     yield f"{inspect.getdoc(record)}\n"
-    names = (
-        [f"`{one.name}`: {one.type}" for one in dataclasses.fields(record)] if dataclasses.is_dataclass(record) else []
-    )
-    for name, entry in vars(record).items():
-        if isinstance(entry, property) or (inspect.isfunction(entry) and not name.startswith("_")):
-            names.append(f"`{name}{'' if isinstance(entry, property) else '(…)'}`: {inspect.getdoc(entry)}")
-    yield "\n".join(f"- {name}" for name in names) + "\n"
+    names = {name: f"`: {type_}" for name, type_ in inspect.get_annotations(record).items()}
+    for name, entry in _members(record):
+        if isinstance(entry, property):
+            names[name] = f"`: {inspect.getdoc(entry)}"
+        elif inspect.isfunction(entry):
+            names[name] = f"(…)`: {inspect.getdoc(entry)}"
+    names = {name: text for name, text in names.items() if not name.startswith("_")}
+    yield "\n".join(f"- `{name}{text}" for name, text in names.items()) + "\n"
+
+
+def _members(record: type) -> Iterator[tuple[str, Any]]:
+    """Yield what a record and its bases define, without what Python itself adds."""
+    for kind in record.__mro__[:-1]:
+        yield from vars(kind).items()
 
 
 if __name__ == "__main__":

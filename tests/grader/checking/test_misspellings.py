@@ -97,6 +97,7 @@ def problems(folder: Path, line: str) -> list[tuple[int | None, str]]:
         ("near.must_take('gian', 1.0)", "there is no parameter 'gian'. Did you mean gain?"),
         ("near.must_match_series('linear.x', subscriber='lat')", "there is no subscriber 'lat'. Did you mean late?"),
         ("[m.linaer for m in near.messages_on(SPEED)]", "geometry_msgs/msg/Twist has no linaer. Did you mean linear?"),
+        ("[m.stamp for m in near.messages_on(SPEED)]", "Twist has no stamp. There are: angular, linear"),
         ("each(near.messages_on(SPEED), lambda m: m.linaer)", "Twist has no linaer. Did you mean linear?"),
         ("[t.heder for m in near.messages_on('/tf') for t in m.transforms]", "TransformStamped has no heder"),
         ("near.received[0].angular.zz", "geometry_msgs/msg/Vector3 has no zz"),

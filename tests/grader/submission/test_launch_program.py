@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -69,6 +70,30 @@ def test_one_file_may_hold_the_launch_file_and_programs(exercise: Exercise) -> N
     text = f"# file: grip_launch.py\n{LAUNCH}# file: arm.py\nimport rclpy\n"
     start = start_of(code_of("mine.py", text.encode(), exercise))
     assert "'grip': UnbuiltPackage('', {'arm': UnbuiltExecutable('arm.py', '')})" in start
+
+
+XML = '<?xml version="1.0"?>\n<!-- mine -->\n<launch>\n<node pkg="sensors" exec="gauge"/></launch>\n'
+YAML = "# mine\nlaunch:\n- node:\n    pkg: sensors\n    exec: gauge\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "launched"),
+    [
+        ("grip.launch.xml", XML, "grip.launch.xml"),
+        ("mine_launch.yaml", YAML, "grip.launch.yaml"),
+        ("grip.launch (1).xml", XML, "grip.launch.xml"),
+        ("grip.xml", "\ufeff" + XML, "grip.launch.xml"),
+        ("grip.txt", YAML, "grip.launch.yaml"),
+        ("grip.launch", XML, "grip.launch.xml"),
+    ],
+)
+def test_a_lone_launch_file_may_be_xml_or_yaml(name: str, text: str, launched: str, exercise: Exercise) -> None:
+    code = code_of(name, text.encode(), exercise)
+    assert f"launch_unbuilt('{launched}'" in start_of(code)
+    assert code.source == text.removeprefix("\ufeff")
+    other = replace(exercise, nodes=())
+    with pytest.raises(Unreadable, match="neither Python"):
+        code_of(name, text.encode(), other)
 
 
 @pytest.mark.parametrize(

@@ -328,6 +328,8 @@ def test_spinbooks_own_modules_may_share_a_line_with_a_check_and_no_part_of_a_so
 
     assert not list(leaks({"wheels/spinbook.whl": zipped({"grader/a.py": line.encode()})}, known))
     assert list(leaks({"wheels/spinbook.whl": zipped({"grader/hidden.py": part.encode()})}, known))
+    assert not list(leaks({"site/run/ros.zip": zipped({"rclpy/node.py": part.encode()})}, known)), "everybody has rclpy"
+    assert list(leaks({"site/run/check.zip": zipped({"exercises/a/b.py": part.encode()})}, known))
 
 
 def test_a_file_that_is_named_after_a_hidden_check_is_found(known: list[Secret]) -> None:

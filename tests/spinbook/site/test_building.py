@@ -55,11 +55,12 @@ def test_a_chapter_that_is_taken_out_leaves_nothing(course: SmallCourse) -> None
 def test_what_is_wrong_is_reported_by_the_chapter_s_line(course: SmallCourse) -> None:
     course.change("chapters/02-more.md", "Good-bye.", "See [nothing](#not-here).")
 
-    said = course.spinbook_site()
+    said = course.spinbook_site("--no-run")
 
     line = (course.root / "chapters/02-more.md").read_text().split("\n").index("See [nothing](#not-here).") + 1
     assert re.search(rf"^chapters/02-more\.md:{line}: warning: .*not-here", said.stdout, re.MULTILINE)
     assert "Traceback" not in said.stdout + said.stderr
+    assert "#not-here" in (course.site / "downloads" / "02-more.ipynb").read_text(), "the notebook is the chapter's"
 
 
 def test_what_students_must_not_see_is_not_published(course: SmallCourse) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
+from xml.parsers import expat
 
 import yaml
 
@@ -91,10 +92,17 @@ class Element:
 def read(file: Path) -> LaunchDescription:
     """Return what a YAML or XML launch file describes. Raises `CommandError` with what is wrong and where."""
     try:
-        text = file.read_text(encoding="utf-8")
-        elements = list(_from_xml(text) if file.suffix == ".xml" else _from_yaml(text))
+        text = file.read_text(encoding="utf-8-sig")
+        elements = list(_from_xml(text) if text.lstrip().startswith("<") else _from_yaml(text))
         return LaunchDescription([_entity(element) for element in elements])
-    except (yaml.YAMLError, ElementTree.ParseError) as error:
+    except UnicodeDecodeError:
+        raise CommandError(f"{file}: it is not saved as UTF-8.") from None
+    except ElementTree.ParseError as error:
+        raise CommandError(f"{file}:{error.position[0]}: {expat.ErrorString(error.code)}.") from None
+    except yaml.MarkedYAMLError as error:
+        line = f":{error.problem_mark.line + 1}" if error.problem_mark else ""
+        raise CommandError(f"{file}{line}: {error.problem or error.context}.") from None
+    except yaml.YAMLError as error:
         raise CommandError(f"{file}: {error}") from None
     except CommandError as refusal:
         raise CommandError(f"{file}: {refusal.message}") from None
