@@ -185,7 +185,9 @@ install_batch() {
 give_up() {
     say "" "$1" ""
     { grep -E '^ *(ERROR|error|[A-Za-z.]*Error):' "$LOG" || tail -n 5 "$LOG"; } | cut -c 1-300 | head -n 8 >&2
-    if grep -qiE 'connection|name resolution|max retries|timed out|proxy' "$LOG"; then
+    if grep -q CERTIFICATE_VERIFY_FAILED "$LOG"; then
+        say "" "Python does not trust the certificate of this network. Name the file with its authorities: export PIP_CERT=/etc/ssl/certs/..."
+    elif grep -qiE 'connection|name resolution|max retries|timed out|proxy' "$LOG"; then
         say "" "PyPI can't be reached. Is there a network? Behind a proxy: export HTTPS_PROXY=...; with a mirror: export PIP_INDEX_URL=..."
     elif grep -q 'DO NOT MATCH THE HASHES' "$LOG"; then
         say "" "A download is not the file that was pinned. Try again; if it stays so, something on the way alters it."

@@ -254,8 +254,10 @@ def table_of_a_root(root: Path, names: list[str]) -> int:
 
 @contextmanager
 def mounted(root: Path) -> Iterator[None]:
-    """Give a root folder its /proc, /dev and names of hosts, and take them away again."""
-    shutil.copy("/etc/resolv.conf", root / "etc" / "resolv.conf")
+    """Give a root folder its /proc and /dev, and take them away again; and this network's names and certificates."""
+    for name in ("etc/resolv.conf", "etc/ssl/certs/ca-certificates.crt"):
+        if Path("/", name).exists() and (root / name).parent.is_dir():
+            shutil.copy(Path("/", name), root / name)
     for name in ("proc", "dev"):
         subprocess.run(["mount", "--rbind", f"/{name}", root / name], check=True)
     try:

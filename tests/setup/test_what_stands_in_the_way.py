@@ -11,6 +11,7 @@ NO_NETWORK = """WARNING: Retrying (Retry(total=4, connect=None)) after connectio
 ERROR: Could not find a version that satisfies the requirement click==8 (from versions: none)
 ERROR: No matching distribution found for click==8
 """
+UNTRUSTED = "WARNING: Retrying after 'SSLError(1, '[SSL: CERTIFICATE_VERIFY_FAILED] self-signed')'\n"
 ALTERED = """ERROR: THESE PACKAGES DO NOT MATCH THE HASHES FROM THE REQUIREMENTS FILE. If you have updated the package …
     click==8 from https://example.org/click-8.whl:
 """
@@ -21,11 +22,12 @@ FULL = "ERROR: Could not install packages due to an OSError: [Errno 28] No space
     ("pip_says", "message"),
     [
         (NO_NETWORK, "PyPI can't be reached. Is there a network?"),
+        (UNTRUSTED + NO_NETWORK, "does not trust the certificate of this network"),
         (ALTERED, "not the file that was pinned"),
         (FULL, "The disk is full"),
         ("Exception: something else\nin two lines\n", "in two lines"),
     ],
-    ids=["no network", "altered download", "full disk", "anything else"],
+    ids=["no network", "unknown certificate", "altered download", "full disk", "anything else"],
 )
 def test_a_failing_pip_is_explained(checkout: Checkout, pip_says: str, message: str) -> None:
     checkout.tell("pip-fails", pip_says)
