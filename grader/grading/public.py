@@ -22,7 +22,7 @@ from grader.recording.arrays import ArrayEncoder, read_arrays
 from grader.recording.recording import Recording, from_plain, plain
 from grader.sandbox.program import Isolation
 from grader.scenario.declared import declared
-from grader.scenario.scenario import Message, Scenario
+from grader.scenario.scenario import Scenario
 from grader.scenario.store import NotForStudents, code_in
 from grader.scenario.store import from_plain as from_plain_scenario
 from grader.scenario.store import plain as plain_scenario
@@ -32,7 +32,7 @@ from grader.workers.pool import WorkerPool
 if TYPE_CHECKING:
     from grader.checking.judge import Listed  # it imports pytest, which the judging process has anyway
 
-#: Increase this when older versions can no longer read the file. Format 1 had messages only.
+#: Increase this when older versions can no longer read the file.
 FORMAT = 2
 
 
@@ -69,7 +69,7 @@ def to_json(exercise: Exercise, public: PublicPart) -> str:
     """Return the text of public.json: the same for the same scenarios and solution, whenever it is made."""
     expected = {name: _timeless(recording) for name, recording in public.references.items()}
     entries = {
-        "format": 1 if all(_only_publishes(scenario) for scenario in public.scenarios) else FORMAT,
+        "format": FORMAT,
         "exercise": exercise.name,
         "hidden": {"checks": public.hidden_checks, "points": public.hidden_points},
         "scenarios": [_for_students(exercise, scenario) for scenario in public.scenarios],
@@ -109,15 +109,17 @@ def read_public(exercise: Exercise) -> PublicPart:
     fix = "Take it from the course's handout again."
     try:
         entries: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"), object_hook=read_arrays())
-        if entries["format"] not in (1, FORMAT):
+        if entries["format"] != FORMAT:
             fix = "Install the spinbook that came with the handout: pip install -r requirements.txt"
             raise ExerciseError(file, f"it has the format {entries['format']}, not {FORMAT}", fix)
         public = PublicPart(
-            tuple(_scenario(scenario, exercise.folder) for scenario in entries["scenarios"]),
+            from_plain_scenario(entries["scenarios"], exercise.folder),
             from_plain(entries["expected"]),
             int(entries["hidden"]["checks"]),
             float(entries["hidden"]["points"]),
         )
+        if not all(isinstance(scenario, Scenario) for scenario in public.scenarios):
+            raise TypeError("a scenario is something else")
     except FileNotFoundError:
         raise ExerciseError(file, "there is no such file", fix) from None
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
@@ -127,37 +129,10 @@ def read_public(exercise: Exercise) -> PublicPart:
     return public
 
 
-def _only_publishes(scenario: Scenario) -> bool:
-    started = scenario.parameters or scenario.remappings or scenario.namespace or scenario.arguments
-    return scenario.is_filter and not started
-
-
-def _of_messages(scenario: Scenario) -> Any:
-    """Return the recording in format 1, which older versions and web pages can read."""
-    names = ("at", "topic", "type", "fields", "publisher")
-    messages = [{name: getattr(message, name) for name in names} for message in scenario.messages]
-    entries = {"name": scenario.name, "title": scenario.title, "messages": messages, "interrupt": scenario.interrupt}
-    return {**entries, "computer_time": scenario.computer_time}
-
-
 def _for_students(exercise: Exercise, scenario: Scenario) -> Any:
-    if _only_publishes(scenario):
-        return _of_messages(scenario)
     try:
         return plain_scenario(scenario)
     except NotForStudents as error:
         problem = f"the scenario {scenario.name}, which a public check uses, runs {error} of this file"
         fix = f"Students don't get this file. Put {error} into another one in this folder, or hide the check."
         raise ExerciseError(exercise.scenarios_file, problem, fix, scenario.line or None) from None
-
-
-def _scenario(entries: dict[str, Any], folder: Path) -> Scenario:
-    if "is" in entries:
-        scenario = from_plain_scenario(entries, folder)
-        if not isinstance(scenario, Scenario):
-            raise TypeError("a scenario is something else")
-        return scenario
-    messages = tuple(Message(**message) for message in entries["messages"])
-    return Scenario(
-        entries["name"], entries["title"], messages, entries["interrupt"], entries.get("computer_time", "apart")
-    )

@@ -21,7 +21,7 @@ from grader.exercise.loading import load
 from grader.recording.arrays import read_arrays
 from grader.recording.recording import Ending, Recording, from_plain, not_run_because
 from grader.report.checks import ShownCheck, public_total, shown_verdicts
-from grader.scenario.scenario import Message, Scenario
+from grader.scenario.scenario import Scenario
 from grader.scenario.store import from_plain as scenario_from_plain
 from spinbook.browser.in_page import runner
 from spinbook.browser.in_page.own_frames import with_own_frames
@@ -99,16 +99,8 @@ def unpacked(name: str) -> Path:
 def public_part(exercise: Exercise) -> tuple[list[Scenario], dict[str, Recording], dict[str, Any]]:
     """Return the scenarios, the solution's recordings of them, and the counts of hidden checks, from public.json."""
     entries = json.loads(exercise.public_file.read_text(encoding="utf-8"), object_hook=read_arrays())
-    scenarios = [_scenario(item, exercise.folder) for item in entries["scenarios"]]
+    scenarios = list(scenario_from_plain(entries["scenarios"], exercise.folder))
     return scenarios, from_plain(entries["expected"]), entries["hidden"]
-
-
-def _scenario(entries: dict[str, Any], folder: Path) -> Scenario:
-    """Return a scenario from public.json. One that only publishes is stored in a shorter form."""
-    if "is" in entries:
-        found: Scenario = scenario_from_plain(entries, folder)
-        return found
-    return Scenario(**{**entries, "messages": tuple(Message(**message) for message in entries["messages"])})
 
 
 def record(exercise: Exercise, scenarios: list[Scenario], program: ProgramText) -> dict[str, Recording]:
