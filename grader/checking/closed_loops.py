@@ -224,5 +224,4 @@ def _measure(value: float, unit: str) -> str:
 
 
 def _ns(at: float) -> int:
-
     return START + round(at * SECOND)

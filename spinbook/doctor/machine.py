@@ -97,6 +97,7 @@ setup(name='{_NAME}', version='0.0.0', packages=['{_NAME}'],
     f"{_NAME}/trial.py": "def main():\n    print('built')\n",
 }
 _TOO_NEW = 80
+_BUILD = ("--log-base", "log", "build", "--symlink-install", "--event-handlers", "console_direct-")
 
 
 def examine_colcon(name: str) -> MachineFinding:
@@ -133,17 +134,7 @@ def _build(workspace: Path) -> subprocess.CompletedProcess[str]:
         "COLCON_LOG_LEVEL": "error",
     }
     return subprocess.run(
-        [
-            sys.executable,
-            "-m",
-            "colcon",
-            "--log-base",
-            "log",
-            "build",
-            "--symlink-install",
-            "--event-handlers",
-            "console_direct-",
-        ],
+        [sys.executable, "-m", "colcon", *_BUILD],
         cwd=workspace,
         env=os.environ | settings,
         capture_output=True,

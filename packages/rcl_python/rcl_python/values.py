@@ -208,54 +208,42 @@ class rcl_duration_t:  # noqa: N801
 
 
 @dataclass
-class rmw_matched_status_t:  # noqa: N801
-    """How many endpoints have been matched, and how many are matched now."""
+class Count:
+    """How often something has happened, in all and since it was last read."""
 
     total_count: int = 0
     total_count_change: int = 0
+
+
+@dataclass
+class rmw_matched_status_t(Count):  # noqa: N801
+    """How many endpoints have been matched, and how many are matched now."""
+
     current_count: int = 0
     current_count_change: int = 0
 
 
 @dataclass
-class rmw_requested_qos_incompatible_event_status_t:  # noqa: N801
+class rmw_requested_qos_incompatible_event_status_t(Count):  # noqa: N801
     """How many endpoints requested another quality of service, and the policy that prevented the last match."""
 
-    total_count: int = 0
-    total_count_change: int = 0
     last_policy_kind: rmw_qos_policy_kind_t = rmw_qos_policy_kind_t.RMW_QOS_POLICY_INVALID
 
 
-@dataclass
-class rmw_requested_deadline_missed_status_t:  # noqa: N801
+class rmw_requested_deadline_missed_status_t(Count):  # noqa: N801
     """How often no message arrived in time."""
 
-    total_count: int = 0
-    total_count_change: int = 0
 
-
-@dataclass
-class rmw_offered_deadline_missed_status_t:  # noqa: N801
+class rmw_offered_deadline_missed_status_t(Count):  # noqa: N801
     """How often no message was published in time."""
 
-    total_count: int = 0
-    total_count_change: int = 0
 
-
-@dataclass
-class rmw_message_lost_status_t:  # noqa: N801
+class rmw_message_lost_status_t(Count):  # noqa: N801
     """How many messages were lost."""
 
-    total_count: int = 0
-    total_count_change: int = 0
 
-
-@dataclass
-class rmw_liveliness_lost_status_t:  # noqa: N801
+class rmw_liveliness_lost_status_t(Count):  # noqa: N801
     """How often a publisher failed to assert its liveliness."""
-
-    total_count: int = 0
-    total_count_change: int = 0
 
 
 @dataclass
@@ -268,12 +256,8 @@ class rmw_liveliness_changed_status_t:  # noqa: N801
     not_alive_count_change: int = 0
 
 
-@dataclass
-class rmw_incompatible_type_status_t:  # noqa: N801
+class rmw_incompatible_type_status_t(Count):  # noqa: N801
     """How many endpoints have another type."""
-
-    total_count: int = 0
-    total_count_change: int = 0
 
 
 @dataclass(frozen=True)

@@ -22,19 +22,19 @@ if TYPE_CHECKING:
 #: Time limit for a node's parameter services to appear, and then to answer, in seconds.
 READY, ANSWER = 5.0, 10.0
 
-# By rcl_interfaces/msg/ParameterType.
-_VALUE_FIELDS = (
-    "",
-    "bool_value",
-    "integer_value",
-    "double_value",
-    "string_value",
-    "byte_array_value",
-    "bool_array_value",
-    "integer_array_value",
-    "double_array_value",
-    "string_array_value",
-)
+# By rcl_interfaces/msg/ParameterType: the type's name in `describe`, how `get` begins its line, and its field.
+_TYPES = {
+    0: ("not set", "Parameter not set.", ""),
+    1: ("boolean", "Boolean value is:", "bool_value"),
+    2: ("integer", "Integer value is:", "integer_value"),
+    3: ("double", "Double value is:", "double_value"),
+    4: ("string", "String value is:", "string_value"),
+    5: ("byte array", "Byte values are:", "byte_array_value"),
+    6: ("boolean array", "Boolean values are:", "bool_array_value"),
+    7: ("integer array", "Integer values are:", "integer_array_value"),
+    8: ("double array", "Double values are:", "double_array_value"),
+    9: ("string array", "String values are:", "string_array_value"),
+}
 
 
 def find_node(graph: GraphView, node_name: str, include_hidden: bool) -> str:
@@ -106,7 +106,8 @@ def parameters_of_file(file: Path, node: str, *, use_wildcard: bool) -> list[Any
 
 def value_of(value: Any) -> Any:
     """Return the value of a rcl_interfaces/msg/ParameterValue; None if it is not set."""
-    return getattr(value, _VALUE_FIELDS[value.type]) if 0 < value.type < len(_VALUE_FIELDS) else None
+    field = _TYPES.get(value.type, _TYPES[0])[2]
+    return getattr(value, field) if field else None
 
 
 param = Menu(
@@ -119,19 +120,6 @@ param = Menu(
     """,
 )
 
-# By rcl_interfaces/msg/ParameterType: how `describe` names a type, and how `get` begins its line.
-_TYPES = {
-    0: ("not set", "Parameter not set."),
-    1: ("boolean", "Boolean value is:"),
-    2: ("integer", "Integer value is:"),
-    3: ("double", "Double value is:"),
-    4: ("string", "String value is:"),
-    5: ("byte array", "Byte values are:"),
-    6: ("boolean array", "Boolean values are:"),
-    7: ("integer array", "Integer values are:"),
-    8: ("double array", "Double values are:"),
-    9: ("string array", "String values are:"),
-}
 _hidden_nodes = click.option("-a", "--include-hidden-nodes", is_flag=True, help="Hidden nodes too.")
 
 
@@ -206,7 +194,7 @@ def get(graph: GraphView, name: str, client: Any, parameter_name: str, hide_type
     if not values:
         raise CommandError("Parameter not set", _parameters_of(graph, name, client))
     kind = values[0].type
-    label = _TYPES.get(kind, ("", f"Unknown parameter type '{kind}'"))[1]
+    label = _TYPES[kind][1] if kind in _TYPES else f"Unknown parameter type '{kind}'"
     value = _plain(value_of(values[0]))
     if hide_type:
         click.echo(str(value))
