@@ -15,6 +15,7 @@ from grader.exercise.exercise import Exercise
 from grader.report.pages import template
 from grader.report.path_plot import path_of, path_plot
 from grader.scenario.times import SECOND, START
+from ros_in_python.axis_marks import round_values
 
 if TYPE_CHECKING:
     from grader.grading.grade import Grade
@@ -206,7 +207,7 @@ def feedback_plot(grade: Grade, exercise: Exercise, *, judged: bool = True) -> s
         panel_height=HEIGHT,
         height=TOP + len(panels) * (HEIGHT + GAP) + BOTTOM,
         bottom=TOP + len(panels) * (HEIGHT + GAP) - GAP,
-        marks=[(_x(at, start, end), f"{at:g}") for at in _marks(start, end)],
+        marks=[(_x(at, start, end), f"{at:g}") for at in round_values(start, end if end > start else start + 1.0)],
     )
 
 
@@ -256,15 +257,6 @@ def _x(at: float, start: float, end: float) -> float:
 def _line(points: list[Point]) -> Markup:
     """Return points for an SVG. They are numbers, so nothing has to be escaped, and long lines are not cut."""
     return Markup(" ".join(f"{x:g},{y:g}" for x, y in points))
-
-
-def _marks(start: float, end: float) -> list[float]:
-    """Return about five round times from `start` to `end`."""
-    rough = (end - start) / 5 or 1.0
-    power = 10.0 ** (len(f"{rough:.0f}") - 1) if rough >= 1 else 0.1
-    step = next((step * power for step in (1, 2, 5, 10) if step * power >= rough), 10 * power)
-    first = -(-start // step)
-    return [round((first + i) * step, 6) for i in range(int((end - first * step) / step + 1e-9) + 1)]
 
 
 def _description(drawn: tuple[Curve, ...], field: str, called: str, end: float, judged: bool) -> str:

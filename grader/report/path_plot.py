@@ -17,6 +17,7 @@ from grader.exercise.exercise import Exercise, Topic
 from grader.recording.recording import ReceivedMessage, Recording, SentMessage
 from grader.report.pages import template
 from grader.scenario.times import SECOND, START
+from ros_in_python.axis_marks import round_values
 from ros_in_python.field_path import NoSuchField, field_of
 
 if TYPE_CHECKING:
@@ -129,17 +130,9 @@ def path_plot(path: PlanePath) -> str:
         goals=[at(goal) for goal in path.goals],
         wrong=at(path.wrong[1]) if path.wrong else None,
         wrong_at=f"{path.wrong[0]:.2f} s" if path.wrong else "",
-        x_marks=[(at((value, y0))[0], f"{value:g}") for value in _marks(x0, span)],
-        y_marks=[(at((x0, value))[1], f"{value:g}") for value in _marks(y0, span)],
+        x_marks=[(at((value, y0))[0], f"{value:g}") for value in round_values(x0, x0 + span)],
+        y_marks=[(at((x0, value))[1], f"{value:g}") for value in round_values(y0, y0 + span)],
     )
-
-
-def _marks(first: float, span: float) -> list[float]:
-    """Return about five round values in this range."""
-    power = 10.0 ** math.floor(math.log10(span / 5))
-    step = next(step * power for step in (1, 2, 5, 10) if step * power >= span / 5)
-    begin = math.ceil(first / step)
-    return [round((begin + i) * step, 9) for i in range(int((first + span) / step + 1e-9) - begin + 1)]
 
 
 def describe(path: PlanePath) -> str:

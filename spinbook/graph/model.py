@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -18,6 +19,18 @@ class GraphEndpoint:
     node: str
     type: str
     connected: bool
+
+
+#: Topics that every node has, which say nothing about its purpose.
+INTERNAL = ("/rosout", "/parameter_events")
+
+
+def one_each(ends: Iterable[tuple[str, str, bool]]) -> tuple[GraphEndpoint, ...]:
+    """Return one endpoint per node and type, sorted. It is connected if any of them is; `ends` are as its fields."""
+    connected: dict[tuple[str, str], bool] = {}
+    for node, kind, fits in ends:
+        connected[node, kind] = connected.get((node, kind), False) or fits
+    return tuple(sorted(GraphEndpoint(node, kind, fits) for (node, kind), fits in connected.items()))
 
 
 @dataclass(frozen=True, order=True)

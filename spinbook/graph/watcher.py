@@ -34,7 +34,7 @@ from ros_in_python.ros2.domain import domain_id, hears_other_hosts, participants
 from ros_in_python.ros2.graph import LOOK, GraphView
 from ros_in_python.ros2.interfaces import message_class
 from ros_in_python.ros2.opening import prepare
-from spinbook.graph.model import GraphEndpoint, GraphNode, GraphTopic, NodeGraph
+from spinbook.graph.model import INTERNAL, GraphEndpoint, GraphNode, GraphTopic, NodeGraph, one_each
 
 #: A rate is measured over at least this long (s).
 ENOUGH_S = 0.8
@@ -97,8 +97,6 @@ def rounded(rate_hz: float) -> float:
     return float(f"{shown * scale:.6g}")
 
 
-#: Topics that every node has, which say nothing about its purpose.
-INTERNAL = ("/rosout", "/parameter_events")
 #: Quiet time after which the graph counts as complete, and the deadline for that (s).
 _QUIET_S, _DEADLINE_S = 0.15, 8.0
 #: The messages of a topic are counted for this long (s).
@@ -231,12 +229,7 @@ def _node(end: TopicEndpointInfo) -> str:
 
 
 def _ends(ends: list[TopicEndpointInfo], others: list[TopicEndpointInfo]) -> tuple[GraphEndpoint, ...]:
-    """Return one endpoint per node and type, sorted. It is connected if any of them matches any of `others`."""
-    connected: dict[tuple[str, str], bool] = {}
-    for end in ends:
-        key = (_node(end), end.topic_type)
-        connected[key] = connected.get(key, False) or any(_fit(end, other) for other in others)
-    return tuple(sorted(GraphEndpoint(node, kind, fits) for (node, kind), fits in connected.items()))
+    return one_each((_node(end), end.topic_type, any(_fit(end, other) for other in others)) for end in ends)
 
 
 def _fit(one: TopicEndpointInfo, other: TopicEndpointInfo) -> bool:

@@ -8,11 +8,8 @@ from rcl_python import participant
 from rcl_python.graph import PUBLISHER, SUBSCRIPTION, EndpointInfo, Graph, NodeInfo
 from rmw_lockstep.qos import compatible
 from spinbook.graph.layout import drawings
-from spinbook.graph.model import GraphEndpoint, GraphNode, GraphTopic, NodeGraph
+from spinbook.graph.model import INTERNAL, GraphEndpoint, GraphNode, GraphTopic, NodeGraph, one_each
 from spinbook.graph.picture import in_words, node_graph_svgs
-
-#: Topics that every node has.
-_INTERNAL = ("/rosout", "/parameter_events")
 
 
 def now() -> str:
@@ -52,12 +49,7 @@ def _topic(name: str, ends: list[EndpointInfo], nodes: dict[str, str]) -> GraphT
 
 
 def _ends(ends: list[EndpointInfo], others: list[EndpointInfo], nodes: dict[str, str]) -> tuple[GraphEndpoint, ...]:
-    """Return one endpoint for each node and type. It is connected if any endpoint of that node and type is."""
-    connected: dict[tuple[str, str], bool] = {}
-    for end in ends:
-        key = nodes[end.node], end.type
-        connected[key] = connected.get(key, False) or any(_fit(end, other) for other in others)
-    return tuple(sorted(GraphEndpoint(node, kind, fits) for (node, kind), fits in connected.items()))
+    return one_each((nodes[end.node], end.type, any(_fit(end, other) for other in others)) for end in ends)
 
 
 def _fit(one: EndpointInfo, other: EndpointInfo) -> bool:
@@ -74,4 +66,4 @@ def _is_hidden(name: str) -> bool:
 
 
 def _is_shown(topic: str) -> bool:
-    return topic not in _INTERNAL and not _is_hidden(topic)
+    return topic not in INTERNAL and not _is_hidden(topic)

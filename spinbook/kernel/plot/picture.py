@@ -12,6 +12,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from ros_in_python.animation import Cycle, coord, on_paper
+from ros_in_python.axis_marks import round_values
 from ros_in_python.thinning import thinned
 from spinbook.kernel.plot.recording import PlotCurve, PlotRecording
 
@@ -95,14 +96,8 @@ class Scale:
         return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
 
     def marks(self) -> list[float]:
-        """Return up to five round values, 1, 2 or 5 times a power of ten apart."""
-        span = self.high - self.low
-        step = 10.0 ** math.floor(math.log10(span / 5))
-        step *= next((factor for factor in (1, 2, 5) if span / (step * factor) <= 5), 10)
-        # A mark is written with the digits of its step: 3 * 0.1 is 0.3.
-        digits = max(0, -math.floor(math.log10(step)))
-        numbers = range(math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9) + 1)
-        return [round(step * number, digits) for number in numbers]
+        """Return up to five round values."""
+        return round_values(self.low, self.high)
 
 
 def around(values: list[float], start: float, end: float) -> Scale:
