@@ -122,7 +122,7 @@ def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[C
 
     `interface_package` is the package of an interface whose title does not name one.
     """
-    problems = _unknown_attributes(fence, file)
+    problems = [*_unknown_attributes(fence, file), *_unknown_tags(fence, file)]
     if fence.has("static"):
         return ClassifiedFence(fence, CellKind.STATIC, "it says `static`"), problems
     if interface := interface_of(fence, interface_package):
@@ -196,6 +196,21 @@ def _unknown_attributes(fence: Fence, file: Path) -> list[Problem]:
     known = "; ".join(f"`{name}`: {meaning}" for name, meaning in ATTRIBUTES.items())
     problem = f"unknown attribute {', '.join(f'`{a}`' for a in unknown)} on this fence."
     return [Problem(file, fence.line, problem, f"Known are {known}.", Severity.WARNING)]
+
+
+#: MyST's tags that decide whether a cell runs, and what a page shows of it.
+_TAGS = tuple(f"{verb}-{part}" for verb in ("hide", "remove") for part in ("input", "output", "cell"))
+_TAGS += ("skip-execution", "raises-exception")
+
+
+def _unknown_tags(fence: Fence, file: Path) -> list[Problem]:
+    """Return tags that look like misspellings of MyST's; others may be the author's own."""
+    close = {tag: difflib.get_close_matches(tag, _TAGS, 1, 0.85) for tag in fence.tags if tag not in _TAGS}
+    return [
+        Problem(file, fence.line, f"unknown tag `{tag}` on this cell.", f"Did you mean `{meant[0]}`?", Severity.WARNING)
+        for tag, meant in close.items()
+        if meant
+    ]
 
 
 def _absent(fence: Fence, name: str, file: Path) -> tuple[ClassifiedFence, list[Problem]]:

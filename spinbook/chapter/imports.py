@@ -11,6 +11,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+import ros_in_python
 from interface_compiler import prefixes, shipped
 from ros_in_python.ros2 import interfaces as interface_files
 from spinbook.chapter.python_code import PythonCode
@@ -37,11 +38,13 @@ _ONLY_IN_ROS = frozenset(
     [
         *("image_geometry", "image_transport_py", "laser_geometry"),
         *("rqt_gui", "rqt_gui_py", "nav2_simple_commander", "moveit_py", "robot_localization", "diagnostic_updater"),
+        *("moveit", "moveit_configs_utils", "nav2_common", "python_qt_binding", "rqt_py_common", "controller_manager"),
         *("ros2cli", "ros2run", "ros2launch", "launch_testing", "launch_testing_ros", "ros_gz_bridge", "gazebo_ros"),
     ]
 )
 #: Modules that only programs bring along.
 _WITH_OTHERS = {"omni": "Isaac Sim", "carb": "Isaac Sim", "pxr": "Isaac Sim", "rospy": "ROS 1", "roslib": "ROS 1"}
+_WITH_OTHERS |= {"moveit_commander": "ROS 1", "actionlib": "ROS 1", "tf": "ROS 1", "dynamic_reconfigure": "ROS 1"}
 #: What helps if PyPI lacks a package of ROS.
 IN_ROS = "run the course where a ROS installation has it"
 
@@ -185,15 +188,21 @@ def _modules_in(top: str) -> frozenset[str]:
 @functools.cache
 def _has_module(top: str, rest: str) -> bool:
     """Return whether a ROS package has a module; True for other packages, which may make modules on import."""
-    if not _folders(top) or (top != "rclpy" and top not in ros_packages()):
+    if not _folders(top) or not (top == "rclpy" or top in ros_packages() or top in _of_ours()):
         return True
     return rest.partition(".")[0] in _modules_in(top)
+
+
+@functools.cache
+def _of_ours() -> frozenset[str]:
+    """Return the modules of ROS that come with ros_in_python, such as tf2_ros."""
+    return frozenset(entry.name for entry in Path(ros_in_python.__file__).with_name("importable").iterdir())
 
 
 def _similar(module: str) -> str:
     if module in _REAL:
         return ""
-    known = [*ros_packages(), "rclpy", "numpy", "matplotlib"]
+    known = [*ros_packages(), *_of_ours(), "rclpy", "numpy", "matplotlib"]
     close = difflib.get_close_matches(module, known, n=1, cutoff=0.8)
     # geometry_msgs_py is not a misspelt geometry_msgs.
     if close and (module.startswith(f"{close[0]}_") or close[0].startswith(f"{module}_")):

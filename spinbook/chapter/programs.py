@@ -44,7 +44,8 @@ class Programs:
         """Decide what each fence becomes; fences without Python stay as they are."""
         out = list(items)
         for number, item in enumerate(items):
-            if item.kind is CellKind.NODE and not self._goes_on_in_kernel(item):
+            in_kernel = self._goes_on_in_kernel(item) or self._is_gone_on_with(item, items[number + 1 :])
+            if item.kind is CellKind.NODE and not in_kernel:
                 out[number] = self._node(number, item, out)
             elif item.kind in {CellKind.NODE, CellKind.SNIPPET}:
                 out[number] = self._snippet(item)
@@ -59,6 +60,15 @@ class Programs:
         code = item.code
         is_piece = code is not None and set(code.needs) <= self._defined and not (code.initializes or code.node_classes)
         return self._has_ros and is_piece and "rclpy.spin(" not in item.fence.code and not _is_file(item)
+
+    def _is_gone_on_with(self, item: ClassifiedFence, below: Iterable[ClassifiedFence]) -> bool:
+        """Return whether snippets below use what code made that ends at once, as the cells of a notebook do."""
+        code = item.code
+        if code is None or self._has_ros or code.spins or code.loops or code.needs or _is_file(item):
+            return False
+        made = code.defines - set(code.node_classes) if code.initializes and not code.has_main else frozenset()
+        snippets = (other.code for other in below if other.kind is CellKind.SNIPPET and other.code)
+        return any(made & set(snippet.needs) for snippet in snippets)
 
     def _node(self, number: int, item: ClassifiedFence, out: Sequence[ClassifiedFence]) -> ClassifiedFence:
         code = item.code

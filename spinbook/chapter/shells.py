@@ -279,6 +279,8 @@ class Shells:
             return Reason(
                 "it makes a package for C++", "Python packages have --build-type ament_python.", "C++ packages"
             )
+        if name and is_placeholder(name):
+            return TO_FILL_IN
         if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
             return Reason("it does not name a package", "Write: ros2 pkg create --build-type ament_python NAME", "")
         self._created.add(name)

@@ -16,7 +16,6 @@ from enum import Enum
 
 import click
 
-from ros_in_python.ros2.cli import Menu
 from ros_in_python.ros2.command import NOUNS, ros2
 
 #: The nouns of `ros2` that a package follows, not a verb.
@@ -276,8 +275,9 @@ def _unknown(text: str, line: int, before: str, word: str, known: Iterable[str])
 @functools.cache
 def _verbs(noun: str) -> tuple[str, ...]:
     """Return the verbs of `ros2 NOUN`."""
-    menu = None if noun in _STARTING else ros2.get_command(click.Context(ros2), noun)
-    return tuple(menu.entries) if isinstance(menu, Menu) else ()
+    context = click.Context(ros2)
+    menu = None if noun in _STARTING else ros2.get_command(context, noun)
+    return tuple(menu.list_commands(context)) if isinstance(menu, click.Group) else ()
 
 
 def _ros2(text: str, words: tuple[str, ...], line: int) -> Command | UnsupportedCommand:

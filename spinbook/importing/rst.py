@@ -124,9 +124,8 @@ class _Writer:
         return self.blocks(node.children, level)
 
     def _section(self, node: nodes.section, level: int) -> list[str]:
-        names = [
-            name for name in node["names"] if not node.children or name != nodes.fully_normalize_name(node[0].astext())
-        ]
+        # The heading's own name is none of the author's labels, unless one is spelt like it.
+        names = [name for name in node["names"] if node.document.nametypes.get(name)]
         return [*(f"({name.replace(' ', '-')})=" for name in names), *self.blocks(node.children, level + 1)]
 
     def _title(self, node: nodes.title, level: int) -> list[str]:

@@ -71,6 +71,12 @@ FAULTS: dict[str, tuple[bytes, int, list[str], str]] = {
     ),
     "dead link": (b"# T\n\nsee [there](nowhere.md)\n", 3, ["nowhere.md", "no such file"], WARNING),
     "misspelt attribute": (b"# T\n\n```bash secnods=3\nros2 topic list\n```\n", 3, ["`secnods`", "Known are"], WARNING),
+    "misspelt tag": (
+        b"# T\n\n```{code-cell}\n:tags: [skip-exection]\nx = 1\n```\n",
+        3,
+        ["unknown tag", "Did you mean `skip-execution`?"],
+        WARNING,
+    ),
     "pipe in a shell fence": (b"# T\n\n```bash\nros2 topic list | grep x\n```\n", 4, ["not run", "pipes"], WARNING),
     "unknown ros2 verb": (
         b"# T\n\n```bash\nros2 topic lsit\n```\n",

@@ -31,6 +31,7 @@ CELLS = {
     "arguments": ([CREATE, "adder toolbox/adder waits for arguments", "ros2 run toolbox adder 1 2"], []),
     "as_in_a_notebook": (["snippet"] * 4, ["nothing calls what it defines"]),
     "boxes": ([], []),
+    "in_the_background": (["snippet"] * 2, []),
     "class_again": (["beeper", "beeper after beeper"], []),
     "excerpts_of_setup": (
         [CREATE, "ping_node toolbox/pinger toolbox/second", "ros2 run toolbox pinger", "ros2 run toolbox second"],

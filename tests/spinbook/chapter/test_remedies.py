@@ -20,6 +20,9 @@ from fences import IMPORTS, MAIN, TALKER, reading
         ("import whisper", "If PyPI has it, add it to the course's dependencies; otherwise write `static`"),
         ("from geometry_msgs_py import poses", "If PyPI has it, add it"),
         ("from std_msg.msg import String", "Did you mean `std_msgs`?"),
+        ("import tf2_geometry_msg", "Did you mean `tf2_geometry_msgs`?"),
+        ("from sensor_msgs_py.point_cloud import read_points", "Did you mean `sensor_msgs_py.point_cloud2`?"),
+        ("import moveit_commander", "It comes only with ROS 1"),
     ],
 )
 def test_the_remedy_for_a_missing_package_is_one_that_works(tmp_path: Path, line: str, fix: str) -> None:

@@ -112,6 +112,7 @@ def test_a_sphinx_book_is_read_by_its_toctrees_and_its_settings_are_not_run(tmp_
         (":ref:`words <label>` :doc:`page`\n", "{ref}`words <label>` {doc}`page`\n"),
         (":guilabel:`Go` :py:func:`~rclpy.spin` :math:`x`\n", "**Go** `rclpy.spin` $x$\n"),
         (".. _label:\n\nTitle\n=====\n", "(label)=\n# Title\n"),
+        (".. _title:\n\nTitle\n=====\n", "(title)=\n# Title\n"),
         (
             ".. code-block:: python\n   :caption: a.py\n   :linenos:\n\n   x = 1\n",
             '```python title="a.py"\nx = 1\n```\n',
