@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from programs import Watch
+from programs import MS, QosPolicies, Watch, serialized
 
 
 def test_time_goes_on_only_when_the_hub_says_so(watch: Watch) -> None:
@@ -181,6 +181,28 @@ def test_a_childs_clock_goes_on_from_where_it_was_forked_however_busy_its_parent
     assert [said for _, said in watch.said()] == ["0.0"]
 
 
+@pytest.mark.parametrize("child", ["", "import rclpy"])
+def test_time_stands_still_for_a_child_and_what_is_sent_for_later_waits(watch: Watch, child: str) -> None:
+    watch.start(f"""
+        import subprocess
+        node.create_subscription(String, '/asked', lambda message: say(message.data + '!'), 10)
+        def work():
+            time.sleep(0.024)
+            subprocess.run([sys.executable, '-c', {child!r}])
+            say('waited')
+        threading.Thread(target=work, daemon=True).start()
+        rclpy.spin(node)
+    """)
+    publisher = watch.node.publisher("/asked", "std_msgs/msg/String", QosPolicies())
+    watch.hub.wait_until_idle()
+    watch.hub.advance(watch.hub.now + 100 * MS)
+    publisher.publish(serialized("one"))
+    watch.hub.barrier()
+    publisher.publish(serialized("two"))
+    watch.hub.wait_until_idle()
+    assert watch.said() == [(24, "waited"), (100, "one!"), (100, "two!")]
+
+
 def test_a_process_that_another_wakes_through_a_pipe_is_not_idle_before_it_has_done_what_it_is_woken_for(
     watch: Watch,
 ) -> None:
@@ -239,7 +261,6 @@ def test_every_executor_answers_and_is_known_to_be_idle(watch: Watch, executor: 
         executor.add_node(node)
         executor.spin()
     """)
-    from programs import QosPolicies
     from rclpy.serialization import serialize_message
     from std_msgs.msg import String
 

@@ -269,6 +269,7 @@ def frame(kind: bytes, payload: bytes = b"") -> bytes:
 
 BARRIER = frame(b"|")
 ASK = frame(b"?")
+FORK_SEEN = frame(b"F")
 GRAPH_COMPLETE = frame(b"g")
 
 

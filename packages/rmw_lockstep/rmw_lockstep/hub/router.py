@@ -92,6 +92,7 @@ class Router:
     def _forked(self, link: ProcessLink, payload: bytes) -> None:
         child, now = frames.forked(payload)
         self._begins[link.listener, child] = link.moment(link.handled, now)[1]
+        link.queue(frames.FORK_SEEN)
 
     def is_still_forking(self, link: ProcessLink) -> bool:
         """Return whether a new process's parent has not reported yet when it forked it."""

@@ -203,6 +203,15 @@ void Core::step() {
     const uint8_t * frame = front(size);
     const char kind = frame ? static_cast<char>(frame[0]) : 0;
     const bool gate = kind == 'T' || kind == '|';
+    if (kind == 'F') {
+      holds_ = false;
+      pop();
+      continue;
+    }
+    if (frame && holds_ && !awaited) {
+      hold(frame, size);
+      continue;
+    }
     if (gate && awaited) {  // a thread waits for a frame behind it: see lockstep_block_until
       time_runs_ = false;
       pop();
@@ -237,12 +246,12 @@ void Core::begin_time(const uint8_t * frame, uint32_t size) {
   until_ = std::max(reader.get<int64_t>(), now());
   stop_at_output_ = reader.get<uint8_t>() != 0;
   time_runs_ = true;
-  sent_output_ = false;
+  sent_output_ = has_forked_ = false;
 }
 
 // Called when the process is idle. Wake the thread with the earliest deadline, or finish the TIME frame.
 void Core::go_on() {
-  if (!(stop_at_output_ && sent_output_)) {
+  if (!(stop_at_output_ && sent_output_) && !has_forked_) {
     Sleeper * next = nullptr;
     for (Sleeper * sleeper : sleepers_) {
       const bool sooner = !next || sleeper->deadline < next->deadline ||
@@ -267,6 +276,23 @@ void Core::go_on() {
   }
   time_runs_ = false;
   pop();
+  if (now() < until_ && has_forked_) {
+    holds_ = true;
+    held_until_ = until_;
+  } else if (now() >= held_until_) {
+    in_.insert(in_.begin() + static_cast<long>(in_at_), held_.begin(), held_.end());
+    held_.clear();
+    held_count_ = 0;
+  }
+}
+
+// After a fork only the hub knows when everything is idle, so time ends early. What the hub has sent until it knows of
+// the fork belongs to a later time, and is kept for that.
+void Core::hold(const uint8_t * frame, uint32_t size) {
+  held_.insert(held_.end(), frame - sizeof size, frame + size);
+  in_at_ += sizeof size + size;
+  ++held_count_;
+  changed_ = true;
 }
 
 void Core::announce() {
@@ -280,7 +306,7 @@ void Core::announce() {
   std::vector<uint8_t> frame;
   {
     Writer writer(frame, 'I');
-    writer.put<uint64_t>(handled_).put<int64_t>(now()).put<int64_t>(next == NEVER ? -1 : next);
+    writer.put<uint64_t>(handled_ + held_count_).put<int64_t>(now()).put<int64_t>(next == NEVER ? -1 : next);
     writer.put<uint32_t>(participant_ ? participant_->waiting() : 0).put<uint32_t>(timed).put<uint32_t>(others_);
     writer.put<uint8_t>(flags_).put<uint64_t>(runs);
     const auto count = static_cast<uint16_t>(std::min<size_t>(children_.size(), 1000));
@@ -296,6 +322,7 @@ void Core::announce() {
 void Core::forked(pid_t child) {
   if (child <= 0 || !connected_) return;
   children_.push_back(child);
+  has_forked_ = true;
   std::vector<uint8_t> frame;
   Writer(frame, 'F').put<uint32_t>(child).put<int64_t>(now());
   report(frame.data(), frame.size());
@@ -315,10 +342,12 @@ void Core::reset_in_child(bool connect_again) {
   socket_ = poke_ = -1;
   in_.clear();
   in_at_ = 0;
+  held_.clear();
+  held_count_ = 0;
   const bool was_connected = connected_;
   connected_ = false;
   handled_ = 0;
-  time_runs_ = asked_ = has_own_pace_ = false;
+  time_runs_ = asked_ = has_own_pace_ = has_forked_ = holds_ = false;
   if (participant_) participant_->reset();
   if (was_connected && connect_again) connect(std::string(path_));
 }

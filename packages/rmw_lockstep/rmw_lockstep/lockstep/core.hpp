@@ -102,6 +102,7 @@ private:
   void take(const uint8_t * frame, uint32_t size);
   void begin_time(const uint8_t * frame, uint32_t size);
   void go_on();                    // one step of time
+  void hold(const uint8_t * frame, uint32_t size);
   Idle idle();
   void forget_dead_children();
   bool nudge(const Sleeper & sleeper);
@@ -133,8 +134,12 @@ private:
   std::atomic<bool> disturbed_{false};  // by a signal
   bool has_own_pace_ = false;      // it has sent something between fruitless polls, at a time of its own
   bool asked_ = false;             // the hub wants another IDLE, even if nothing has changed
-  bool time_runs_ = false, stop_at_output_ = false, sent_output_ = false;
+  bool time_runs_ = false, stop_at_output_ = false, sent_output_ = false, has_forked_ = false;
   int64_t until_ = 0;
+  bool holds_ = false;             // the hub does not know yet that time has ended early, at a fork
+  std::vector<uint8_t> held_;      // what it has sent until then, for the time `held_until_`
+  uint64_t held_count_ = 0;
+  int64_t held_until_ = 0;
 };
 
 // This process's core. It is never destroyed: threads use it until the process ends.
