@@ -7,43 +7,17 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
-from grader.exercise.exercise import Qos
 from grader.exercise.modules import HIDDEN_FILES
-from grader.scenario import scenario as steps
+from grader.scenario import scenario, servers
 from grader.scenario.code import AuthorCode
-from grader.scenario.scenario import Companion, Message, Program, Scenario
-from grader.scenario.servers import ActionServer, GoalScript, Reply, Server
 from grader.scenario.world import World, restored
 
-_STEPS = (
-    steps.Request,
-    steps.SendGoal,
-    steps.CancelGoal,
-    steps.CancelAll,
-    steps.SetParameter,
-    steps.GetParameter,
-    steps.Subscribe,
-    steps.Leave,
-    steps.ComeBack,
-    steps.Kill,
-    steps.StartProgram,
-    steps.ToWorld,
-)
+#: The classes of which scenarios are made, by name.
 _CLASSES: dict[str, Any] = {
-    one.__name__: one
-    for one in (
-        *_STEPS,
-        Companion,
-        Message,
-        Program,
-        Scenario,
-        ActionServer,
-        GoalScript,
-        Reply,
-        Server,
-        Qos,
-        AuthorCode,
-    )
+    name: kind
+    for module in (scenario, servers)
+    for name, kind in vars(module).items()
+    if isinstance(kind, type) and is_dataclass(kind)
 }
 
 

@@ -10,7 +10,7 @@ from markdown_it import MarkdownIt
 from markdown_it.rules_inline import StateInline
 
 from spinbook.chapter.flavours import parser
-from spinbook.chapter.links import places_of, rule_of
+from spinbook.chapter.links import places_of, watch
 
 _BEGIN, _END = "<!--", "-->"
 
@@ -84,23 +84,16 @@ def _code(markdown: str) -> Iterator[Span]:
 def _code_in_line(content: str) -> list[Span]:
     spans: list[Span] = []
     md = _inline_parser()
-    md.inline.parse(content, md, {"watched": content, "spans": spans}, [])
+    md.inline.parse(content, md, {"watched": content, "found": spans}, [])
     return spans
 
 
 @functools.cache
 def _inline_parser() -> MarkdownIt:
     md = MarkdownIt("commonmark", {"html": True})
-    rule = rule_of(md, "backticks")
-
-    def watch(state: StateInline, silent: bool) -> bool:
-        start, known = state.pos, len(state.tokens)
-        if not rule(state, silent):
-            return False
-        is_code = any(token.type == "code_inline" for token in state.tokens[known:])
-        if is_code and state.src == state.env.get("watched"):
-            state.env["spans"].append((start, state.pos))
-        return True
-
-    md.inline.ruler.at("backticks", watch)
+    watch(md, "backticks", _code_span)
     return md
+
+
+def _code_span(state: StateInline, start: int, before: int) -> list[Span]:
+    return [(start, state.pos) for token in state.tokens[before:] if token.type == "code_inline"]

@@ -24,7 +24,7 @@ from mdit_py_plugins.myst_role import myst_role_plugin
 from groundwork.problem import Problem, Severity
 from spinbook.chapter.block import Block, BlockKind
 from spinbook.chapter.files import is_elsewhere, locate
-from spinbook.chapter.links import places_of, rule_of
+from spinbook.chapter.links import places_of, watch
 
 _ROLES = frozenset({"ref", "doc", "numref", "any", "std:ref", "std:doc", "std:numref"})
 #: The content of a role: `words <target>`.
@@ -239,41 +239,29 @@ def _parser() -> MarkdownIt:
     md = MarkdownIt("commonmark", {"html": True}).enable("table").use(myst_role_plugin)
     md.core.ruler.enableOnly(["normalize", "block"])
     for name, read in (("link", _link), ("myst_role", _role)):
-        md.inline.ruler.at(name, _watched(rule_of(md, name), read))
+        watch(md, name, read)
     return md
 
 
-def _watched(rule: Any, read: Any) -> Any:
-    def watch(state: StateInline, silent: bool) -> bool:
-        start, before = state.pos, len(state.tokens)
-        if not rule(state, silent):
-            return False
-        if not silent and state.src == state.env.get("watched") and (item := read(state, start, before)):
-            state.env["found"].append(item)
-        return True
-
-    return watch
-
-
-def _role(state: StateInline, start: int, before: int) -> _LabelReference | None:
+def _role(state: StateInline, start: int, before: int) -> list[_LabelReference]:
     token = next(token for token in state.tokens[before:] if token.type == "myst_role")
     name = str(token.meta["name"])
     content = token.content.strip()
     titled = _TITLED.match(content)
     words, target = (titled[1], titled[2].strip()) if titled else ("", content)
-    return _LabelReference(start, state.pos, name, words, target.lstrip("!~")) if name in _ROLES else None
+    return [_LabelReference(start, state.pos, name, words, target.lstrip("!~"))] if name in _ROLES else []
 
 
-def _link(state: StateInline, start: int, before: int) -> _LabelReference | None:
+def _link(state: StateInline, start: int, before: int) -> list[_LabelReference]:
     """Return a link with its target after its words; that of `[words][name]` is elsewhere."""
     opening = next(token for token in state.tokens[before:] if token.type == "link_open")
     end, pos = state.pos, state.pos
     label_end = state.md.helpers.parseLinkLabel(state, start, False)
     state.pos = pos
     if state.src[label_end + 1 : label_end + 2] != "(" or "title" in opening.attrs:
-        return None
+        return []
     words = state.src[start + 1 : label_end].replace("\n", " ")
-    return _LabelReference(start, end, "", words, unquote(str(opening.attrs.get("href", ""))))
+    return [_LabelReference(start, end, "", words, unquote(str(opening.attrs.get("href", ""))))]
 
 
 def _references(text: str) -> Iterator[tuple[int, str, list[_LabelReference]]]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from html import escape, unescape
 from html.parser import HTMLParser
@@ -47,32 +47,37 @@ class _LinkTarget:
 def _parser() -> MarkdownIt:
     md = MarkdownIt("commonmark", {"html": True}).enable("table")
     md.core.ruler.enableOnly(["normalize", "block"])
-    for name, is_image in (("link", False), ("image", True)):
-        md.inline.ruler.at(name, _watched(rule_of(md, name), is_image))
-    md.inline.ruler.at("html_inline", _watched_html(rule_of(md, "html_inline")))
+    for name in ("link", "image"):
+        watch(md, name, _targets)
+    watch(md, "html_inline", lambda state, start, _: [_tag(state.src[start : state.pos], start)])
     return md
 
 
-def rule_of(md: MarkdownIt, name: str) -> Any:
-    """Return the inline rule of this name."""
-    return next(rule.fn for rule in md.inline.ruler.__rules__ if rule.name == name)
+def _tag(html: str, start: int) -> _LinkTarget:
+    return _LinkTarget(start, start + len(html), html, False, is_html=True)
 
 
-def _watched(rule: Any, is_image: bool) -> Any:
-    def watch(state: StateInline, silent: bool) -> bool:
+def watch(md: MarkdownIt, name: str, read: Callable[[StateInline, int, int], Iterable[Any]]) -> None:
+    """Let the rule `name` add to `env["found"]` what `read` finds in the text `env["watched"]`.
+
+    `read` gets the state, where the rule began, and how many tokens there were before it.
+    """
+    rule: Any = next(rule.fn for rule in md.inline.ruler.__rules__ if rule.name == name)
+
+    def watched(state: StateInline, silent: bool) -> bool:
         start, before = state.pos, len(state.tokens)
         if not rule(state, silent):
             return False
         if not silent and state.src == state.env.get("watched"):
-            token = next(item for item in state.tokens[before:] if item.type in {"image", "link_open"})
-            state.env["found"].extend(_targets(state, start, token))
+            state.env["found"].extend(read(state, start, before))
         return True
 
-    return watch
+    md.inline.ruler.at(name, watched)
 
 
-def _targets(state: StateInline, start: int, token: Token) -> Iterator[_LinkTarget]:
+def _targets(state: StateInline, start: int, before: int) -> Iterator[_LinkTarget]:
     """Yield what may have to be replaced in the link or image that begins at `start` and was parsed just now."""
+    token = next(item for item in state.tokens[before:] if item.type in {"image", "link_open"})
     is_image = token.type == "image"
     attributes = _attribute_list(state)
     end = state.pos + len(attributes)
@@ -114,18 +119,6 @@ def _attribute_list(state: StateInline) -> str:
     rest = state.src[state.pos :]
     text = rest[: rest.find("}") + 1]
     return text if text.startswith("{") and (text[1] in ":.#" or "=" in text) else ""
-
-
-def _watched_html(rule: Any) -> Any:
-    def watch(state: StateInline, silent: bool) -> bool:
-        start = state.pos
-        if not rule(state, silent):
-            return False
-        if not silent and state.src == state.env.get("watched"):
-            state.env["found"].append(_LinkTarget(start, state.pos, state.src[start : state.pos], False, is_html=True))
-        return True
-
-    return watch
 
 
 @functools.lru_cache(maxsize=8)
