@@ -232,9 +232,10 @@ def _show(result: Grade, exercise: Exercise, as_json: bool, verbose: bool) -> No
 def _write(result: Grade, exercise: Exercise, plot: Path | None, bag: Path | None) -> None:
     try:
         if plot:
-            from grader.report.plot import draw
+            from grader.report.plot import NOTHING, draw
 
-            draw(result, exercise, plot)
+            if not draw(result, exercise, plot):
+                click.echo(NOTHING, err=True)
         if bag:
             from grader.report.bag import NoBagWriter, write_bags
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
@@ -31,13 +32,14 @@ HIGHEST, MOST = 1e9, 24
 class Quantity:
     """The field that is drawn. `element` is the word for one value; the list `named_by` contains the names of all.
 
-    `state` is the topic on which a world publishes it, if the node moves it; otherwise, the node publishes it.
+    `topic` is the node's. `state` is the topic on which a world publishes it instead, if the node moves it.
     """
 
     field: str
     unit: str
     element: str
     named_by: str
+    topic: str
     state: str = ""
 
 
@@ -56,7 +58,8 @@ class Curve:
 
 
 def drawn_quantity(exercise: Exercise, grade: Grade, scenario: str) -> Quantity | None:
-    """Return the first field that exercise.toml gives a unit for, and that the node publishes.
+    """Return the first field that exercise.toml gives a unit for, and that the node publishes; without units, the first
+    number that changes.
 
     In a closed loop, it is the first that the node moves: each node may do that with values of its own.
     """
@@ -67,12 +70,27 @@ def drawn_quantity(exercise: Exercise, grade: Grade, scenario: str) -> Quantity 
         )
         if mine != its:
             for field, unit in topic.units.items():
-                return Quantity(field, unit, "value", "name", topic.name)
+                return Quantity(field, unit, "value", "name", "", topic.name)
     for topic in exercise.outputs:
         for field, unit in topic.units.items():
             called, named_by = (topic.elements.called, topic.elements.named_by) if topic.elements else ("value", "name")
-            return Quantity(field, unit, called, named_by)
+            return Quantity(field, unit, called, named_by, topic.name)
+    runs = [of[scenario] for of in (grade.references, grade.recordings) if scenario in of]
+    published = [message for run in runs for message in run.received]
+    for topic in exercise.outputs:
+        values = [dict(_numbers(message.fields)) for message in published if message.topic == topic.name]
+        if changing := [field for field in values[0] if len({v.get(field) for v in values}) > 1] if values else []:
+            return Quantity(changing[0], "", "value", "name", topic.name)
     return None
+
+
+def _numbers(fields: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, float]]:
+    """Yield each field that is a number, by its full name. A header's stamp only says when."""
+    for name, value in fields.items():
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            yield f"{before}{name}", value
+        elif isinstance(value, Mapping) and name not in ("header", "stamp"):
+            yield from _numbers(value, f"{before}{name}.")
 
 
 def curves(grade: Grade, exercise: Exercise, scenario: str, quantity: Quantity) -> tuple[Curve, ...]:
@@ -86,16 +104,21 @@ def curves(grade: Grade, exercise: Exercise, scenario: str, quantity: Quantity) 
     run = Run(exercise, grade.recordings[scenario], grade.references[scenario])
     expected: dict[str, list[Point]] = {}
     got: dict[str, list[Point]] = {}
+    moments = [(one.sent.at, one.expected, one.answers) for one in run.exchanges]
+    if not moments:
+        # It publishes on its own.
+        its, mine = (run.published_on(quantity.topic, reference) for reference in (True, False))
+        moments = [(Message(m).at, (Message(m),), ()) for m in its] + [(Message(m).at, (), (Message(m),)) for m in mine]
     try:
-        for exchange in run.exchanges:
-            for lines, messages in ((expected, exchange.expected), (got, exchange.answers)):
-                for message in messages:
+        for at, right, answers in moments:
+            for lines, messages in ((expected, right), (got, answers)):
+                for message in [one for one in messages if one.topic == quantity.topic]:
                     for element, value in _values(message, quantity).items():
-                        lines.setdefault(str(element), []).append((exchange.sent.at, _number(value)))
+                        lines.setdefault(str(element), []).append((at, _number(value)))
     except (LookupError, TypeError):
         return ()
     elements = [*expected, *(element for element in got if element not in expected)][:MOST]
-    since = _first_finding(grade, scenario, [exchange.sent.at for exchange in run.exchanges])
+    since = _first_finding(grade, scenario, [at for at, _, _ in moments])
     return tuple(_curve(element, expected.get(element, []), got.get(element, []), since) for element in elements)
 
 

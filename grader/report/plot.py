@@ -19,17 +19,20 @@ from grader.report.path_plot import PlanePath, path_of
 from grader.report.printable import printable
 from groundwork.files import write_if_changed
 
+NOTHING = "--plot: there is nothing to draw, no number that changes on a topic under [[publish]]."
 #: The same grade gives the same file: no date, and identifiers made from a fixed salt.
 SETTINGS: dict[Any, Any] = {"svg.hashsalt": "spinbook", "svg.fonttype": "none", "font.family": "sans-serif"}
 
 
-def draw(grade: Grade, exercise: Exercise, file: Path, scenario: str = "") -> None:
+def draw(grade: Grade, exercise: Exercise, file: Path, scenario: str = "") -> bool:
     """Draw a scenario of the grade into `file` (.svg, .png or .pdf): by default the first that went wrong.
 
-    Each panel shows one element over simulated time; the first sample that differs is marked. Raises OSError when the
-    file can't be written.
+    Each panel shows one element over simulated time; the first sample that differs is marked. Return False if there is
+    nothing to draw, and the picture has only a title. Raises OSError when the file can't be written.
     """
-    _save(figure(grade, exercise, scenario or _first_wrong(grade)), file)
+    drawing = figure(grade, exercise, scenario or _first_wrong(grade))
+    _save(drawing, file)
+    return bool(drawing.axes)
 
 
 def figure(grade: Grade, exercise: Exercise, name: str, *, judged: bool = True) -> Figure:
@@ -54,7 +57,7 @@ def _panels(figure: Figure, drawn: Sequence[Curve], quantity: Quantity) -> None:
     panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
     for panel, curve in zip(panels, drawn, strict=True):
         _panel(panel, curve)
-        panel.set_ylabel(f"{quantity.field}\n({quantity.unit})")
+        panel.set_ylabel(f"{quantity.field}\n({quantity.unit})" if quantity.unit else quantity.field)
     named = {line.get_label(): line for panel in panels for line in panel.lines}
     figure.legend(list(named.values()), list(named), loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     figure.align_ylabels()

@@ -134,9 +134,10 @@ def _show(asked: Trace, exercise: Exercise, grade: Grade) -> None:
     show(grade, exercise, Console(soft_wrap=False, highlight=False), asked.log)
     try:
         if asked.plot:
-            from grader.report.plot import draw
+            from grader.report.plot import NOTHING, draw
 
-            draw(grade, exercise, asked.plot, scenario)
+            if not draw(grade, exercise, asked.plot, scenario):
+                click.echo(NOTHING, err=True)
         if asked.bag:
             write_bags(grade, asked.bag)
     except (NoBagWriter, OSError, ValueError) as error:

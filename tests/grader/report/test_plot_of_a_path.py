@@ -87,6 +87,27 @@ def test_of_a_loop_with_one_number_the_controlled_number_is_drawn() -> None:
     assert "at 3.00 s, is marked with a cross." in plot
 
 
+def test_without_units_the_first_number_that_changes_is_drawn_also_if_the_node_publishes_on_its_own() -> None:
+    twist = Topic("/command", "geometry_msgs/msg/TwistStamped", "publish")
+    other = replace(twist, name="/other")
+    exercise = replace(EXERCISE, topics=(other, twist))
+
+    def driven(speed: float) -> Recording:
+        stamps = [{"stamp": {"sec": i, "nanosec": 0}} for i in range(5)]
+        fields = [{"header": stamp, "linear": {"x": 0.0, "y": speed * i}} for i, stamp in enumerate(stamps)]
+        received = (ReceivedMessage(START + i * SECOND, 0, "/command", twist.type, f) for i, f in enumerate(fields))
+        return Recording("ahead", (), tuple(received), (), (), True, Ending("completed"))
+
+    verdict = plain.failed(plain.PUBLIC, Finding("wrong", "ahead", at=0.0))
+    grade = replace(plain.grade(verdict), recordings={"ahead": driven(2.0)}, references={"ahead": driven(1.0)})
+
+    plot = feedback_plot(grade, exercise)
+
+    assert plot
+    assert "The linear.y over 4 s" in plot
+    assert "The first wrong value, at 1.00 s" in plot
+
+
 def test_the_instructors_picture_shows_the_path_too(tmp_path: Path) -> None:
     grade = plain.grade(plain.failed(plain.PUBLIC, Finding("At 2.00 s: wrong", "ahead", at=2.0)))
 

@@ -63,7 +63,7 @@ def test_what_a_check_expected_is_text_whatever_its_author_gives(hostile: Grade,
         run.wrong(run.exchanges[1], "too few.", "left_elbow", expected=6, got=5)
     finding = caught.value.finding
     assert (finding.expected, finding.got, finding.message) == ("6", "5", 2)
-    assert finding.text == "Message 2 of 100 (0.10 s after the start; a title), left_elbow: too few."
+    assert finding.text == "Message 2 of 100 (0.10 s after the start; a title), left_elbow: too few. Expected 6, got 5."
 
 
 def test_the_plot_is_a_picture_and_the_same_each_time(hostile: Grade, grading: Grading, tmp_path: Path) -> None:
