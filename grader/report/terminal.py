@@ -13,6 +13,7 @@ from grader.recording.printed_paths import without_paths
 from grader.report.checks import ShownCheck, public_total, shown_checks
 from grader.report.printable import printable
 from grader.sandbox.program import Isolation
+from groundwork.words import counted
 
 
 def hidden_checks_to_come(grade: Grade) -> str:
@@ -20,7 +21,7 @@ def hidden_checks_to_come(grade: Grade) -> str:
     count = grade.hidden_checks
     if not count:
         return ""
-    return f"{count} hidden check{'s' * (count > 1)} ({grade.hidden_points:g} points) will be judged after you hand in."
+    return f"{counted(count, 'hidden check')} ({grade.hidden_points:g} points) will be judged after you hand in."
 
 
 def self_check_standing(grade: Grade) -> str:

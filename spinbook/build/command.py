@@ -13,6 +13,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsed
 from rich.progress import Progress as Bars
 
 from groundwork.problem import Problem
+from groundwork.words import counted
 from spinbook.build.execution import DEADLINE_S, ExecutionResult, NotebookJob, NotebookProgress, execute
 from spinbook.build.notebooks import BuildResult, build_notebooks
 from spinbook.course.course import FILE, Course, find_course
@@ -176,16 +177,14 @@ def _report_executed(console: Console, executed: ExecutionResult) -> None:
     name = executed.file.name.removesuffix(".ipynb")
     if executed.node_errors and not executed.failures:
         since = "unchanged since its last run" if executed.cached else f"ran in {executed.seconds:.0f} s"
-        count = len(executed.node_errors)
-        what = f"but something went wrong in its nodes or threads ({count} report{'s' * (count > 1)})"
+        what = f"but something went wrong in its nodes or threads ({counted(len(executed.node_errors), 'report')})"
         console.print(f"  ✗ {name}: {since}, {what}", markup=False, style="red")
     elif executed.cached:
         console.print(f"  ✓ {name}: unchanged since its last run", markup=False)
     elif not executed.failures:
         console.print(f"  ✓ {name}: ran in {executed.seconds:.0f} s", markup=False, style="green")
     else:
-        count = len(executed.failures)
-        console.print(f"  ✗ {name}: {count} cell{'s' * (count > 1)} failed", markup=False, style="red")
+        console.print(f"  ✗ {name}: {counted(len(executed.failures), 'cell')} failed", markup=False, style="red")
         for failure in executed.failures:
             console.print(str(failure), markup=False)
     for warning in (*executed.node_errors, *executed.warnings):

@@ -27,7 +27,7 @@ from nbclient.exceptions import DeadKernelError
 
 from groundwork.files import write_if_changed
 from spinbook.build.streams import joined
-from spinbook.graph.model import GraphEndpoint, GraphNode, GraphTopic, NodeGraph
+from spinbook.graph.model import GraphNode, GraphTopic, NodeGraph, one_each
 from spinbook.kernel.environment import DOMAIN_NOTE, EXECUTING, for_domain
 from spinbook.kernel.long_lines import whole_in, with_short_lines
 from spinbook.kernel.node_errors import ERROR
@@ -38,9 +38,7 @@ class History:
 
     def __init__(self) -> None:
         self._nodes: dict[str, tuple[str, str]] = {}
-        self._publishers: dict[str, dict[tuple[str, str], bool]] = {}
-        self._subscriptions: dict[str, dict[tuple[str, str], bool]] = {}
-        self._rates: dict[str, float] = {}
+        self._topics: dict[str, GraphTopic] = {}
 
     def add(self, cell: str, graph: NodeGraph) -> None:
         """Add the graph that was seen at the end of a cell."""
@@ -48,10 +46,13 @@ class History:
             first, _ = self._nodes.get(node.name, (cell, cell))
             self._nodes[node.name] = (first, cell)
         for topic in graph.topics:
-            _merge(self._publishers.setdefault(topic.name, {}), topic.publishers)
-            _merge(self._subscriptions.setdefault(topic.name, {}), topic.subscriptions)
-            if topic.rate_hz is not None:
-                self._rates[topic.name] = topic.rate_hz
+            before = self._topics.get(topic.name, topic)
+            self._topics[topic.name] = GraphTopic(
+                topic.name,
+                one_each((*before.publishers, *topic.publishers)),
+                one_each((*before.subscriptions, *topic.subscriptions)),
+                before.rate_hz if topic.rate_hz is None else topic.rate_hz,
+            )
 
     def graph(self) -> NodeGraph:
         """Return the graph of the whole run, with nodes in the order in which they appeared.
@@ -59,20 +60,7 @@ class History:
         An end counts as connected if it ever was; a topic's rate is the last one counted.
         """
         nodes = (GraphNode(name, first, last) for name, (first, last) in self._nodes.items())
-        topics = (
-            GraphTopic(name, _ends(self._publishers[name]), _ends(self._subscriptions[name]), self._rates.get(name))
-            for name in sorted(self._publishers)
-        )
-        return NodeGraph(tuple(nodes), tuple(topics))
-
-
-def _merge(ends: dict[tuple[str, str], bool], more: tuple[GraphEndpoint, ...]) -> None:
-    for end in more:
-        ends[end.node, end.type] = end.connected or ends.get((end.node, end.type), False)
-
-
-def _ends(ends: dict[tuple[str, str], bool]) -> tuple[GraphEndpoint, ...]:
-    return tuple(sorted(GraphEndpoint(node, kind, connected) for (node, kind), connected in ends.items()))
+        return NodeGraph(tuple(nodes), tuple(self._topics[name] for name in sorted(self._topics)))
 
 
 #: Cells during which messages may be counted: no command and no snippet looks at the graph meanwhile.

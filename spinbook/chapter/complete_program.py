@@ -12,7 +12,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from interface_compiler import prefixes
-from ros_in_python.ros2 import interfaces
 from spinbook.chapter.class_pieces import assembled
 from spinbook.chapter.python_code import CodeError, PythonCode, inspect
 from spinbook.chapter.syntax import descendants, syntax_tree
@@ -320,7 +319,7 @@ def _interfaces() -> Mapping[str, str]:
     modules: dict[str, str] = {}
     there = prefixes.packages(prefixes.installed())
     for package in sorted(set(_PREFERRED) & set(there), key=_PREFERRED.index):
-        for interface in interfaces.interfaces_of(package) or []:
+        for interface in sorted(prefixes.interfaces_of(package, prefixes.installed())):
             kind, _, name = interface.partition("/")
             modules.setdefault(name, f"{package}.{kind}")
     return modules

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import ros_in_python
 from interface_compiler import prefixes, shipped
-from ros_in_python.ros2 import interfaces as interface_files
 from spinbook.chapter.python_code import PythonCode
 from spinbook.chapter.terminal import is_placeholder
 
@@ -228,7 +227,7 @@ def interfaces_of(module: str) -> frozenset[str]:
     if not match:
         return frozenset()
     package, kind = match.groups()
-    interfaces = interface_files.interfaces_of(package) or []
+    interfaces = prefixes.interfaces_of(package, prefixes.installed())
     return frozenset(name.partition("/")[2] for name in interfaces if name.startswith(f"{kind}/"))
 
 
@@ -242,8 +241,8 @@ def own_names(module: str, own_interfaces: Collection[str]) -> frozenset[str]:
 def _all_interfaces() -> Mapping[str, frozenset[str]]:
     """Map each module of interfaces to its names, for all installed packages."""
     names_of: dict[str, set[str]] = {}
-    for package in ros_packages():
-        for interface in interface_files.interfaces_of(package) or []:
+    for package, interfaces in prefixes.interfaces(prefixes.installed()).items():
+        for interface in interfaces:
             kind, _, name = interface.partition("/")
             names_of.setdefault(f"{package}.{kind}", set()).add(name)
     return {module: frozenset(names) for module, names in names_of.items()}

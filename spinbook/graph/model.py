@@ -25,11 +25,11 @@ class GraphEndpoint:
 INTERNAL = ("/rosout", "/parameter_events")
 
 
-def one_each(ends: Iterable[tuple[str, str, bool]]) -> tuple[GraphEndpoint, ...]:
-    """Return one endpoint per node and type, sorted. It is connected if any of them is; `ends` are as its fields."""
+def one_each(ends: Iterable[GraphEndpoint]) -> tuple[GraphEndpoint, ...]:
+    """Return one endpoint per node and type, sorted. It is connected if any of these is."""
     connected: dict[tuple[str, str], bool] = {}
-    for node, kind, fits in ends:
-        connected[node, kind] = connected.get((node, kind), False) or fits
+    for end in ends:
+        connected[end.node, end.type] = connected.get((end.node, end.type), False) or end.connected
     return tuple(sorted(GraphEndpoint(node, kind, fits) for (node, kind), fits in connected.items()))
 
 

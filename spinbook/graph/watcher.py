@@ -229,7 +229,8 @@ def _node(end: TopicEndpointInfo) -> str:
 
 
 def _ends(ends: list[TopicEndpointInfo], others: list[TopicEndpointInfo]) -> tuple[GraphEndpoint, ...]:
-    return one_each((_node(end), end.topic_type, any(_fit(end, other) for other in others)) for end in ends)
+    fits = ((end, any(_fit(end, other) for other in others)) for end in ends)
+    return one_each(GraphEndpoint(_node(end), end.topic_type, connected) for end, connected in fits)
 
 
 def _fit(one: TopicEndpointInfo, other: TopicEndpointInfo) -> bool:

@@ -49,7 +49,7 @@ def _topic(name: str, ends: list[EndpointInfo], nodes: dict[str, str]) -> GraphT
 
 
 def _ends(ends: list[EndpointInfo], others: list[EndpointInfo], nodes: dict[str, str]) -> tuple[GraphEndpoint, ...]:
-    return one_each((nodes[end.node], end.type, any(_fit(end, other) for other in others)) for end in ends)
+    return one_each(GraphEndpoint(nodes[end.node], end.type, any(_fit(end, other) for other in others)) for end in ends)
 
 
 def _fit(one: EndpointInfo, other: EndpointInfo) -> bool:

@@ -15,8 +15,6 @@ import click
 from interface_compiler import prefixes, shipped
 from ros_in_python.ros2.cli import CommandError, Menu
 
-DEFINITION_KINDS = ("msg", "srv", "action")
-
 _PRIMITIVE = re.compile(r"(bool|byte|char|float32|float64|u?int(8|16|32|64)|w?string(<=\d+)?)$")
 _ARRAY = re.compile(r"\[(<=)?\d*\]$")
 _SEPARATOR = "---"
@@ -24,14 +22,8 @@ _SEPARATOR = "---"
 
 def installed_interfaces() -> dict[str, list[str]]:
     """Return package -> its interfaces as `msg/String`, sorted, for every installed package that has any."""
-    markers = prefixes.resources("rosidl_interfaces", prefixes.installed())
-    return {package: _read(marker) for package, marker in sorted(markers.items())}
-
-
-def interfaces_of(package: str) -> list[str] | None:
-    """Return one package's interfaces as `msg/String`, sorted; None if it has none or is not installed."""
-    marker = prefixes.resources("rosidl_interfaces", prefixes.installed()).get(package)
-    return None if marker is None else _read(marker)
+    everything = prefixes.interfaces(prefixes.installed())
+    return {package: sorted(names) for package, names in sorted(everything.items())}
 
 
 def folder_of(package: str) -> Path:
@@ -39,17 +31,6 @@ def folder_of(package: str) -> Path:
     prefix = prefixes.prefix_of(package, prefixes.installed())
     assert prefix is not None
     return prefix / "share" / package
-
-
-def _read(marker: Path) -> list[str]:
-    names = {line.strip().rpartition(".") for line in marker.read_text().splitlines()}
-    return sorted(
-        {
-            stem
-            for stem, _, ending in names
-            if ending in (*DEFINITION_KINDS, "idl") and stem.split("/")[0] in DEFINITION_KINDS
-        }
-    )
 
 
 def unfold(interface: str, *, comments: bool, nested_comments: bool, depth: int = 0) -> Iterator[str]:
@@ -163,10 +144,10 @@ def full_name(name: str, kind: Kind) -> str:
 def check_installed(full: str) -> None:
     """Raise `CommandError` if the type `PACKAGE/KIND/NAME` is not installed, with how to get it or similar names."""
     package, kind, short = full.split("/")
-    known = interfaces_of(package)
-    if known is not None and f"{kind}/{short}" in known:
+    known = prefixes.interfaces_of(package, prefixes.installed())
+    if f"{kind}/{short}" in known:
         return
-    if known is not None:
+    if known:
         raise CommandError(f"The package '{package}' has no type '{kind}/{short}'.", _alike(full))
     advice = shipped.how_to_add(package) or _alike(full)
     raise CommandError(f"Unknown package '{package}': the type '{full}' is not installed here.", advice)
@@ -257,8 +238,8 @@ def package(package_name: str, only_msgs: bool, only_srvs: bool, only_actions: b
     \b
       ros2 interface package std_srvs
     """
-    names = interfaces_of(package_name)
-    if names is None:
+    names = sorted(prefixes.interfaces_of(package_name, prefixes.installed()))
+    if not names:
         advice = shipped.how_to_add(package_name) or "`ros2 interface packages` shows those that have types."
         raise CommandError(f"Unknown package '{package_name}'", advice)
     kinds = _kinds(only_msgs, only_srvs, only_actions)
