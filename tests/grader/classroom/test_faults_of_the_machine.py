@@ -8,6 +8,8 @@ import pytest
 from prepared_python import run_prepared
 from small_class import EXERCISE, POINTS, SmallClass
 
+from groundwork.clean_environment import GUARD
+
 #: Modules that a grade needs, as another installation may have them.
 FOREIGN = ("numpy", "rclpy", "std_msgs", "click", "typing", "yaml")
 
@@ -34,6 +36,7 @@ def test_another_installations_variables_change_no_grade(
         "PYTHONSAFEPATH",
         "ROS_SECURITY_ENABLE",
         "RCUTILS_COLORIZED_OUTPUT",
+        GUARD,
     ):
         monkeypatch.setenv(name, "1")
     monkeypatch.setenv("PYTHONWARNINGS", "error")

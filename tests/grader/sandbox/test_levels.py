@@ -22,6 +22,7 @@ from grader.sandbox import (
     available,
     choose,
     isolation,
+    landlock,
 )
 
 NOTHING_WORKS = {
@@ -203,3 +204,14 @@ print(*available().values(), sep='\\n')
 def test_the_names_are_those_of_the_command_line() -> None:
     assert [str(one) for one in Isolation] == ["bubblewrap", "namespaces", "landlock", "none"]
     assert f"{Isolation.NONE}" == "none"
+
+
+def test_as_root_landlock_names_the_folder_that_hides_python_from_others(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "root").mkdir(mode=0o700)
+    monkeypatch.setattr(os, "geteuid", lambda: 0)
+    monkeypatch.setattr(landlock.filesystem, "interpreter", lambda: (tmp_path / "root" / "bin" / "python",))
+
+    with pytest.raises(OSError, match=r"Python that other users can read, .* VENV=/opt/spinbook setup"):
+        landlock.student_user()
