@@ -5,9 +5,15 @@ from __future__ import annotations
 import io
 import sys
 
+from groundwork.clean_environment import restart_if_polluted
+
 
 def main() -> None:
-    """Run the command as this process; a signal during the imports ends it as quietly as one later on."""
+    """Run the command as this process; a signal during the imports ends it as quietly as one later on.
+
+    Nothing else may be imported before another installation's modules are out of the way.
+    """
+    restart_if_polluted("ros_in_python.ros2.__main__")
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a message may have characters that the terminal's encoding lacks

@@ -316,10 +316,14 @@ def hand_over(arguments: Sequence[str]) -> None:
     command = real_ros2(arguments, os.environ)
     if command is None:
         return
+    from groundwork.clean_environment import IGNORED, ignored  # a page has neither
+
     sys.stdout.flush()
     sys.stderr.flush()
+    # What this installation does not use may be the real one's.
+    environment = {name: value for name, value in {**os.environ, **ignored()}.items() if name != IGNORED}
     # If that `ros2` is a wrapper around this command, it must not hand over again.
-    os.execve(command[0], [*command, *arguments], without_bootstrap(os.environ) | {CHOICE: "own"})
+    os.execve(command[0], [*command, *arguments], without_bootstrap(environment) | {CHOICE: "own"})
 
 
 def _ours_all_the_same(arguments: Sequence[str]) -> bool:

@@ -126,7 +126,9 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A `ros2` on the PATH that prints what it was called with."""
     program = tmp_path / "bin" / "ros2"
     program.parent.mkdir()
-    program.write_text('#!/bin/sh\necho real "$@"; echo guard=$_ROS_WHEELS_BOOTSTRAP_COMPLETE\n')
+    program.write_text(
+        '#!/bin/sh\necho real "$@"; echo guard=$_ROS_WHEELS_BOOTSTRAP_COMPLETE${PYTHONSTARTUP:+ $PYTHONSTARTUP}\n'
+    )
     program.chmod(0o755)
     monkeypatch.setenv("PATH", f"{program.parent}{os.pathsep}{os.environ['PATH']}")
     monkeypatch.delenv("ROS_IN_PYTHON")
@@ -152,8 +154,14 @@ def test_ros2_is_a_command_of_the_environment(monkeypatch: pytest.MonkeyPatch) -
 
 
 @pytest.mark.usefixtures("installed")
-def test_the_environments_ros2_hands_over_to_a_real_one() -> None:
-    assert in_a_shell("ros2 topic list") == "real topic list\nguard=\n"
+def test_the_environments_ros2_hands_over_to_a_real_one_with_all_variables() -> None:
+    assert in_a_shell("PYTHONSTARTUP=mine.py ros2 topic list") == "real topic list\nguard= mine.py\n"
+
+
+def test_another_installations_modules_do_not_reach_it(tmp_path: Path) -> None:
+    for name in ("rclpy", "click", "json"):
+        (tmp_path / f"{name}.py").write_text("raise ImportError('of another installation')\n")
+    assert in_a_shell(f"PYTHONPATH={tmp_path} ros2 daemon status").startswith("The daemon is not running")
 
 
 @pytest.mark.usefixtures("installed")
