@@ -115,7 +115,7 @@ def sample(mutants: tuple[Mutant, ...], size: int) -> tuple[Mutant, ...]:
 
 
 @dataclass(frozen=True)
-class Tried:
+class AuditTrials:
     """The trials: of the author's programs by name, of mutants by id, and of right solutions for each further seed."""
 
     programs: dict[str, Trial] = field(default_factory=dict)
@@ -128,9 +128,9 @@ class Tried:
         return [*self.programs.values(), *self.mutants.values()]
 
 
-def try_all(plan: AuditPlan, trials: Trials, store: Store, progress: AuditProgress) -> Tried:
+def try_all(plan: AuditPlan, trials: Trials, store: Store, progress: AuditProgress) -> AuditTrials:
     """Try everything in the plan. Raises `HostFault` if the machine or the grader is at fault."""
-    tried = Tried()
+    tried = AuditTrials()
     work = _Work(plan, trials, store)
     progress.begin(trials.grading.runner.exercise.name, len(plan.seeds) + len(plan.mutants) + len(_programs(plan)))
     with ThreadPoolExecutor(trials.grading.runner.options.parallel) as pool:
@@ -156,7 +156,7 @@ def try_all(plan: AuditPlan, trials: Trials, store: Store, progress: AuditProgre
     return tried
 
 
-def run_on(plan: AuditPlan, tried: Tried, trials: Trials, store: Store) -> None:
+def run_on(plan: AuditPlan, tried: AuditTrials, trials: Trials, store: Store) -> None:
     """Run those mutants through every scenario that settle a doubt about the checks."""
     evidence = {**{mistake.name: tried.programs[mistake.name] for mistake in plan.mistakes}, **tried.mutants}
     doubtful = set(worth_running_on(trials.checks, evidence, tried.mutants))

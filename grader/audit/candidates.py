@@ -9,7 +9,7 @@ from typing import Literal
 
 from grader.audit.baselines import programs
 from grader.audit.check_list import AuditedCheck, problem_of
-from grader.audit.result import AuditProblem, Judged, Trial
+from grader.audit.result import AuditProblem, JudgedProgram, Trial
 from grader.audit.store import Store
 from grader.audit.trial import Trials
 from grader.exercise.exercise import Exercise
@@ -177,9 +177,9 @@ def _content(scenario: Scenario) -> Scenario:
     return replace(scenario, name="", title="", computer_time="apart")
 
 
-def judged(candidate: Candidate, trial: Trial) -> Judged:
+def judged(candidate: Candidate, trial: Trial) -> JudgedProgram:
     """Return the result of a program."""
-    return Judged(candidate.name, candidate.kind, candidate.title, trial.failed, trial.score)
+    return JudgedProgram(candidate.name, candidate.kind, candidate.title, trial.failed, trial.score)
 
 
 def problems_of(

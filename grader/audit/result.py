@@ -78,7 +78,7 @@ class AuditProblem(Problem):
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedProgram:
     """One of the author's programs, and its result. `failed` are the checks that it did not pass, `score` is its
     points.
     """
@@ -184,7 +184,7 @@ class Audit:
     seeds: int
     randomised: tuple[str, ...]
     problems: tuple[AuditProblem, ...]
-    programs: tuple[Judged, ...]
+    programs: tuple[JudgedProgram, ...]
     mutants: tuple[MutantResult, ...]
     checks: tuple[CheckResult, ...]
     scenarios: tuple[ScenarioResult, ...]

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from grader.audit.check_list import AuditedCheck
-from grader.audit.result import AuditProblem, BrokenRule, Judged, RuleResult, Trial
+from grader.audit.result import AuditProblem, BrokenRule, JudgedProgram, RuleResult, Trial
 from grader.exercise.exercise import Exercise
 from grader.exercise.mistakes import Mistake
 from grader.exercise.rules import Rule, ids_used_twice, named_by, rules_of, without_markup
@@ -59,7 +59,10 @@ def _broken(mistake: Mistake, trial: Trial, rules: tuple[str, ...], checks: tupl
 
 
 def problems_of_rules(
-    exercise: Exercise, results: tuple[RuleResult, ...], mistakes: tuple[Mistake, ...], programs: tuple[Judged, ...]
+    exercise: Exercise,
+    results: tuple[RuleResult, ...],
+    mistakes: tuple[Mistake, ...],
+    programs: tuple[JudgedProgram, ...],
 ) -> list[AuditProblem]:
     """Return what is wrong with the rules, their mistakes and the points; nothing if the task marks no rules."""
     if not rules_of(exercise.task):
@@ -96,7 +99,7 @@ def _of_rule(task: Path, result: RuleResult) -> Iterator[AuditProblem]:
 
 
 def _of_mistake(
-    file: Path, line: int, broken: BrokenRule, points: float, best: Judged | None
+    file: Path, line: int, broken: BrokenRule, points: float, best: JudgedProgram | None
 ) -> Iterator[AuditProblem]:
     subject = f"the mistake mistakes/{broken.name} (“{broken.title}”)"
     costs = f"costs {broken.lost:g} points"
@@ -127,7 +130,7 @@ def _names_none(mistake: Mistake) -> AuditProblem:
     return AuditProblem(mistake.file, mistake.line, text, fix, about=mistake.name)
 
 
-def _of_baselines(exercise: Exercise, programs: tuple[Judged, ...]) -> Iterator[AuditProblem]:
+def _of_baselines(exercise: Exercise, programs: tuple[JudgedProgram, ...]) -> Iterator[AuditProblem]:
     for program in programs:
         if program.kind == "baseline" and program.score > LARGEST * exercise.points:
             text = f"{program.title} gets {program.score:g} of {exercise.points:g} points, more than {LARGEST:.0%}"

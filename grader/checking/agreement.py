@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from grader.checking.created import Created, created, texts
+from grader.checking.created import CreationCall, created, texts
 from grader.exercise.exercise import Exercise, ExerciseError, Qos
 from grader.exercise.exercise_toml import line_of
 from grader.exercise.starter import hidden_blocks
@@ -31,7 +31,7 @@ _OF_LIBRARIES = frozenset(("/clock", "/parameter_events", "/rosout", "/tf", "/tf
 
 
 @dataclass(frozen=True)
-class _Declared:
+class _DeclaredTable:
     """One table of exercise.toml: its kind, its number among the tables of this kind, and its values."""
 
     kind: str
@@ -64,20 +64,20 @@ def disagreements(exercise: Exercise) -> Iterator[ExerciseError]:
     yield from _missing(exercise, file, source, declared, made)
 
 
-def _declared(exercise: Exercise) -> Iterator[_Declared]:
+def _declared(exercise: Exercise) -> Iterator[_DeclaredTable]:
     """Yield all tables, kind by kind, each with its number in exercise.toml."""
     counts = dict.fromkeys(_WORDS, -1)
     for topic in exercise.topics:
         counts[topic.direction] += 1
-        yield _Declared(topic.direction, counts[topic.direction], topic.name, topic.type, topic.qos)
+        yield _DeclaredTable(topic.direction, counts[topic.direction], topic.name, topic.type, topic.qos)
     for end in exercise.endpoints:
         counts[end.role] += 1
-        yield _Declared(end.role, counts[end.role], end.name, end.type)
+        yield _DeclaredTable(end.role, counts[end.role], end.name, end.type)
     for number, parameter in enumerate(exercise.parameters):
-        yield _Declared("parameter", number, parameter.name, parameter.type, default=parameter.default)
+        yield _DeclaredTable("parameter", number, parameter.name, parameter.type, default=parameter.default)
 
 
-def _difference(call: Created, declared: tuple[_Declared, ...], exercise: Exercise) -> str:
+def _difference(call: CreationCall, declared: tuple[_DeclaredTable, ...], exercise: Exercise) -> str:
     """Return how it differs from the declaration, to follow the words "the solution"; empty if it does not."""
     verb = "declares" if call.kind == "parameter" else "creates"
     phrase = f"{verb} {_WORDS[call.kind]} {call.name}"
@@ -91,7 +91,7 @@ def _difference(call: Created, declared: tuple[_Declared, ...], exercise: Exerci
     return _other_value(call, same[0], phrase)
 
 
-def _other_value(call: Created, other: _Declared, phrase: str) -> str:
+def _other_value(call: CreationCall, other: _DeclaredTable, phrase: str) -> str:
     """Return the first of type, QoS and default that differs from the declaration."""
     pairs = [("type", call.type, other.type), ("default", call.default, other.default)]
     if call.kind == other.kind and call.qos and other.qos:
@@ -108,7 +108,7 @@ def _shown(value: Any) -> str:
 
 
 def _missing(
-    exercise: Exercise, file: Path, source: str, declared: tuple[_Declared, ...], made: tuple[Created, ...]
+    exercise: Exercise, file: Path, source: str, declared: tuple[_DeclaredTable, ...], made: tuple[CreationCall, ...]
 ) -> Iterator[ExerciseError]:
     """Yield what is declared, but neither created nor named anywhere in the solution."""
     toml, written = exercise.folder / "exercise.toml", texts(source)

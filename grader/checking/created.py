@@ -34,7 +34,7 @@ _SENSOR_DEPTH = 5
 
 
 @dataclass(frozen=True)
-class Created:
+class CreationCall:
     """One call that creates something, with its line, counted from 1.
 
     `kind` is "publish", "subscribe", "service", "client", "action", "action_client" or "parameter". `name` is the full
@@ -50,7 +50,7 @@ class Created:
     default: Any = None
 
 
-def created(source: str, node: str) -> tuple[Created, ...]:
+def created(source: str, node: str) -> tuple[CreationCall, ...]:
     """Return everything that a program creates, in the order of its lines. `node` is its node's name, for names with ~.
 
     A source that is not valid Python creates nothing.
@@ -85,18 +85,18 @@ class _Source:
         keywords = {keyword.arg for keyword in ast.walk(tree) if isinstance(keyword, ast.keyword)}
         self.in_namespace = "namespace" in keywords
 
-    def created(self) -> tuple[Created, ...]:
+    def created(self) -> tuple[CreationCall, ...]:
         made = [self._created(call) for call in ast.walk(self.tree) if isinstance(call, ast.Call)]
         return tuple(sorted(filter(None, made), key=lambda call: call.line))
 
-    def _created(self, call: ast.Call) -> Created | None:
+    def _created(self, call: ast.Call) -> CreationCall | None:
         kind, places = _CALLS.get(_called(call), ("", ()))
         if not kind:
             return None
         type_, name, last = (self._argument(call, place) for place in places)
         if kind == "parameter":
             return self._parameter(call.lineno, name, last)
-        return Created(kind, call.lineno, self._full_name(name), self._type(type_), self._qos(last))
+        return CreationCall(kind, call.lineno, self._full_name(name), self._type(type_), self._qos(last))
 
     def _argument(self, call: ast.Call, place: tuple[int, str] | None) -> ast.expr | None:
         """Return the argument of a call at this place. A name that is assigned once is replaced by its value."""
@@ -107,11 +107,11 @@ class _Source:
         argument = next((named.value for named in call.keywords if named.arg == keyword), argument)
         return self.values.get(argument.id, argument) if isinstance(argument, ast.Name) else argument
 
-    def _parameter(self, line: int, name: ast.expr | None, default: ast.expr | None) -> Created:
+    def _parameter(self, line: int, name: ast.expr | None, default: ast.expr | None) -> CreationCall:
         value = _literal(default)
         type_ = _parameter_type(default, value)
         text = _literal(name)
-        return Created("parameter", line, text if isinstance(text, str) else None, type_, default=value)
+        return CreationCall("parameter", line, text if isinstance(text, str) else None, type_, default=value)
 
     def _full_name(self, argument: ast.expr | None) -> str | None:
         """Return a topic's full name; None if it is not known, or if a namespace comes before it."""

@@ -132,7 +132,7 @@ def _nothing_from_outside():  # type: ignore[no-untyped-def]  # noqa: ANN202
 
 
 @dataclass(frozen=True)
-class Listed:
+class ListedCheck:
     """One check. `fixtures` are the names that it uses, directly or through another fixture; they include scenarios."""
 
     name: str
@@ -141,7 +141,7 @@ class Listed:
     fixtures: tuple[str, ...]
 
 
-def listed(exercise: Exercise, scenarios: tuple[str, ...] = ()) -> tuple[Listed, ...]:
+def listed(exercise: Exercise, scenarios: tuple[str, ...] = ()) -> tuple[ListedCheck, ...]:
     """Return every check of the exercise, in the order of the files.
 
     With names of `scenarios`, a check that uses another one is an error. Raises `ExerciseError` if the files of checks
@@ -150,7 +150,7 @@ def listed(exercise: Exercise, scenarios: tuple[str, ...] = ()) -> tuple[Listed,
     checks = Checks(run=False)
     run_pytest(exercise, dict.fromkeys(scenarios), checks)
     return tuple(
-        Listed(verdict.name, verdict.points, verdict.hidden, checks.fixtures[verdict.name])
+        ListedCheck(verdict.name, verdict.points, verdict.hidden, checks.fixtures[verdict.name])
         for verdict in checks.verdicts.values()
     )
 

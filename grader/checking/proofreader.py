@@ -17,7 +17,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from grader.checking.agreement import disagreements
-from grader.checking.judge import Listed, listed
+from grader.checking.judge import ListedCheck, listed
 from grader.checking.misspellings import misspellings
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.imported_files import with_modules
@@ -187,7 +187,7 @@ def _of_solution(exercise: Exercise) -> Iterator[ExerciseError]:
         )
 
 
-def _of_mistakes(exercise: Exercise, checks: tuple[Listed, ...]) -> Iterator[ExerciseError]:
+def _of_mistakes(exercise: Exercise, checks: tuple[ListedCheck, ...]) -> Iterator[ExerciseError]:
     known = {check.name for check in checks}
     for mistake in each_mistake(exercise):
         if isinstance(mistake, ExerciseError):

@@ -16,7 +16,7 @@ from typing import IO, cast
 
 from grader.classroom.submissions import File, SubmissionsError
 from grader.classroom.times import UNKNOWN, Time
-from grader.grading.grade import Skipped
+from grader.grading.grade import SkippedFile
 from grader.submission.archive import BROKEN, decompressed, is_tar
 from grader.submission.file_kinds import OTHER_ARCHIVES
 from grader.submission.reader import MOST_BYTES
@@ -39,13 +39,13 @@ def is_noise(name: str) -> bool:
     return name in NOISE or name.startswith((".", "~$")) or (name.startswith("#") and name.endswith("#"))
 
 
-def walk(root: Path) -> Iterator[File | Skipped]:
+def walk(root: Path) -> Iterator[File | SkippedFile]:
     """Yield every file below `root`, sorted by name; symbolic links are not followed."""
     for folder, folders, names in os.walk(root):
         inside = Path(folder).relative_to(root)
         for name in sorted([*folders, *names]):
             if is_noise(name):
-                yield Skipped((inside / name).as_posix(), WHY_NOISE)
+                yield SkippedFile((inside / name).as_posix(), WHY_NOISE)
         folders[:] = sorted(name for name in folders if not is_noise(name))
         for name in sorted(names):
             if not is_noise(name):
@@ -82,7 +82,7 @@ class _Entry:
     fault: str = ""
 
 
-def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
+def unpacked(archive: Path, into: Path) -> Iterator[File | SkippedFile]:
     """Yield the files in `archive`, a zip or a tar, written into the folder `into` with numbers as names.
 
     Raises `SubmissionsError` if it can't be read, or holds more than any class submits.
@@ -91,7 +91,7 @@ def unpacked(archive: Path, into: Path) -> Iterator[File | Skipped]:
     left = MOST_BYTES_IN_ALL
     for number, entry in enumerate(_entries(archive)):
         if any(is_noise(part) for part in entry.name.split("/")):
-            yield Skipped(entry.name, WHY_NOISE)
+            yield SkippedFile(entry.name, WHY_NOISE)
             continue
         path = into / f"{number:05}{''.join(PurePosixPath(entry.name).suffixes)[-20:]}"
         if entry.is_link:
@@ -166,7 +166,7 @@ def _of_zip_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most: int) -
 def _of_tar(archive: Path, start: bytes) -> Iterator[_Entry]:
     """Yield a tar's entries in their order, as a compressed file can't be read backwards quickly."""
     with archive.open("rb") as file:
-        bounded = _Bounded(archive, decompressed(file, start))
+        bounded = _BoundedStream(archive, decompressed(file, start))
         with tarfile.open(fileobj=cast("IO[bytes]", bounded), mode="r|") as tar:
             for entry in _whole(tar, bounded):
                 if entry.isdir():
@@ -182,14 +182,14 @@ def _of_tar_entry(archive: tarfile.TarFile, entry: tarfile.TarInfo, most: int) -
     return file.read(most) if file else b""
 
 
-def _whole(tar: tarfile.TarFile, stream: _Bounded) -> Iterator[tarfile.TarInfo]:
+def _whole(tar: tarfile.TarFile, stream: _BoundedStream) -> Iterator[tarfile.TarInfo]:
     """Yield the entries. Raises EOFError if the zeros at the end are missing, which `tarfile` does not say."""
     yield from tar
     if stream.last.strip(b"\0"):
         raise EOFError("it ends in the middle")
 
 
-class _Bounded:
+class _BoundedStream:
     """A stream of a class's tar that ends with an error after more bytes than any class has. `last` ends it so far."""
 
     def __init__(self, archive: Path, stream: IO[bytes]) -> None:

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from grader.classroom.formats.moodle import unknown_to_moodle
 from grader.classroom.submissions import Submissions
-from grader.grading.grade import Entry, Skipped
+from grader.grading.grade import Entry, SkippedFile
 from grader.report.printable import printable
 from groundwork.words import counted
 
@@ -39,7 +39,7 @@ def show_submissions(console: Console, collected: Submissions) -> None:
     _list(console, collected.skipped)
 
 
-def _list(console: Console, skipped: Iterable[Skipped]) -> None:
+def _list(console: Console, skipped: Iterable[SkippedFile]) -> None:
     reasons: dict[str, list[str]] = {}
     for one in skipped:
         reasons.setdefault(one.why, []).append(one.file)

@@ -12,13 +12,15 @@ from grader.classroom.names import normal
 from grader.classroom.submissions import File, Question, SubmissionsError
 from grader.classroom.tables import table_rows
 from grader.classroom.times import UNKNOWN, Time, read_time
-from grader.grading.grade import Skipped, Student
+from grader.grading.grade import SkippedFile, Student
 
 NEEDED = ("file", "student")
 KNOWN = (*NEEDED, "name", "email", "submitted", "attempt")
 
 
-def by_row(table: Path, zone: tzinfo | None) -> tuple[list[tuple[File, UploadedFile]], list[Skipped], list[Question]]:
+def by_row(
+    table: Path, zone: tzinfo | None
+) -> tuple[list[tuple[File, UploadedFile]], list[SkippedFile], list[Question]]:
     """Return the files that the rows name, relative to the CSV file's folder, and the rows whose file is missing: a
     question if it is the student's only one.
 
@@ -27,7 +29,7 @@ def by_row(table: Path, zone: tzinfo | None) -> tuple[list[tuple[File, UploadedF
     `SubmissionsError` for a row with a mistake.
     """
     uploads: dict[str, list[tuple[File, UploadedFile]]] = defaultdict(list)
-    absent: list[tuple[Student, Skipped]] = []
+    absent: list[tuple[Student, SkippedFile]] = []
     for number, row in table_rows(table, NEEDED, KNOWN):
         if not row["student"] or not row["file"]:
             raise SubmissionsError(
@@ -39,7 +41,7 @@ def by_row(table: Path, zone: tzinfo | None) -> tuple[list[tuple[File, UploadedF
         lms = {column: value for column, value in row.items() if column not in KNOWN}
         student = Student(normal(row["student"]), normal(row.get("name", "")), row.get("email", ""), lms)
         if not path.exists() and not path.is_symlink():
-            absent.append((student, Skipped(row["file"], f"line {number} names it, but there is no such file")))
+            absent.append((student, SkippedFile(row["file"], f"line {number} names it, but there is no such file")))
             continue
         time = _time(row, path, f"{table}:{number}", zone)
         attempt = row.get("attempt", "").zfill(4) if row.get("attempt") else ""

@@ -21,7 +21,7 @@ from grader.classroom.recogniser import GRADABLE, Recogniser, Recognition, can_b
 from grader.classroom.roster import RosterRow, match, signs, with_row
 from grader.classroom.submissions import File, Question, StudentSubmission, Submissions, SubmissionsError
 from grader.exercise.exercise import Exercise
-from grader.grading.grade import Skipped, Student
+from grader.grading.grade import SkippedFile, Student
 from grader.submission.file_kinds import can_be_read, kind_of, kind_of_content
 from groundwork.words import counted
 
@@ -72,7 +72,7 @@ class ClassFiles:
 
     kind: str
     uploads: Sequence[tuple[File, UploadedFile]]
-    skipped: Sequence[Skipped]
+    skipped: Sequence[SkippedFile]
     odd: Sequence[Question] = ()
     dates: str = ""
     together: bool = True
@@ -81,7 +81,7 @@ class ClassFiles:
 def _found(source: Path, exercise: Exercise, unpack_into: Path, options: CollectOptions) -> ClassFiles:
     everything = list(walk(source) if source.is_dir() else unpacked(source, unpack_into))
     files = {tuple(one.name.split("/")): one for one in everything if isinstance(one, File)}
-    left_out = [one for one in everything if isinstance(one, Skipped)]
+    left_out = [one for one in everything if isinstance(one, SkippedFile)]
     if not files:
         return ClassFiles("", (), left_out)
     root = source.resolve().name if source.is_dir() else without_suffix(source.name)
@@ -90,10 +90,12 @@ def _found(source: Path, exercise: Exercise, unpack_into: Path, options: Collect
         _refuse_class_within(source.name, next(iter(files.values())), exercise, unpack_into / "within")
     folder = f", in {'/'.join(recognition.inside)}/" if recognition.inside else ""
     uploads = [(file, place) for file, place in recognition.understood if isinstance(place, UploadedFile)]
-    others = [Skipped(file.name, place) for file, place in recognition.understood if isinstance(place, str) and place]
-    others += [Skipped(file.name, f"not in {'/'.join(recognition.inside)}/") for file in recognition.others]
+    others = [
+        SkippedFile(file.name, place) for file, place in recognition.understood if isinstance(place, str) and place
+    ]
+    others += [SkippedFile(file.name, f"not in {'/'.join(recognition.inside)}/") for file in recognition.others]
     why = f"its name is not one of {recognition.form.title}"
-    others += [Skipped(file.name, why) for _, file in recognition.misfits if not can_be_graded(file.name)]
+    others += [SkippedFile(file.name, why) for _, file in recognition.misfits if not can_be_graded(file.name)]
     return ClassFiles(
         recognition.form.title + folder,
         uploads,
@@ -141,7 +143,7 @@ class Collector:
     def submissions(self, found: ClassFiles) -> Submissions:
         """Return one submission per student. Anything unclear becomes a question, never a guess."""
         units = in_groups(_units(found.uploads), self.options.groups)
-        extras: list[Skipped] = []
+        extras: list[SkippedFile] = []
         theirs: dict[str, list[StudentSubmission | Question]] = defaultdict(list)
         for number, unit in enumerate(units):
             for one in self._chosen(unit, number, extras):
@@ -165,7 +167,7 @@ class Collector:
             found.dates,
         )
 
-    def _chosen(self, unit: Unit, number: int, extras: list[Skipped]) -> list[StudentSubmission | Question]:
+    def _chosen(self, unit: Unit, number: int, extras: list[SkippedFile]) -> list[StudentSubmission | Question]:
         """Return the submission of each student in the unit, with the attempts that the options select."""
         attempts = [unit.attempts[key] for key in sorted(unit.attempts)]
         if len(attempts) > 1 and not self.options.attempts:
@@ -185,13 +187,13 @@ class Collector:
             files.append(file)
         return [StudentSubmission(student, files[0], tuple(files[1:])) for student in unit.students]
 
-    def _submission(self, attempt: Attempt, name: str, extras: list[Skipped]) -> File | None:
+    def _submission(self, attempt: Attempt, name: str, extras: list[SkippedFile]) -> File | None:
         """Return the file of an attempt, or the folder of its files; None if it is not clear which file counts."""
         several = [file for file, _ in attempt if can_be_graded(file.name)]
         if len(attempt) > 1 and len(several) != 1:
             return self._folder(attempt, name) if self.together else None
         chosen = several[0] if several else attempt[0][0]
-        extras += [Skipped(file.name, KINDS) for file, _ in attempt if several and file is not chosen]
+        extras += [SkippedFile(file.name, KINDS) for file, _ in attempt if several and file is not chosen]
         return replace(chosen, time=next(upload.time for file, upload in attempt if file is chosen))
 
     def _folder(self, attempt: Attempt, name: str) -> File:

@@ -13,7 +13,7 @@ from urllib.parse import quote
 from grader.checking.verdict import Verdict
 from grader.classroom.misconceptions import Misconceptions
 from grader.exercise.exercise import Exercise
-from grader.grading.grade import Entry, Skipped
+from grader.grading.grade import Entry, SkippedFile
 from grader.report.as_json import STUDENTS
 from grader.report.pages import points, render
 
@@ -155,7 +155,7 @@ def _bar(i: int, count: int, highest: int, most: float) -> Bar:
 def overview_page(
     exercise: Exercise,
     entries: Sequence[Entry],
-    skipped: Sequence[Skipped],
+    skipped: Sequence[SkippedFile],
     faults: Sequence[Entry],
     misconceptions: Misconceptions,
 ) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from grader.classroom.times import UNKNOWN, Time
-from grader.grading.grade import Skipped, Student
+from grader.grading.grade import SkippedFile, Student
 
 
 class SubmissionsError(Exception):
@@ -86,7 +86,7 @@ class Submissions:
 
     kind: str
     handed_in: tuple[StudentSubmission, ...]
-    skipped: tuple[Skipped, ...]
+    skipped: tuple[SkippedFile, ...]
     questions: tuple[Question, ...]
     missing: tuple[Student, ...] = ()
     notes: tuple[str, ...] = ()

@@ -128,7 +128,7 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Skipped:
+class SkippedFile:
     """A file that was not graded, and why."""
 
     file: str

@@ -30,7 +30,7 @@ from grader.workers.jobs import ListJob
 from grader.workers.pool import WorkerPool
 
 if TYPE_CHECKING:
-    from grader.checking.judge import Listed  # it imports pytest, which the judging process has anyway
+    from grader.checking.judge import ListedCheck  # it imports pytest, which the judging process has anyway
 
 #: Increase this when older versions can no longer read the file.
 FORMAT = 2
@@ -54,7 +54,7 @@ def public_part(exercise: Exercise, options: Options, isolation: Isolation, work
     if exercise.solution_folder is None:
         return read_public(exercise)
     every = declared(exercise, options.seed)
-    checks: tuple[Listed, ...] = workers.do(ListJob(replace(exercise, public_only=False)))
+    checks: tuple[ListedCheck, ...] = workers.do(ListJob(replace(exercise, public_only=False)))
     used = {name for check in checks if not check.hidden for name in check.fixtures}
     scenarios = tuple(scenario for scenario in every if scenario.name in used)
     if not scenarios:

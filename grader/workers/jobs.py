@@ -115,7 +115,7 @@ class ListJob:
     exercise: Exercise
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
-        """Return the checks, as `Listed`."""
+        """Return the checks, as `ListedCheck`."""
         from grader.checking.judge import listed
 
         ready()

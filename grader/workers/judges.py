@@ -77,11 +77,11 @@ def _judge(requests: socket.socket, collected: bytes) -> NoReturn:
     from grader.checking.judge import judge_when_collected
 
     exercise, scenarios = what_to_collect(collected)
-    judging = _Judging(requests)
+    judging = _JudgingRequest(requests)
     judging.end(answer_of(lambda: judge_when_collected(exercise, scenarios, judging.runs)))
 
 
-class _Judging:
+class _JudgingRequest:
     """One judging, which begins with the fork of this process."""
 
     def __init__(self, requests: socket.socket) -> None:

@@ -70,7 +70,7 @@ class _Before:
 
 
 @dataclass(frozen=True)
-class _Unnamed:
+class _UnnamedFence:
     """A fence that nothing before it names, with the text before it, and what follows up to the next heading."""
 
     fence: Fence
@@ -88,8 +88,8 @@ def shown_interfaces(blocks: Iterable[Block], text: str, own: str) -> dict[int, 
     packages = _Packages(text, own)
     before = _Before()
     names: dict[int, _Name] = {}
-    unnamed: list[_Unnamed] = []
-    section: list[_Unnamed] = []
+    unnamed: list[_UnnamedFence] = []
+    section: list[_UnnamedFence] = []
     for block in (inner for top in blocks for inner in top.walk()):
         section = [] if block.kind is BlockKind.HEADING else section
         if block.kind in {BlockKind.TEXT, BlockKind.FENCE}:
@@ -106,7 +106,7 @@ def shown_interfaces(blocks: Iterable[Block], text: str, own: str) -> dict[int, 
             elif (block.fence.is_shell and (candidates := _names_in(block.fence.code))) or _is_listing(block.fence):
                 before.names = candidates
             else:
-                section = [*section, _Unnamed(block.fence, words)]
+                section = [*section, _UnnamedFence(block.fence, words)]
                 unnamed.append(section[-1])
     for item in unnamed:
         if name := packages.meant(item, names.values()):
@@ -217,7 +217,7 @@ class _Packages:
         package = name.package or self._types.get((name.kind, name.name)) or self._near(fence.line)
         return _Name(package or _twin(name, fence.code), name.kind, name.name)
 
-    def meant(self, item: _Unnamed, known: Iterable[_Name]) -> _Name | None:
+    def meant(self, item: _UnnamedFence, known: Iterable[_Name]) -> _Name | None:
         """Return the interface that a fence without a name defines: the only one of its kind that the text mentions.
 
         The text before it mentions one that is imported; what follows names its file, in CMake, or imports it.

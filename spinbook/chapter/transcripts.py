@@ -19,7 +19,7 @@ _CONTINUED = re.compile(r"^\s*>\s?")
 
 
 @dataclass
-class _Split:
+class _SplitFence:
     """The lines of a fence so far. `open` is a command that goes on in the next line, `printed` what each printed."""
 
     has_prompts: bool
@@ -73,7 +73,7 @@ class _Split:
 def split_transcript(code: str) -> tuple[str, str]:
     """Return (the commands, the printed lines) of a fence. Lines that are not commands are empty in the commands."""
     lines = code.split("\n")
-    split = _Split(any(map(SHOWN_PROMPT.match, lines)))
+    split = _SplitFence(any(map(SHOWN_PROMPT.match, lines)))
     for line in lines:
         split.add(line)
     return ("\n".join(split.commands), split.output) if split.printed or split.has_prompts else (code, "")

@@ -78,7 +78,7 @@ class NodeError:
 
 
 @dataclass(frozen=True)
-class _Raised:
+class _LoggedException:
     """An exception in the output; `frames` are the (file, line) of its traceback.
 
     One that nothing caught comes from the top of a module: it ends the program.
@@ -99,12 +99,12 @@ class NodeLog:
     """
 
     logged: list[str] = field(default_factory=list)
-    raised: list[_Raised] = field(default_factory=list)
+    raised: list[_LoggedException] = field(default_factory=list)
     last: deque[str] = field(default_factory=lambda: deque(maxlen=_QUOTED_LINES))
     _says_ctrl_c: bool = False
     _frames_shown: ReaderFrames = field(default_factory=ReaderFrames)
     _part: str = ""
-    _chain: list[_Raised] = field(default_factory=list)
+    _chain: list[_LoggedException] = field(default_factory=list)
     _frames: list[tuple[str, int]] | None = None
     _uncaught: bool = False
     _ignored: bool = False
@@ -165,7 +165,7 @@ class NodeLog:
             frames.append((frame[1], int(frame[2])))
             self._uncaught = self._uncaught or bool(frame[3])
         elif _RAISED.match(line):
-            self._chain.append(_Raised(line.strip(), tuple(frames), self._uncaught, "\n".join(self.last)))
+            self._chain.append(_LoggedException(line.strip(), tuple(frames), self._uncaught, "\n".join(self.last)))
             self._frames = None
 
     def _end_chain(self, stopping: bool) -> None:
@@ -176,7 +176,7 @@ class NodeLog:
         self.raised += [] if self._ignored else errors[-1:]
         self._chain, self._ignored = [], False
 
-    def take(self) -> tuple[list[str], list[_Raised]]:
+    def take(self) -> tuple[list[str], list[_LoggedException]]:
         """Return what was logged and raised since the last call. rclpy also logs what a callback raised: it counts
         once."""
         raised = list(dict.fromkeys(self.raised))

@@ -156,7 +156,7 @@ def read(data: bytes, message_class: Any) -> Any:
         raise RMWError(f"failed to deserialize ROS message: {error}") from None
 
 
-class _Introspected(_End):
+class _IntrospectedEnd(_End):
     """A service or a client, which can publish its requests and responses (REP 2012)."""
 
     _introspection: ServiceIntrospectionState = ServiceIntrospectionState.OFF
@@ -203,7 +203,7 @@ def _client_gid(client: str) -> Any:
     return numpy.array(list(client.encode()[-16:].rjust(16, b"\0")), dtype=numpy.uint8)
 
 
-class Service(_Introspected):
+class Service(_IntrospectedEnd):
     """The server end of a service."""
 
     def __init__(self, node: Owner, service_class: Any, name: str, profile: Profile | None) -> None:
@@ -241,7 +241,7 @@ def header_of(arrival: Arrival) -> rmw_service_info_t:
     return rmw_service_info_t(rmw_request_id_t(arrival.sequence, arrival.source), arrival.sent, arrival.came)
 
 
-class Client(_Introspected):
+class Client(_IntrospectedEnd):
     """The client end of a service."""
 
     def __init__(self, node: Owner, service_class: Any, name: str, profile: Profile | None) -> None:

@@ -8,7 +8,7 @@ import pytest
 from small_exercise import SmallExercise
 
 from grader.checking.agreement import disagreements
-from grader.checking.created import Created, created
+from grader.checking.created import CreationCall, created
 from grader.checking.proofreader import problems_of
 from grader.exercise.exercise import Qos
 from grader.exercise.loading import load
@@ -50,15 +50,15 @@ def reported(small: SmallExercise) -> list[str]:
 def test_what_a_program_creates_is_read_as_far_as_it_is_literal() -> None:
     text, late = "std_msgs/msg/String", Qos(durability="transient_local", depth=1)
     assert created(CREATES, "me") == (
-        Created("publish", 11, "/a", text, late),
-        Created("publish", 12, "/b", text),
-        Created("subscribe", 13, "/me/c", text, Qos("best_effort", "volatile", 5)),
-        Created("subscribe", 14, None, text, Qos(depth=5)),
-        Created("service", 15, "/d", "std_srvs/srv/Trigger"),
-        Created("action_client", 16, "/e"),
-        Created("parameter", 17, "gain", "integer", default=1),
-        Created("parameter", 18, "names", "string_array", default=["a"]),
-        Created("parameter", 19, "speed", "double"),
+        CreationCall("publish", 11, "/a", text, late),
+        CreationCall("publish", 12, "/b", text),
+        CreationCall("subscribe", 13, "/me/c", text, Qos("best_effort", "volatile", 5)),
+        CreationCall("subscribe", 14, None, text, Qos(depth=5)),
+        CreationCall("service", 15, "/d", "std_srvs/srv/Trigger"),
+        CreationCall("action_client", 16, "/e"),
+        CreationCall("parameter", 17, "gain", "integer", default=1),
+        CreationCall("parameter", 18, "names", "string_array", default=["a"]),
+        CreationCall("parameter", 19, "speed", "double"),
     )
     assert created("def", "me") == ()
 

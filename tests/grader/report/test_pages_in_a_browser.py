@@ -17,7 +17,7 @@ from grader.classroom.misconceptions import Signature, failures_of, grouped
 from grader.classroom.overview import overview_page
 from grader.exercise import Exercise
 from grader.grading import Grade
-from grader.grading.grade import Entry, Skipped, Student
+from grader.grading.grade import Entry, SkippedFile, Student
 from grader.report.feedback import feedback_page
 from grader.report.feedback_plot import feedback_plot
 
@@ -40,7 +40,7 @@ def site(graded: dict[str, Grade], exercise: Exercise, tmp_path_factory: pytest.
     ]
     faults = [entry(graded["host_error"], "Unlucky Person")]
     dt = Signature(("fixed_dt",), ("dt is always 0.1 s.",), failures_of(graded["fixed_dt"]))
-    skipped = [Skipped(f"s77/{EVIL}", EVIL)]
+    skipped = [SkippedFile(f"s77/{EVIL}", EVIL)]
     page = overview_page(exercise, entries, skipped, faults, grouped(entries, [dt]))
     results = tmp_path_factory.mktemp("results")
     (results / "index.html").write_text(page, encoding="utf-8")
@@ -96,7 +96,7 @@ def test_the_class_at_a_glance(browser: Browser, site: Path) -> None:
         expect(page.get_by_role("region", name="Not graded because of a fault on our side")).to_contain_text(
             "Unlucky Person"
         )
-        expect(page.get_by_role("region", name="Skipped")).to_contain_text("s77/")
+        expect(page.get_by_role("region", name="SkippedFile")).to_contain_text("s77/")
         expect(page.get_by_role("region", name="Most failed checks")).to_contain_text(
             "Velocities are right when the messages arrive at uneven times"
         )

@@ -19,7 +19,7 @@ from ros_in_python.launch import events, lifecycle, markup_text
 from ros_in_python.launch.changes import ContextChange, below
 from ros_in_python.launch.conditions import truth_of
 from ros_in_python.launch.parameters import NodeParameter, ParameterFile, parameter_of
-from ros_in_python.launch.steps import Deferred, Emission, EventStep, HandlerRemoval, Later, ProcessToStart, Step
+from ros_in_python.launch.steps import DeferredAction, Emission, EventStep, HandlerRemoval, Later, ProcessToStart, Step
 from ros_in_python.launch.substitutions import Context, NotYetKnownError, text_of, texts_of
 from ros_in_python.ros2.cli import CommandError
 from ros_in_python.ros2.executables import find
@@ -50,7 +50,7 @@ class LaunchPlan:
                 if condition is None or condition.holds(context):
                     yield from self._steps_of(entity, context)
             except NotYetKnownError:
-                yield Deferred(entity, context.copy())
+                yield DeferredAction(entity, context.copy())
 
     def _steps_of(self, entity: Any, context: Context) -> Iterator[Step]:
         for kind in type(entity).__mro__:
@@ -188,7 +188,7 @@ class LaunchPlan:
         """Return steps whose time has come: what had to wait for it is worked out now. Raises `CommandError`."""
         found: list[Step] = []
         for step in steps:
-            if isinstance(step, Deferred):
+            if isinstance(step, DeferredAction):
                 found += self.steps([step.entity], self._now(step.context, event))
             else:
                 found.append(step)
@@ -233,7 +233,7 @@ class LaunchPlan:
 
     def _opaque(self, action: known.Action, context: Context) -> Iterator[Step]:
         if context.is_later:
-            yield Deferred(action, context.copy())
+            yield DeferredAction(action, context.copy())
             return
         try:
             found = action.execute(context)

@@ -21,7 +21,7 @@ from ros_in_python.launch import events
 from ros_in_python.launch.actions import LaunchedProgram, LifecycleNode, line_of
 from ros_in_python.launch.lifecycle import LifecycleClient
 from ros_in_python.launch.plan import LaunchPlan
-from ros_in_python.launch.steps import Deferred, Emission, EventStep, HandlerRemoval, Later, ProcessToStart, Step
+from ros_in_python.launch.steps import DeferredAction, Emission, EventStep, HandlerRemoval, Later, ProcessToStart, Step
 from ros_in_python.ros2.cli import CommandError
 
 #: How often to check whether a process has ended without closing its output (s).
@@ -29,7 +29,7 @@ _POLL_S = 0.1
 
 
 @dataclass
-class _Running:
+class _LaunchedProcess:
     """`due` are the signals that it gets if it has not ended by then; `is_told` says that it was asked to end."""
 
     name: str
@@ -64,7 +64,7 @@ class ProcessGroup:
     def __init__(self, plan: LaunchPlan) -> None:
         self._plan = plan
         self._queue: queue.Queue[Any] = queue.Queue()
-        self._running: list[_Running] = []
+        self._running: list[_LaunchedProcess] = []
         self._handlers: list[EventStep] = []
         self._later: list[tuple[float, int, Later]] = []
         self._numbers, self._order = itertools.count(1), itertools.count()
@@ -98,7 +98,7 @@ class ProcessGroup:
                 self._say("INFO", "launch.user", step)
             elif isinstance(step, Later):
                 self._schedule(step)
-            elif isinstance(step, Deferred):
+            elif isinstance(step, DeferredAction):
                 self._do(self._plan.due([step]))
             elif isinstance(step, HandlerRemoval):
                 self._handlers = [other for other in self._handlers if other.handler is not step.handler]
@@ -155,7 +155,7 @@ class ProcessGroup:
         except OSError as error:
             raise CommandError(f"{step.argv[0]} could not be started: {error.strerror}") from None
         step.action.process_details = {"name": name, "pid": process.pid, "cmd": step.argv}
-        running = _Running(name, step, process)
+        running = _LaunchedProcess(name, step, process)
         self._running.append(running)
         self._say("INFO", name, f"process started with pid [{process.pid}]")
         for output in (process.stdout, process.stderr):
@@ -175,7 +175,7 @@ class ProcessGroup:
 
     # --- what the processes do
 
-    def _read(self, running: _Running, output: IO[bytes]) -> None:
+    def _read(self, running: _LaunchedProcess, output: IO[bytes]) -> None:
         is_stdout = output is running.process.stdout
         for line in output:
             self._print(line_of(running.step.action, running.name, line.decode(errors="replace").rstrip()))
@@ -206,7 +206,7 @@ class ProcessGroup:
             self._interrupted(event)
         elif isinstance(event, str):
             self._say("ERROR", "launch_ros", event)
-        elif isinstance(event, _Running):
+        elif isinstance(event, _LaunchedProcess):
             event.process.wait()
         else:
             self._happened(event)
@@ -231,7 +231,7 @@ class ProcessGroup:
         if first:
             self._happened(event)
 
-    def _ended(self, running: _Running) -> None:
+    def _ended(self, running: _LaunchedProcess) -> None:
         code, pid, step = running.process.returncode, running.process.pid, running.step
         if code == 0:
             self._say("INFO", running.name, f"process has finished cleanly [pid {pid}]")

@@ -40,7 +40,7 @@ class Later:
 
 
 @dataclass(frozen=True)
-class Deferred:
+class DeferredAction:
     """A function of the launch file, or what depends on an event: its time has not come when all else is planned."""
 
     entity: Any
@@ -70,4 +70,4 @@ class Emission:
     event: Any
 
 
-Step: TypeAlias = ProcessToStart | str | Later | Deferred | EventStep | HandlerRemoval | Emission
+Step: TypeAlias = ProcessToStart | str | Later | DeferredAction | EventStep | HandlerRemoval | Emission

@@ -32,7 +32,7 @@ _STEPS = 48
 
 
 @dataclass(frozen=True)
-class _Placed:
+class _PlacedShape:
     """A shape in the world: `turn` is its rotation (3 x 3), `place` its middle (m), `colour` from 0 to 1."""
 
     kind: str
@@ -66,7 +66,7 @@ class _Placed:
 class _Scene:
     """What is seen, and from where: `view` has the directions right, up and towards the viewer as columns."""
 
-    shapes: list[_Placed]
+    shapes: list[_PlacedShape]
     middle: Array
     radius: float
     ground: float
@@ -114,10 +114,12 @@ def _redness(shape: LinkShape, red: set[str]) -> float:
     return 0.0 if shape.link not in red else 0.55 if any(shape.origin.translation) else 1.0
 
 
-def _placed(shape: LinkShape, at: RigidMotion, redness: float) -> _Placed:
+def _placed(shape: LinkShape, at: RigidMotion, redness: float) -> _PlacedShape:
     turn = np.column_stack([np.subtract(at.moved(axis), at.translation) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1))])
     colour = np.array(shape.colour or (0.93, 0.92, 0.89))
-    return _Placed(shape.kind, np.array(shape.half), turn, np.array(at.translation), colour + redness * (_RED - colour))
+    return _PlacedShape(
+        shape.kind, np.array(shape.half), turn, np.array(at.translation), colour + redness * (_RED - colour)
+    )
 
 
 def _painted(scene: _Scene, width: int, height: int) -> Array:
@@ -136,7 +138,7 @@ def _painted(scene: _Scene, width: int, height: int) -> Array:
     return picture
 
 
-def _hits(shape: _Placed, eye: Array, rays: Array) -> tuple[Array, Array, Array]:
+def _hits(shape: _PlacedShape, eye: Array, rays: Array) -> tuple[Array, Array, Array]:
     """Return the rays that meet a shape, by number; how far away (m); and in which direction its surface looks."""
     start, own = (eye - shape.place) @ shape.turn, np.flatnonzero(_near(shape, eye, rays))
     turned, size = rays[own] @ shape.turn, float(np.linalg.norm(shape.half))
@@ -163,7 +165,7 @@ def _length(rows: Array) -> Array:
     return np.sqrt(_dot(rows, rows))
 
 
-def _near(shape: _Placed, eye: Array, rays: Array) -> Array:
+def _near(shape: _PlacedShape, eye: Array, rays: Array) -> Array:
     """Return which rays meet the ball around a shape."""
     to = shape.place - eye
     return to @ to - (rays @ to) ** 2 <= shape.half @ shape.half

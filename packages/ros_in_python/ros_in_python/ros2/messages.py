@@ -182,12 +182,12 @@ def fill(message: Any, values: dict[str, Any], *, stamps: bool = False) -> list[
     With `stamps`, a header given as `auto` and a time given as `now` are left for the returned setters. Raises
     `CommandError` for a field that is not there and for a value that is not of the field's type.
     """
-    filling = _Filling(stamps)
+    filling = _MessageFiller(stamps)
     filling.message(message, values, "")
     return filling.setters
 
 
-class _Filling:
+class _MessageFiller:
     def __init__(self, stamps: bool) -> None:
         self.stamps = stamps
         self.setters: list[SetStamp] = []
