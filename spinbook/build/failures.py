@@ -13,7 +13,7 @@ from spinbook.kernel.node_errors import AS_EXPECTED, ERROR
 
 _ANSI = re.compile(r"\x1b\[[0-9;]*m")
 #: A traceback's line in a module that a node cell wrote, or in a snippet's cell.
-_IN_MODULE = r'File "[^"]*\b{module}\.py", line (\d+)'
+_IN_MODULE = r'File "[^"]*\b{module}\.py", line (\d+)\b(?! above)'
 _IN_CELL = re.compile(r"Cell In\[\d+\], line (\d+)|^File <[^>]*>:(\d+)|-+> (\d+) ", re.MULTILINE)
 _LOG_LINES = (8, 12)
 
@@ -152,7 +152,8 @@ def _failure(chapter: Path, cell: dict[str, Any], error: dict[str, Any]) -> Cell
     printed = _printed(cell)
     line = _line(cell)
     node = _about(cell).get("node")
-    above = _about(cell).get("above", 1 if node else 0)
+    # A node's lines are counted from its cell's magic, those of a snippet from what completes it.
+    above = 1 if node else _about(cell).get("above", 0)
     if node:
         inside = re.findall(_IN_MODULE.format(module=re.escape(node)), printed)
         line += max(int(inside[-1]) - above, 1) - 1 if inside else 0

@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 import signal
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from spinbook.kernel.long_lines import shortened
-from spinbook.kernel.reader_frames import ReaderFrames, is_log_line
+from spinbook.kernel.reader_frames import ReaderFrames, is_log_line, line_of_cell
 
 #: The key of an error in the metadata of a cell's output.
 ERROR = "spinbook_error"
@@ -42,9 +42,6 @@ _ON_CTRL_C = re.compile(
 #: What `ros2 launch` logs of a program that did not end with exit code 0.
 _DIED = re.compile(r"process has died \[pid \d+, exit code (-?\d+)")
 _FROM_US = frozenset({-signal.SIGINT, -signal.SIGTERM, -signal.SIGKILL, 128 + signal.SIGINT, 128 + signal.SIGTERM})
-
-#: Finds the (file's name, line of its cell) of a frame; None for a file that no cell made.
-FindLine = Callable[[str, int], "tuple[str, int] | None"]
 
 
 @dataclass(frozen=True)
@@ -213,7 +210,7 @@ def ended_badly(code: int | None, *, stopped: bool, interrupted: bool = False) -
     return not (stopped and (code in _FROM_US or interrupted))
 
 
-def describe(node: str, log: NodeLog, ended: str, find_line: FindLine, *, meant: bool = False) -> NodeError | None:
+def describe(node: str, log: NodeLog, ended: str, *, meant: bool = False) -> NodeError | None:
     """Return what is new in a node's log as one report; `ended` says how it ended, "" if it did not end badly."""
     logged, raised = log.take()
     causes = [*(item.text for item in raised), *logged]
@@ -222,7 +219,8 @@ def describe(node: str, log: NodeLog, ended: str, find_line: FindLine, *, meant:
     first = shortened(causes[0]).rstrip(".") if causes else ""
     more = f" (and {len(causes) - 1} more)" if len(causes) > 1 else ""
     what = f"{first}{more}. It {ended}" if causes and ended else f"It {ended}" if ended else f"{first}{more}."
-    places = [place for item in raised[:1] for frame in item.frames if (place := find_line(*frame))]
+    frames = [frame for item in raised[:1] for frame in item.frames]
+    places = [(Path(file).name, shown) for file, line in frames if (shown := line_of_cell(file, line))]
     file, line = places[-1] if places else ("", 0)
     output = next((item.quoted for item in raised), "\n".join(log.last))
     return NodeError(node, what, file, line, output, meant)

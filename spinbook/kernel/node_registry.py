@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from spinbook.kernel.node_errors import FindLine, NodeError, NodeLog, describe, ended_badly, how_it_ended
+from spinbook.kernel.node_errors import NodeError, NodeLog, describe, ended_badly, how_it_ended
 from spinbook.kernel.process import STOP_GRACE, KeptProcess, Status
 
 #: How long a report of an exception that ends its program waits for that end (s), so that it can say both.
@@ -25,7 +25,7 @@ class RunningNode:
     read_to: int = 0
     end_is_reported: bool = False
 
-    def errors(self, find_line: FindLine, *, stopped: bool = False) -> NodeError | None:
+    def errors(self, *, stopped: bool = False) -> NodeError | None:
         """Return what has gone wrong since the last call; `stopped` says that this notebook has ended it since."""
         text = self._new_output()
         self.log.add(text, stopping=stopped)
@@ -36,11 +36,11 @@ class RunningNode:
         bad = ended_badly(status.exit, stopped=stopped, interrupted=self.log.was_interrupted)
         ended = how_it_ended(status.exit or 0) if bad and not self.end_is_reported else ""
         self.end_is_reported = self.end_is_reported or not status.running
-        return describe(self.name, self.log, ended, find_line, meant=self.expects_error)
+        return describe(self.name, self.log, ended, meant=self.expects_error)
 
     def forget_errors(self) -> None:
         """Count everything up to now as reported."""
-        self.errors(lambda file, line: None)
+        self.errors()
 
     def _new_output(self) -> str:
         data, _, self.read_to = self.process.read_from(self.read_to)
@@ -73,9 +73,8 @@ class StopResult:
 class NodeRegistry:
     """The nodes that this notebook started and did not replace or stop."""
 
-    def __init__(self, find_line: FindLine = lambda file, line: None) -> None:
+    def __init__(self) -> None:
         self._nodes: dict[str, RunningNode] = {}
-        self._find_line = find_line
         self._errors: list[NodeError] = []
 
     def start(
@@ -103,7 +102,7 @@ class NodeRegistry:
 
     def new_errors(self) -> list[NodeError]:
         """Return what has gone wrong in nodes since the last call, also in those that were stopped since."""
-        running = [error for node in self._nodes.values() if (error := node.errors(self._find_line))]
+        running = [error for node in self._nodes.values() if (error := node.errors())]
         errors, self._errors = [*self._errors, *running], []
         return errors
 
@@ -120,7 +119,7 @@ class NodeRegistry:
     def _begin_to_stop(self, nodes: Sequence[RunningNode]) -> Iterator[bool]:
         """Ask each node to end; yield whether it had ended before."""
         for node in nodes:
-            if error := node.errors(self._find_line):
+            if error := node.errors():
                 self._errors.append(error)
             ended = not node.process.status.running
             if not ended:
@@ -129,7 +128,7 @@ class NodeRegistry:
 
     def _stopped(self, node: RunningNode, had_ended: bool) -> StopResult:
         status = node.process.wait(sum(STOP_GRACE) + 5)
-        error = node.errors(self._find_line, stopped=not had_ended)
+        error = node.errors(stopped=not had_ended)
         self._errors += [error] if error else []
         node.process.close()
         return StopResult(node.name, status, had_ended, error)

@@ -22,7 +22,7 @@ from spinbook.kernel.long_lines import whole_in
 from spinbook.kernel.node_errors import AS_EXPECTED, NodeError, how_it_ended
 from spinbook.kernel.node_registry import NodeRegistry, RunningNode, StopResult
 from spinbook.kernel.process import CellFailed, KeptProcess, Status
-from spinbook.kernel.reader_frames import readable
+from spinbook.kernel.reader_frames import magic_comment, readable
 from spinbook.kernel.thread_errors import ThreadErrors
 from spinbook.kernel.timeline_cell import TimelineProcess
 from spinbook.package.files import Module
@@ -67,7 +67,7 @@ class Session:
 
     domain: Domain
     package: Package = field(default_factory=lambda: Package(name="notebook_nodes", workspace="notebook_ws"))
-    nodes: NodeRegistry = field(init=False)
+    nodes: NodeRegistry = field(default_factory=NodeRegistry)
     threads: ThreadErrors = field(default_factory=ThreadErrors)
     ran: dict[str, str] = field(default_factory=dict)
     """The code of each node's cell as it last ran, by the node's name."""
@@ -83,15 +83,12 @@ class Session:
     """The file of each node and how it is started, by the node's name."""
     head: int = 1
     """How many lines the current cell has above its code: that of its magic, and empty ones."""
-    above: dict[Path, int] = field(default_factory=dict)
-    """How many lines of each node's file are above its cell: 0 if its lines have the cell's numbers."""
     expects_error: bool = False
     """Whether a command of the current cell says that errors of nodes are meant."""
     timeline: TimelineProcess | None = None
     """The recorder for `%timeline`, if one is running."""
 
     def __post_init__(self) -> None:
-        self.nodes = NodeRegistry(self.line_of_cell)
         self.use_domain(self.domain)
 
     def use_domain(self, domain: Domain) -> None:
@@ -156,22 +153,14 @@ class Session:
         self.ran[name] = code
         self.ran_at[name] = time.time()
         whole = code if after is None else self._whole(name, code, after)
-        if whole == code:
-            # Below its magic, code has the numbers that the notebook shows next to its lines.
-            whole = "\n" * (self.head - 1) + f"# %%node {name}\n{code}"
+        # Below its magic, code has the numbers that the notebook shows next to its lines.
+        above, is_whole = whole.removesuffix(code), whole == code
+        magic = magic_comment(name, 0 if is_whole else self.head)
+        whole = "\n" * (self.head - 1) * is_whole + f"{above}{magic}\n{code}" if whole.endswith(code) else whole
         module = Module(name, whole.rstrip("\n") + "\n", executables)
         file = add_module(self.workspace, package, module)
         self.starts[name] = (file, start)
-        own = whole[: -len(code)].count("\n") if whole.endswith(code) else 0
-        self.above[file] = own - self.head
         return file
-
-    def line_of_cell(self, file: str, line: int) -> tuple[str, int] | None:
-        """Return (file name, line of its cell) of a line of a node's file; None if no cell made it."""
-        tail = Path(file).parts[-2:]
-        # `colcon build` copies a file into other folders.
-        above = next((count for known, count in self.above.items() if known.parts[-2:] == tail), None)
-        return None if above is None else (tail[-1], max(line - above, 1))
 
     def new_errors(self) -> list[NodeError]:
         """Return what has newly gone wrong in nodes and threads; meant if the cell's commands expected it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -15,6 +16,8 @@ from grader.recording.recording import ReceivedMessage, Recording, SentMessage
 from grader.runner.real_time import RealTimeRun
 from grader.scenario.command_line import arguments
 from grader.scenario.scenario import SECOND, START, Scenario
+from ros_in_python.robot import urdf
+from ros_in_python.robot.urdf import RobotDescription
 from spinbook.kernel.timeline import RecordedEvents, TimelineEvent
 
 #: How many lines there are for each topic, service and goal; what comes after that is only counted.
@@ -113,8 +116,17 @@ def _value(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
+def robot_of(recording: Recording) -> RobotDescription | None:
+    """Return the robot that a node published last as URDF; None if it published none."""
+    texts = [item.fields["data"] for item in recording.received if item.topic.endswith("/robot_description")]
+    for text in reversed(texts):
+        with contextlib.suppress(urdf.InvalidUrdf):
+            return urdf.read(str(text))
+    return None
+
+
 def events_of(recording: Recording) -> RecordedEvents:
-    """Return the calls and goals of a recording as a timeline's events, with times in simulated seconds."""
+    """Return the calls and goals of a recording, otherwise its messages, as a timeline's events, with times in s."""
     found = RecordedEvents()
     for call in recording.calls:
         found.kinds[call.service] = "service"
@@ -124,6 +136,9 @@ def events_of(recording: Recording) -> RecordedEvents:
     for goal in recording.goals:
         found.kinds[goal.action] = "action"
         found.events += _of_goal(goal)
+    for message in () if found.kinds else (*recording.sent, *recording.received):
+        found.kinds[message.topic] = "topic"
+        found.events.append(TimelineEvent(message.at / SECOND, message.topic, "message"))
     return found
 
 

@@ -21,7 +21,8 @@ from grader.report.plot import figure
 from grader.scenario.command_line import arguments
 from grader.scenario.scenario import Scenario
 from groundwork.clean_environment import module_command
-from ros_in_python.robot import drawing, still, urdf
+from ros_in_python.robot import drawing, still
+from ros_in_python.robot.urdf import RobotDescription
 from spinbook.kernel.check_cell import exercise_of, notebook_file
 from spinbook.kernel.environment import EXECUTING
 from spinbook.kernel.plot.picture import as_png
@@ -100,17 +101,29 @@ class TriedPicture:
                 self._show(from_json(self.record.read_text(encoding="utf-8"))[self.scenario.name])
 
     def _show(self, recording: Recording) -> None:
-        png, words = robot_of(recording)
+        png, words = self._picture(recording)
         if png is None:
-            drawn, words = self._timeline(recording) if recording.calls or recording.goals else self._curves(recording)
-            if drawn is None:
-                return
-            png = as_png(drawn)
+            return
         bundle = {"image/png": png, "text/plain": words}
         if self.handle is None:
             self.handle = display(bundle, raw=True, metadata={"image/png": {"alt": words}}, display_id=True)
         else:
             self.handle.update(bundle, raw=True, metadata={"image/png": {"alt": words}})
+
+    def _picture(self, recording: Recording) -> tuple[bytes | None, str]:
+        """Return a robot, curves, or else what happened over time, as a PNG and in words; (None, "") if nothing did."""
+        # Imported here because it imports rclpy.
+        from spinbook.kernel.surroundings import events_of, robot_of
+
+        if robot := robot_of(recording):
+            return _drawn(robot)
+        curves, words = (None, "") if recording.calls or recording.goals else self._curves(recording)
+        if curves:
+            return as_png(curves), words
+        drawn = lanes(events_of(recording))
+        if not any(lane.marks for lane in drawn):
+            return None, ""
+        return as_png(still_timeline(drawn, self.exercise.title)), in_words(drawn, span_of(drawn)[0])
 
     def _curves(self, recording: Recording) -> tuple[Figure | None, str]:
         name, exercise = self.scenario.name, self.exercise
@@ -121,27 +134,8 @@ class TriedPicture:
         drawn = figure(grade, exercise, name, judged=False)
         return (drawn if drawn.axes else None), f"{exercise.title}: what your node does, and what the solution does"
 
-    def _timeline(self, recording: Recording) -> tuple[Figure | None, str]:
-        # Imported here because it imports rclpy.
-        from spinbook.kernel.surroundings import events_of
-
-        drawn = lanes(events_of(recording))
-        if not any(lane.marks for lane in drawn):
-            return None, ""
-        return still_timeline(drawn, self.exercise.title), in_words(drawn, span_of(drawn)[0])
-
-
-def robot_of(recording: Recording) -> tuple[bytes | None, str]:
-    """Return the robot that a node published last as URDF, as a PNG and in words; (None, "") if it published none."""
-    texts = [item.fields["data"] for item in recording.received if item.topic.endswith("/robot_description")]
-    for text in reversed(texts):
-        with contextlib.suppress(urdf.InvalidUrdf):
-            return _drawn(str(text))
-    return None, ""
-
 
 @functools.lru_cache(maxsize=1)
-def _drawn(text: str) -> tuple[bytes, str]:
-    """Return the robot as a PNG and in words. Raises InvalidUrdf."""
-    robot = urdf.read(text)
+def _drawn(robot: RobotDescription) -> tuple[bytes, str]:
+    """Return a robot as a PNG and in words."""
     return still.as_png(robot, {}), drawing.in_words(robot, {})

@@ -179,21 +179,19 @@ def _published(output: dict[str, Any]) -> dict[str, Any]:
     return {**output, "data": data}
 
 
-#: A line of a node's file: in a traceback with its path, in a report without.
-_LINE = re.compile(r'\b(?P<file>\w+\.py)(?P<quote>"?), line (?P<line>\d+)')
+#: A line of a node's cell: in a traceback with its path, in a report without.
+_LINE = re.compile(r'\b(?P<file>\w+\.py)(?P<quote>"?), line (?P<line>\d+)\b(?! above)')
 
 
 def _numbered(output: dict[str, Any], above: Mapping[str, int]) -> dict[str, Any]:
     """Return an output with lines counted as in the page's editor, in which `%%node` is no line.
 
-    `above` is how many lines complete each node, by its file: its tracebacks count those, too.
+    `above` is how many lines complete each node, by its file: the editor counts those, too.
     """
 
     def in_page(place: re.Match[str]) -> str:
-        file, quote = place["file"], place["quote"]
-        added = above.get(file, 1)
-        shift = (0 if added else -1) if quote else added - 1
-        return f"{file}{quote}, line {max(int(place['line']) + shift, 1)}"
+        line = int(place["line"]) + above.get(place["file"], 1) - 1
+        return f"{place['file']}{place['quote']}, line {max(line, 1)}"
 
     if "text" in output:
         return {**output, "text": _LINE.sub(in_page, "".join(output["text"]))}

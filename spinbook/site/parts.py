@@ -6,7 +6,7 @@ without scripts and "Whole chapter" show them all.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
@@ -15,8 +15,10 @@ from docutils import nodes
 from groundwork.words import counted
 from spinbook.site.minutes import WORDS_PER_MINUTE
 
-#: A part takes no longer than this, unless one subsection alone does (minutes).
-LONGEST = 20
+#: Parts take from this to that long, as far as the chapter's headings allow (minutes).
+SHORTEST, LONGEST = 10, 20
+#: A part that begins within a section must be worth this much.
+_WITHIN_COST = 2.0
 #: For reading, running and understanding a block of code, if the author says nothing (minutes).
 PER_CELL = 2
 
@@ -50,14 +52,21 @@ def divide(document: nodes.document, minutes: Mapping[str, int]) -> None:
         top.append(_raw(f"{_steps(number, parts)}</div>"))
 
 
-def _parts(sections: Iterable[TimedSection]) -> list[list[TimedSection]]:
-    parts: list[list[TimedSection]] = []
-    for section in sections:
-        if parts and _minutes(parts[-1]) + section.minutes <= LONGEST:
-            parts[-1].append(section)
-        else:
-            parts.append([section])
-    return parts
+def _parts(sections: Sequence[TimedSection]) -> list[list[TimedSection]]:
+    """Group neighbours so that parts are hardly ever shorter or longer than they should be, and alike in length."""
+    best: list[tuple[float, list[list[TimedSection]]]] = [(0.0, [])]
+    for end in range(1, len(sections) + 1):
+        groups = [(cost, parts, list(sections[start:end])) for start, (cost, parts) in enumerate(best)]
+        ways = [(cost + _cost(group), [*parts, group]) for cost, parts, group in groups]
+        best.append(min(ways, key=lambda way: way[0]))
+    return best[-1][1]
+
+
+def _cost(part: list[TimedSection]) -> float:
+    minutes = _minutes(part)
+    outside = max(SHORTEST - minutes, minutes - LONGEST, 0)
+    uneven = (minutes - (SHORTEST + LONGEST) / 2) / LONGEST
+    return float(outside**2 + uneven**2 + (_WITHIN_COST if part[0].within else 0))
 
 
 def _timed(section: nodes.section, minutes: Mapping[str, int]) -> Iterator[TimedSection]:

@@ -14,8 +14,9 @@ from grader.report.feedback_plot import picture
 from grader.runner.program import CannotContinue
 from grader.scenario.command_line import arguments
 from grader.scenario.scenario import Scenario
+from ros_in_python.robot.drawing import RobotMotion, as_data
 from spinbook.browser.in_page.check import CheckedProgram, public_part, unpacked
-from spinbook.kernel.surroundings import SEVERAL, events_of, play
+from spinbook.kernel.surroundings import SEVERAL, events_of, play, robot_of
 from spinbook.kernel.timeline import in_words, lanes
 from spinbook.kernel.timeline_picture import moving_timeline, span_of
 
@@ -62,21 +63,26 @@ class LivePicture:
 
     def draw(self, recording: Recording) -> None:
         """Send the page the picture of what has happened so far, if it is new."""
-        drawn = self._timeline(recording) if recording.calls or recording.goals else self._curves(recording)
-        if drawn["svg"] not in ("", self.shown):
-            self.shown = drawn["svg"]
-            self.page.picture(json.dumps(drawn))
+        curves = {} if recording.calls or recording.goals else self._curves(recording)
+        drawn = json.dumps(self._robot(recording) or curves or self._timeline(recording))
+        if drawn not in ("{}", self.shown):
+            self.shown = drawn
+            self.page.picture(drawn)
+
+    def _robot(self, recording: Recording) -> dict[str, Any]:
+        robot = robot_of(recording)
+        return {"robot": as_data(robot, RobotMotion()), "kind": "robot"} if robot else {}
 
     def _curves(self, recording: Recording) -> dict[str, str]:
         name = recording.scenario
         tried: Any = CheckedProgram((), {name: recording}, {name: self.reference})
-        svg = picture(tried, self.exercise, judged=False) or ""
-        return {"svg": svg, "words": "What your node does, over the solution", "kind": "check-plot"}
+        svg = picture(tried, self.exercise, judged=False)
+        return {"svg": svg, "words": "What your node does, over the solution", "kind": "check-plot"} if svg else {}
 
     def _timeline(self, recording: Recording) -> dict[str, str]:
         drawn = lanes(events_of(recording))
         if not any(lane.marks for lane in drawn):
-            return {"svg": ""}
+            return {}
         words = in_words(drawn, span_of(drawn)[0])
         svg = moving_timeline(drawn, self.exercise.title, moves=False)
         return {"svg": svg, "words": words, "kind": "live-timeline"}

@@ -64,8 +64,11 @@ function print(pre, text) {
 }
 
 // Drawn by Spinbook's own code, which escapes names. Each kind of picture has rules of its own.
-function draw(figure, { svg, words, kind }) {
+function draw(figure, { svg, robot, words = robot.words, kind }) {
   figure.className = kind;
-  fill(figure, svg, `.${kind}`);
+  if (robot) {
+    figure.replaceChildren();
+    globalThis.moveRobot(figure, robot);
+  } else fill(figure, svg, `.${kind}`);
   figure.dataset.words = words;
 }

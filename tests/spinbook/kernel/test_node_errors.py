@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from spinbook.kernel.node_errors import NodeError, NodeLog, describe, ended_badly, how_it_ended
@@ -19,19 +21,20 @@ SHUT_DOWN = "\n".join(
 )
 
 
-def find_line(file: str, line: int) -> tuple[str, int] | None:
-    return ("arm.py", line) if file == "/ws/arm.py" else None
-
-
 def report(text: str, *, ended: str = "", stopping: bool = False) -> NodeError | None:
     log = NodeLog()
     for letter in (text[:40], text[40:]):
         log.add(letter, stopping=stopping)
-    return describe("arm", log, ended, find_line)
+    return describe("arm", log, ended)
 
 
-def test_an_exception_is_reported_with_its_line() -> None:
-    error = report(RAISED, ended="ended with exit code 1.")
+@pytest.mark.parametrize("above", ["\n# %%node arm\n", "import math\n\n\n# %%node arm (line 2)\n"])
+def test_an_exception_is_reported_with_the_line_of_its_cell(tmp_path: Path, above: str) -> None:
+    file = tmp_path / "arm.py"
+    file.write_text(f"{above}\n\n\n\n\n\na.b\n")
+    line = above.count("\n") + 7
+    raised = RAISED.replace("/ws/arm.py", str(file)).replace("line 9", f"line {line}")
+    error = report(raised, ended="ended with exit code 1.")
 
     assert error is not None
     assert (error.file, error.line) == ("arm.py", 9)
@@ -105,14 +108,14 @@ def test_however_the_traceback_of_ctrl_c_comes_out_it_is_no_error(disturbed: str
     log.add(disturbed, stopping=True)
 
     assert log.was_interrupted
-    assert describe("arm", log, "", find_line) is None
+    assert describe("arm", log, "") is None
 
 
 def test_a_line_of_the_middleware_in_a_traceback_does_not_hide_its_error() -> None:
     error = report(RAISED.replace("ValueError", "2026-01-01 [RTPS Error] full\nValueError"))
 
     assert error is not None
-    assert (error.what, error.line) == ("ValueError: no grip.", 9)
+    assert error.what == "ValueError: no grip."
 
 
 def test_an_exception_while_a_program_is_stopped_is_an_error() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from notebook_kernel import Kernel
 
 CLASS = """class Talker(Node):
@@ -22,6 +24,15 @@ def test_a_node_is_made_whole_of_the_parts_above_as_they_are_now(kernel: Kernel)
     shown = kernel.run(f"%%node main --seconds 60 --until Grace --main --after talker name\n{MAIN}")
 
     assert "[INFO] [talker]: I am Grace" in shown.text
+
+
+def test_a_traceback_counts_lines_as_the_cells_do(kernel: Kernel) -> None:
+    kernel.run(f"%%part talker --keep\n{CLASS}")
+
+    shown = kernel.run(f"%%node main --main --after talker\n{MAIN}")
+
+    assert re.search(r'main.py", line \d+ above its cell, in __init__\n.*NAME', shown.text)
+    assert 'main.py", line 4, in main\n    rclpy.spin(Talker())' in shown.text
 
 
 def test_a_part_that_is_missing_is_named(kernel: Kernel) -> None:

@@ -5,8 +5,11 @@ from __future__ import annotations
 import pytest
 from notebook_kernel import Kernel
 
+from grader.recording.events import Fields
 from grader.recording.recording import Ending, ReceivedMessage, Recording
-from spinbook.kernel.try_cell import robot_of
+from grader.scenario.scenario import SECOND
+from spinbook.kernel.surroundings import events_of, robot_of
+from spinbook.kernel.timeline import lanes
 from submit.conftest import node_cell, solution
 
 
@@ -24,18 +27,24 @@ def test_an_unknown_scenario_lists_those_that_there_are(kernel: Kernel) -> None:
     assert error == "joint_velocity has no scenario `late`. There are: chapter, irregular."
 
 
+def a_recording(topic: str, *messages: Fields) -> Recording:
+    received = [ReceivedMessage(SECOND * at, 0, topic, "", fields) for at, fields in enumerate(messages)]
+    return Recording("late", (), tuple(received), (), (), False, Ending("completed"))
+
+
 def test_a_robot_that_the_node_describes_is_drawn() -> None:
     texts = ['<robot name="arm"><link name="hand"/></robot>', "no robot"]
-    received = [
-        ReceivedMessage(0, 0, "/robot_description", "std_msgs/msg/String", {"data": text}, node="/arm")
-        for text in texts
-    ]
 
-    png, words = robot_of(Recording("late", (), tuple(received), (), (), False, Ending("completed")))
+    robot = robot_of(a_recording("/robot_description", *({"data": text} for text in texts)))
 
-    assert png is not None
-    assert png.startswith(b"\x89PNG")
-    assert words == "The robot arm: no joint has moved."
+    assert robot is not None
+    assert robot.name == "arm"
+
+
+def test_messages_without_numbers_to_plot_are_drawn_along_time() -> None:
+    (beats,) = lanes(events_of(a_recording("/heartbeat", {}, {}, {})))
+
+    assert (beats.name, [mark.at for mark in beats.marks]) == ("/heartbeat", [0, 1, 2])
 
 
 @pytest.mark.soak  # in real time: on a busy machine, the scenario is over before Stop arrives

@@ -46,7 +46,7 @@ function menu() {
   document.addEventListener("click", ({ target }) => {
     for (const menu of document.querySelectorAll(MENU)) {
       if (!menu.contains(target)) menu.open = false;
-      else if (target.closest(".places :is(a, button)")) leave(menu);
+      else if (target.closest(".places :is(a, button):not(.copy)")) leave(menu);
     }
   });
 }
@@ -76,13 +76,16 @@ async function toClipboard(text) {
 }
 
 function copying() {
+  // Where there is little room, the button would cover code: it is in the menu of the block's head.
+  const isSmall = matchMedia("(hover: none), (max-width: 40rem)").matches;
   for (const code of document.querySelectorAll("main .highlight > pre")) {
     if (code.closest(".cell_output, .shown")) continue;
     const button = document.createElement("button");
     button.type = "button";
     button.className = "copy";
     button.textContent = "Copy";
-    const file = code.closest(".cell")?.querySelector(".cell-file")?.textContent;
+    const cell = code.closest(".cell");
+    const file = cell?.querySelector(".cell-file")?.textContent;
     button.setAttribute("aria-label", file ? `Copy ${file}` : "Copy this code");
     button.addEventListener("click", async () => {
       const done = await toClipboard(code.textContent.replace(/\n$/, ""));
@@ -93,7 +96,7 @@ function copying() {
         said.textContent = "";
       }, 2000);
     });
-    code.parentElement.append(button);
+    ((isSmall && cell?.querySelector(".places")) || code.parentElement).append(button);
   }
 }
 
@@ -260,7 +263,8 @@ function chapterParts() {
   const place = `parts:${location.pathname}`;
   const { read = [], last } = kept(place) ?? {};
   const whole = document.querySelector(".pages .whole");
-  const link = (id) => document.querySelector(`.pages a[href="#${id}"]`);
+  const row = document.querySelector(".pages ol");
+  const link = (id) => row.querySelector(`a[href="#${id}"]`);
   let isWhole = root.classList.contains("whole-chapter");
 
   const show = (next) => {
@@ -272,6 +276,7 @@ function chapterParts() {
       if (each === part && !isWhole) link(each.id).setAttribute("aria-current", "page");
       else link(each.id).removeAttribute("aria-current");
     }
+    row.scrollLeft = link(part.id).offsetLeft - row.offsetLeft - row.clientWidth / 2;
     whole.setAttribute("aria-pressed", String(isWhole));
     root.classList.toggle("whole-chapter", isWhole);
     dispatchEvent(new Event("resize"));
