@@ -115,7 +115,7 @@ def _starter(exercise: Exercise, starter: str, download: str) -> str:
 
 Start from this file. Comments mark the places for your code.
 
-<p><a class="button" href="{download}" download>Download {exercise.file_name}</a></p>
+<p><a class="button button-quiet" href="{download}" download>Download {exercise.file_name}</a></p>
 
 ```python
 {starter.rstrip()}

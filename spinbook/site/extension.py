@@ -28,6 +28,7 @@ from spinbook.site.log_lexer import LogLexer
 from spinbook.site.page import FRAME_SUFFIX, GLOSSARY, HOME
 from spinbook.site.parts import divide
 from spinbook.site.tables import readable_tables
+from spinbook.site.unbroken import KeepTogether
 
 _IMAGE = re.compile(r"<img\b[^>]*>")
 _SOURCE = re.compile(r'\bsrc="([^"]+)"')
@@ -420,6 +421,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.add_transform(DescribeCells)
     app.add_transform(AskGuesses)
     app.add_transform(LinkTerms)
+    app.add_transform(KeepTogether)
     app.connect("builder-inited", no_index_of_sphinx)
     app.connect("source-read", depend)
     app.connect("doctree-resolved", define_terms)

@@ -28,6 +28,10 @@ from spinbook.site.page import Repository, chapter_page, exercise_page
 from spinbook.site.robots import is_robot, robot_html
 
 _SIZE = re.compile(r'\b(width|height)="([\d.]+)(?:px|pt)?"')
+#: The range of a plot's curve, in its description.
+_RANGE = re.compile(r"(\S+) … (\S+)")
+#: A wider picture would be too small to read next to a chapter's title.
+_WIDEST = 600
 
 
 @dataclass(frozen=True)
@@ -69,7 +73,7 @@ def home_drawing(drawings: Mapping[str, Picture | None]) -> str:
 
 
 def home_pictures(runs: list[tuple[Chapter, ExecutedNotebook]]) -> list[HomePicture]:
-    """Return the plot with the longest description and the last trail of a turtle, if the chapters have them."""
+    """Return the plot of the most curves that move and the last trail of a turtle, if the chapters have them."""
     pictures = [(chapter, cell, output) for chapter, ran in runs for cell, output in _pictures(chapter, ran)]
     plots = [drawn for drawn in pictures if "samples" in alternative(drawn[2], drawn[1])]
     turtles = [drawn for drawn in pictures if "turtlesim" in alternative(drawn[2], drawn[1]).lower()]
@@ -78,7 +82,10 @@ def home_pictures(runs: list[tuple[Chapter, ExecutedNotebook]]) -> list[HomePict
     chosen = []
     if plots:
         chosen.append(
-            (max(plots, key=lambda drawn: len(alternative(drawn[2], drawn[1]))), "What a topic carried, as it arrived")
+            (
+                max(plots, key=lambda drawn: _moving_curves(alternative(drawn[2], drawn[1]))),
+                "What a topic carried, as it arrived",
+            )
         )
     if turtles:
         chosen.append((turtles[-1], "A turtle, driven by a node"))
@@ -96,12 +103,19 @@ def home_robot(runs: list[tuple[Chapter, ExecutedNotebook]]) -> str:
 
 
 def chapter_opening(chapter: Chapter, ran: ExecutedNotebook) -> HomePicture | None:
-    """Return what moves at the top of a chapter's page: its first robot, otherwise its last moving picture."""
+    """Return what moves at the top of a chapter's page: its first robot, otherwise its last moving picture that is not
+    wide, such as a timeline."""
     for cell in chapter.cells:
         for output in filter(is_robot, ran.outputs(cell.id)):
             return HomePicture({}, {"robot": robot_html(output, "../", "A robot, moved by a node of this chapter.")})
-    moving = [(cell, output) for cell, output in _pictures(chapter, ran) if still_of(output)]
-    return _shown(chapter, *moving[-1], "From this chapter, as it was recorded") if moving else None
+    moving = [drawn for drawn in _pictures(chapter, ran) if still_of(drawn[1])]
+    shown = [_shown(chapter, *drawn, "From this chapter, as it was recorded") for drawn in moving]
+    narrow = [picture for picture in shown if picture.about.get("width", 0) <= _WIDEST]
+    return (narrow or shown or [None])[-1]
+
+
+def _moving_curves(words: str) -> int:
+    return sum(low != high for low, high in _RANGE.findall(words))
 
 
 def _pictures(chapter: Chapter, ran: ExecutedNotebook) -> Iterator[tuple[ChapterCell, dict[str, Any]]]:

@@ -19,7 +19,7 @@ from spinbook.site.drawings import PICTURE_FOLDER
 
 #: The script that draws robots, as a file of the site.
 SCRIPT = "_static/robot_view.js"
-_QUALITY = 80
+_QUALITY = 70
 
 
 def script() -> bytes:
@@ -44,7 +44,9 @@ def robot_html(output: Mapping[str, Any], root: str, caption: str = "") -> str:
     data = output["data"][KIND]
     moves = json.dumps(data, separators=(",", ":"), ensure_ascii=False).replace("<", "\\u003c")
     source, words = root + robot_still(output)[0], escape(data["words"])
-    still = f'<img src="{source}" alt="{words}" width="{WIDTH}" height="{HEIGHT}" loading="lazy">'
+    # One with a caption is at the top of its page: it is loaded at once, so that it can be printed.
+    late = "" if caption else ' loading="lazy"'
+    still = f'<img src="{source}" alt="{words}" width="{WIDTH}" height="{HEIGHT}"{late}>'
     # The script writes below the picture: the place is kept free, so that nothing moves then.
     below = f'<p class="robot-state"></p>{f"<figcaption>{caption}</figcaption>" if caption else ""}'
     return f'<figure class="robot">{still}<script type="application/json">{moves}</script>{below}</figure>'

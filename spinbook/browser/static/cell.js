@@ -56,6 +56,11 @@ class Cell {
     return this.editor.text;
   }
 
+  // What the bar calls it: its file, otherwise how its first line begins.
+  get title() {
+    return this.file || this.source.trim().split(/\s+/, 3).join(" ") || this.name;
+  }
+
   get program() {
     const { before = "", start } = this.about;
     const call = start ? `\n\nfrom spinbook.kernel import entry as _entry\n_entry.start(globals(), ${JSON.stringify(start)})\n` : "";

@@ -23,7 +23,7 @@ const look = EditorView.theme({
   ".cm-content": { padding: "0.9rem 0", caretColor: "var(--ink)" },
   ".cm-line": { padding: "0 1.1rem 0 0.6rem" },
   ".cm-gutters": { backgroundColor: "var(--code)", color: "var(--soft)", border: "0" },
-  ".cm-gutterElement": { fontSize: "0.8em" },
+  ".cm-gutterElement": { fontSize: "0.8em", lineHeight: "1.9375" },
   ".cm-lineNumbers .cm-gutterElement": { minWidth: "1rem", padding: "0 0.15rem 0 0.3rem" },
   ".cm-cursor": { borderLeftColor: "var(--ink)" },
   "&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground, .cm-selectionBackground": { background: "var(--tint)" },

@@ -33,7 +33,7 @@ export async function observer() {
 async function workFor(cell, process, act) {
   const { progress } = cell.hears("");
   Object.assign(process.hears, { progress, output: (text, stream) => cell.print(text, stream) });
-  process.work(cell.name);
+  process.work(cell.title);
   const stop = () => process.stop();
   cell.now.runs(stop);
   try {

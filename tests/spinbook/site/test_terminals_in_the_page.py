@@ -63,7 +63,7 @@ def test_two_terminals_at_once_have_their_own_output_and_stop(shown: Opened) -> 
     echoing = run(shown, 5)
     expect(echoing).to_contain_text("data: 5", timeout=DEADLINE_MS)
     expect(cell(shown, 5).get_by_role("status")).to_contain_text("all that the chapter shows", timeout=DEADLINE_MS)
-    expect(bar).to_have_text(["cell 4Stop"])
+    expect(bar).to_have_text(["ros2 topic pubStop"])
     assert "publishing" not in echoing.inner_text()
     assert "---" not in publishing.inner_text()
     assert "does not appear to be published" not in echoing.inner_text()

@@ -63,7 +63,7 @@
     add(starter.querySelector("p"), "exercise.js", "Edit and check here", "Edit and check the starter here", (page, button) => {
       button.remove();
       page.open(starter).open();
-    });
+    }).className = "button";
   }
 
   function hasDraft() {
