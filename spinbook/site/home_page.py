@@ -111,7 +111,7 @@ def chapter_opening(chapter: Chapter, ran: ExecutedNotebook) -> HomePicture | No
     moving = [drawn for drawn in _pictures(chapter, ran) if still_of(drawn[1])]
     shown = [_shown(chapter, *drawn, "From this chapter, as it was recorded") for drawn in moving]
     narrow = [picture for picture in shown if picture.about.get("width", 0) <= _WIDEST]
-    return (narrow or shown or [None])[-1]
+    return next(reversed(narrow or shown), None)
 
 
 def _moving_curves(words: str) -> int:

@@ -84,7 +84,7 @@ def _bare(file: Path, code: bytes) -> bytes:
     if file.parent.name != "_static":
         return code
     code = _COMMENTS.sub(b"", code)
-    return re.sub(rb"([{;,:])\s+", rb"\1", code) if file.suffix == ".css" else code
+    return re.sub(rb"\s*([{};,>])\s*|(?<=:)\s+", rb"\1", code) if file.suffix == ".css" else code
 
 
 def _for_offline(published: Mapping[Path, bytes]) -> bytes:

@@ -29,7 +29,7 @@ class KeepTogether(SphinxTransform):
 
 def _with_punctuation(literal: nodes.literal) -> None:
     parent, at = literal.parent, literal.parent.index(literal)
-    before, after = (parent[at + step] if 0 <= at + step < len(parent) else None for step in (-1, 1))
+    before, after = (parent[place] if 0 <= place < len(parent) else nodes.Text("") for place in (at - 1, at + 1))
     opening = _BEFORE.search(before) if isinstance(before, nodes.Text) else None
     closing = _AFTER.search(after) if isinstance(after, nodes.Text) else None
     if opening is None and closing is None:

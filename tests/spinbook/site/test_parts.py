@@ -43,3 +43,13 @@ def test_a_part_that_begins_within_a_section_repeats_its_heading() -> None:
         '<h2 class="part-within">Long, continued</h2>',
         "",
     ]
+
+
+def test_a_short_section_joins_a_neighbour() -> None:
+    chapter = "Title\n=====\n\n" + "".join(f"{name}\n-----\n\nWords.\n\n" for name in ("First", "Small", "Third"))
+    document = publish_doctree(chapter, settings_overrides={"doctitle_xform": False})
+
+    divide(document, {"first": 15, "small": 6, "third": 20})
+
+    openings = [raw.astext() for raw in document.findall(nodes.raw) if 'class="part-place"' in raw.astext()]
+    assert [opening.partition("about ")[2].partition("<")[0] for opening in openings] == ["21 minutes", "20 minutes"]
