@@ -51,11 +51,16 @@ def test_stands_still_without_a_goal(no_goal: Run) -> None:
 )
 def test_turns_the_shorter_way(short_way: Run) -> None:
     """It turns the shorter way, even if that crosses 180 degrees."""
-    headings = [theta for at, (theta,) in short_way.trajectory(POSE, "theta") if at < CARRIED]
-    turned = sum(abs(math.remainder(b - a, math.tau)) for a, b in itertools.pairwise(headings))
+    headings = [(at, theta) for at, (theta,) in short_way.trajectory(POSE, "theta") if at < CARRIED]
+    turns = [abs(math.remainder(b - a, math.tau)) for (_, a), (_, b) in itertools.pairwise(headings)]
+    turned = sum(turns)
     if not 0.4 <= turned <= math.pi:
+        far = (
+            at for (at, _), so_far in zip(headings[1:], itertools.accumulate(turns), strict=True) if so_far > math.pi
+        )
+        when = next((round((100 + at) * 1_000_000_000) for at in far), None)
         text = f"the goal is 0.83 rad to the left, but the turtle turned by {turned:.2f} rad."
-        short_way.wrong_at(None, text, "", "at most half a turn", f"{turned:.2f} rad")
+        short_way.wrong_at(when, text, "", "at most half a turn", f"{turned:.2f} rad")
 
 
 @check(
@@ -93,7 +98,7 @@ def test_does_not_go_past_the_goal(ahead: Run) -> None:
 
 @check(
     points=4,
-    hint="Wait for the next goal when one is reached.",
+    hint="Does your node do the same for the second goal as for the first?",
     todo="After the first goal, which attributes still have a value from it? A flag such as self.done must "
     "become false again in on_goal, or the second goal is never driven to. Simplest is one attribute: "
     "self.goal, which on_goal sets and which becomes None at the goal. Do not end the program, destroy "
@@ -120,8 +125,9 @@ def test_reaches_the_next_goal(next_goal: Run) -> None:
 def test_takes_a_new_goal_on_its_way(new_goal: Run) -> None:
     """A new goal replaces the one to which the turtle is on its way, at once."""
     must_come_near(new_goal, 3.0, 3.0, start=2.0)
-    for at, point in new_goal.trajectory(POSE, "x", "y"):
-        if at > 2.0 and (distance := math.dist(point, (10.0, 5.5))) < 3.0:
+    ways = [(at, math.dist(point, (10.0, 5.5))) for at, point in new_goal.trajectory(POSE, "x", "y") if at > 2.0]
+    for at, distance in ways:
+        if distance < ways[0][1] / 2:
             text = f"there is another goal since 2 s, but the turtle drove on to the old one, up to {distance:.2f} m."
             new_goal.wrong_at(round((100 + at) * 1_000_000_000), text, "", "the new goal", "the old one")
 

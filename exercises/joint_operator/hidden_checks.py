@@ -22,6 +22,7 @@ def must_ask_to_cancel(run: Run, goal: Goal) -> None:
     """Fail unless the node asks to cancel this goal once, 5 s after it was accepted."""
     if len(goal.cancels) != 1:
         text = f"expected one request to cancel the goal that takes too long, got {len(goal.cancels)}."
+        text += " Nothing keeps your node from asking again." if goal.cancels else ""
         run.wrong_at(goal.at, text, "", "one request", len(goal.cancels))
     after = (goal.cancels[0].at - (goal.answered or goal.at)) / 1_000_000_000
     if not 5.0 <= after <= 5.25:

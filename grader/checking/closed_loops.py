@@ -201,18 +201,20 @@ def _beyond(
             run.wrong_at(_ns(at), f"it goes {got} beyond {words}; {expected} is allowed.", "", expected, got)
 
 
-def _of_way(way: Way, goal: tuple[float, ...]) -> str | Cause:
+def _of_way(way: Way, goal: tuple[float, ...]) -> Cause:
     """Return what is systematically wrong with a path that does not lead to the goal."""
     begin, end = way[0][1], way[-1][1]
     length = math.dist(begin, goal)
     if all(math.dist(point, begin) < 1e-6 for _, point in way):
-        return "It never moved."
+        return Cause("It never moved.", *hints("never_moved"))
     if math.dist(end, goal) > length and min(math.dist(point, goal) for _, point in way) > 0.99 * length:
         return Cause("It only moves away from there, as with a wrong sign.", *_SIGN)
     last = [point for at, point in way if at >= way[-1][0] - 1.0]
     if len(last) > 1 and all(math.dist(point, end) < 1e-6 for point in last):
-        return f"It stopped {math.dist(end, goal):.3g} away."
-    return ""
+        nearly = math.dist(end, goal) < length / 4
+        steps = hints("stopped_before") if nearly else hints("stopped_elsewhere")
+        return Cause(f"It stopped {math.dist(end, goal):.3g} away.", *steps)
+    return UNKNOWN
 
 
 def _words(place: Place) -> str:

@@ -85,13 +85,13 @@ def topics(run: RecordedRun, kind: Kind) -> list[str]:
 
 
 def must_be_as_declared(run: RecordedRun) -> None:
-    """Check that the program has the nodes and the interface of exercise.toml, with its QoS, and nothing else.
+    """Check that the program has the nodes and the interface of exercise.toml, its QoS and depths, and nothing else.
 
     Example: `run.must_be_as_declared()`
     """
     must_have_interface(run, only=True)
     must_have_nodes(run)
-    must_have_qos(run)
+    must_have_qos(run, depth=True)
 
 
 def must_have_interface(run: RecordedRun, *names: str, only: bool = False) -> None:

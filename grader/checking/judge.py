@@ -68,8 +68,8 @@ def judge_when_collected(
         (one.namespace, *one.remappings.values()) for run in runs.values() if run for one in run.recording.programs
     }
     topics += [f"{space}{name}" for space, *_ in starts for name in topics] + [name for _, *to in starts for name in to]
-    node = f"/{exercise.node_name}"
-    return tuple(with_spelling(verdict, topics, node) for verdict in checks.verdicts.values())
+    nodes = {f"/{exercise.node_name}", *(f"/{program.node}" for program in exercise.programs), *exercise.nodes}
+    return tuple(with_spelling(verdict, topics, nodes) for verdict in checks.verdicts.values())
 
 
 def load_pytest() -> None:
@@ -161,29 +161,37 @@ TOPIC = re.compile(r"(?<![\w/])/\w[\w/]*")
 ALIKE = 0.8
 
 
-def with_spelling(verdict: Verdict, topics: Collection[str], node: str) -> Verdict:
+def with_spelling(verdict: Verdict, topics: Collection[str], nodes: Collection[str]) -> Verdict:
     """Add to a finding about topics the name of the exercise's `topics` that was probably meant.
 
-    The name of its `node` may be similar to a topic's, and is not a misspelling.
+    The names of its `nodes` may be similar to a topic's, and are no misspellings.
     """
     finding = verdict.finding
     if finding is None or finding.message is not None:
         return verdict
-    return replace(verdict, finding=_suggest(finding, topics, node))
+    return replace(verdict, finding=_suggest(finding, topics, nodes))
 
 
-def _suggest(finding: Finding, topics: Collection[str], node: str) -> Finding:
+def _suggest(finding: Finding, topics: Collection[str], nodes: Collection[str]) -> Finding:
     for name in dict.fromkeys(TOPIC.findall(finding.text)):
-        if name not in (*topics, node) and (advice := _meant(name, topics)):
+        if name not in (*topics, *nodes) and (advice := _meant(name, topics)):
             return replace(finding, text=f"{finding.text} {advice}")
     return finding
+
+
+def _likeness(name: str, other: str) -> float:
+    """Return how similar two names are; of two in one namespace, only what follows it counts."""
+    (space, _, end), (other_space, _, other_end) = name.rpartition("/"), other.rpartition("/")
+    pair = (end, other_end) if space == other_space else (name, other)
+    return difflib.SequenceMatcher(None, *pair).ratio()
 
 
 def _meant(name: str, topics: Collection[str]) -> str:
     """Return what a name that the task does not have probably means."""
     if name.endswith("/transition_event"):
         return "A lifecycle node has this topic. The task asks for a plain one: derive it from rclpy.node.Node."
-    if similar := difflib.get_close_matches(name, topics, n=1, cutoff=ALIKE):
-        return f"Is {name} a misspelling of {similar[0]}?"
+    similar = max(topics, key=lambda topic: _likeness(name, topic), default="")
+    if similar and _likeness(name, similar) >= ALIKE:
+        return f"Is {name} a misspelling of {similar}?"
     same_end = [topic for topic in topics if topic.rpartition("/")[2] == name.rpartition("/")[2]]
     return f"{name} is not {same_end[0]}: the whole name counts." if same_end else ""

@@ -14,6 +14,7 @@ from grader.checking.partial import each
 from grader.checking.patterns import COMPUTER_CLOCK, shift
 from grader.checking.recorded_run import RecordedRun, seconds
 from grader.recording.recording import Endpoint, ReceivedMessage
+from grader.scenario.scenario import RATE
 from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import field_of
 
@@ -249,6 +250,8 @@ def _of_rate(ratio: float, hz: float, rate: float) -> Cause:
     if abs(rate * hz - 1) < 0.02 * hz * rate and hz != 1:
         text = f"It publishes every {hz:g} s: a timer takes the period in seconds, not the rate."
         return Cause(text, *hints("rate_as_period"))
+    if abs(rate / RATE - 1) < 0.02:
+        return Cause("", *hints("each_tick"))
     return UNKNOWN
 
 
@@ -272,7 +275,10 @@ def _of_stamps(stamps: Sequence[int], messages: Sequence[ReceivedMessage]) -> Ca
     if len(stamps) > 2 and len(set(stamps)) == 1:
         return Cause("Every stamp is the same.", *_STAMP)
     text = _common_to_stamps([divmod(stamp, SECOND) for stamp in stamps], [divmod(m.at, SECOND) for m in messages])
-    return Cause(text, *_STAMP) if text and len(stamps) > 2 else UNKNOWN
+    if text and len(stamps) > 2:
+        return Cause(text, *_STAMP)
+    text = "Only the first stamp is 0: the node's clock had not started when it was published."
+    return Cause(text, *hints("before_the_clock")) if not stamps[0] and all(stamps[1:]) else UNKNOWN
 
 
 def _common_to_stamps(stamps: list[tuple[int, int]], times: list[tuple[int, int]]) -> str:

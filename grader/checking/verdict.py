@@ -105,11 +105,14 @@ class Verdict:
     def earned(self) -> float:
         """Return the points that it gave.
 
-        A partial check gives twice what is right above one half: all points for all of it, none for half of it.
+        A partial check gives twice what is right above one half: all points for all of it, none for half of it. If it
+        fails, rounding never gives it all of them.
         """
         if self.status == "passed":
             return self.points
-        return round(self.points * max(2 * self.share - 1, 0.0), 1) if self.partial else 0.0
+        if not self.partial:
+            return 0.0
+        return round(max(min(self.points * (2 * self.share - 1), self.points - 0.1), 0.0), 1)
 
     @property
     def blocks(self) -> bool:

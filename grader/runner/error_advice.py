@@ -58,6 +58,16 @@ _BY_TEXT = (
         r"bad argument type for built-in operation",
         "A text field of a message takes a str only. The text of a parameter is get_parameter(…).value.",
     ),
+    (
+        r"has no attribute '_TYPE_SUPPORT'",
+        "The class of the messages comes before the name: create_publisher(String, '/name', 10), ActionClient(self, "
+        "Type, '/name').",
+    ),
+    (r"callback should be either be callable", "The callback takes the message: def on_message(self, message)."),
+    (
+        r"_Result' object has no attribute 'status'",
+        "What get_result_async() brings has two fields: status, and result, which is the message.",
+    ),
     (r"_FeedbackMessage' object has no attribute '(\w+)'", r"The feedback is a message inside: message.feedback.\1."),
     (
         r"'Future' object has no attribute",
@@ -93,9 +103,11 @@ def advice_on(last: LastError, sources: Mapping[str, str]) -> str:
         advice_on_node_attribute,
         _before_init,
         _of_a_callback,
+        _of_a_field,
         _of_an_attribute,
         _by_text,
         _without_text,
+        _of_its_own,
     )
     return next((advice for adviser in advisers if (advice := adviser(last, sources))), "")
 
@@ -129,7 +141,7 @@ def _of_a_callback(last: LastError, sources: Mapping[str, str]) -> str:
     """Explain an error that rclpy raises far from the line which caused it."""
     error, block = last.error, last.traceback
     if last.raised_there:
-        return _OWN_ERROR if "await_or_execute(srv.callback" in block else ""
+        return ""
     if re.search(r"takes \d+ positional argument|missing \d+ required positional", error):
         return _ARGUMENTS
     if "'NoneType' object is not callable" in error:
@@ -149,7 +161,6 @@ def _of_a_callback(last: LastError, sources: Mapping[str, str]) -> str:
     return ""
 
 
-_OWN_ERROR = "An exception in a callback ends the whole node: say in the response what is wrong, and return it."
 _ARGUMENTS = (
     "The arguments of a callback: self, and then the message for a subscription, nothing for a timer, the request and "
     "the response for a service."
@@ -160,6 +171,19 @@ def _action(sources: Mapping[str, str]) -> str:
     """Return the name of the action's class in the student's files."""
     match = re.search(r"Action(?:Server|Client)\(\s*self,\s*(\w+)", "\n".join(sources.values()))
     return match[1] if match else "Fibonacci"
+
+
+def _of_a_field(last: LastError, sources: Mapping[str, str]) -> str:
+    """Explain fields of a message that are given without their names."""
+    match = re.search(r"TypeError: ((\w+?)(?:_\w+)?)\.__init__\(\) takes 1 positional argument", last.error)
+    if not match or not _imports_message(match[2], sources):
+        return ""
+    return f"A message takes each of its fields by name: {match[1].replace('_', '.')}(field=value)."
+
+
+def _imports_message(name: str, sources: Mapping[str, str]) -> bool:
+    pattern = rf"\.(?:msg|srv|action) import [^\n]*\b{name}\b"
+    return any(re.search(pattern, source) for source in sources.values())
 
 
 def _of_an_attribute(last: LastError, sources: Mapping[str, str]) -> str:
@@ -203,6 +227,13 @@ def _by_text(last: LastError, sources: Mapping[str, str]) -> str:
         if match := re.search(pattern, last.error):
             return match.expand(advice) if match.groups() else advice
     return ""
+
+
+def _of_its_own(last: LastError, sources: Mapping[str, str]) -> str:
+    """Say what else there is than to raise an error in the callback of a service."""
+    if not last.raised_there or "await_or_execute(srv.callback" not in last.traceback:
+        return ""
+    return "An exception in a callback ends the whole node: say in the response what is wrong, and return it."
 
 
 def _without_text(last: LastError, sources: Mapping[str, str]) -> str:

@@ -67,7 +67,9 @@ def of_exit(exit_: ExitStatus, log: str, sources: Mapping[str, str]) -> tuple[st
     if exit_.signal:
         return _of_signal(exit_.signal, log), None
     if exit_.code == 0:
-        return "it came to its end by itself, before it was asked to.", None
+        once = any("spin_once(" in source for source in sources.values())
+        why = " spin_once() returns after one callback; rclpy.spin(node) stays until Ctrl-C." if once else ""
+        return f"it came to its end by itself, before it was asked to.{why}", None
     return f"it gave up with exit code {exit_.code}.", None
 
 

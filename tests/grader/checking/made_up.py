@@ -28,10 +28,10 @@ EXERCISE = Exercise(
 
 #: A node with everything that the exercise asks for.
 ENDS = (
-    Endpoint("/worker", "subscription", "/in", FLOAT, "reliable", "volatile"),
-    Endpoint("/worker", "publisher", "/out", FLOAT, "reliable", "volatile"),
-    Endpoint("/worker", "server", "/add", ADD, "reliable", "volatile"),
-    Endpoint("/worker", "action server", "/count", COUNT, "reliable", "volatile"),
+    Endpoint("/worker", "subscription", "/in", FLOAT, "reliable", "volatile", 10),
+    Endpoint("/worker", "publisher", "/out", FLOAT, "reliable", "volatile", 10),
+    Endpoint("/worker", "server", "/add", ADD, "reliable", "volatile", 10),
+    Endpoint("/worker", "action server", "/count", COUNT, "reliable", "volatile", 10),
 )
 
 EMPTY = Recording("plain", (), (), ("/worker",), ENDS, True, Ending("completed"))

@@ -131,6 +131,8 @@ def test_a_program_must_be_as_exercise_toml_declares_it() -> None:
     assert "There is no node /worker" in says(lambda: run(replace(EMPTY, nodes=("/other",))).must_be_as_declared())
     best_effort = replace(EMPTY, end_points=(*ENDS[:1], replace(ENDS[1], reliability="best_effort"), *ENDS[2:]))
     assert "Expected reliable and volatile" in says(lambda: run(best_effort).must_be_as_declared())
+    short = replace(EMPTY, end_points=(*ENDS[:1], replace(ENDS[1], depth=1), *ENDS[2:]))
+    assert "Expected a depth of 10, got 1" in says(lambda: run(short).must_be_as_declared())
     without = replace(EMPTY, end_points=ENDS[1:])
     assert "does not subscribe to /in" in says(lambda: run(without).must_be_as_declared())
 

@@ -107,6 +107,7 @@ def test_a_gap_is_reported_with_its_beginning() -> None:
             (0.0, 0.0, 0.0),
             "got 0.000000000. Every stamp is 0: your node does not fill it in, or it takes",
         ),
+        ((0.0, 100.1, 100.2), "Only the first stamp is 0"),
         ((1.7e9, 1.7e9 + 1, 1.7e9 + 2), "Every stamp is the computer's time. Take the time from the node's clock"),
         ((99.0, 99.0, 99.0), "Every stamp is the same."),
         ((99.75, 99.85, 99.95), "Every stamp is 0.25 s too early."),

@@ -7,12 +7,12 @@ import pytest
 from grader.checking.judge import with_spelling
 from grader.checking.verdict import Finding, Verdict
 
-TOPICS, NODE = ("/joint_commands", "/joint_velocities"), "/joint_velocity"
+TOPICS, NODES = ("/joint_commands", "/joint_velocities"), ("/joint_velocity", "/joint/velocities")
 
 
 def hinted(text: str) -> str:
     """Return what a student reads instead of this finding."""
-    finding = with_spelling(Verdict("test_a", "a", "failed", 1.0, finding=Finding(text)), TOPICS, NODE).finding
+    finding = with_spelling(Verdict("test_a", "a", "failed", 1.0, finding=Finding(text)), TOPICS, NODES).finding
     assert finding
     return finding.text
 
@@ -22,7 +22,9 @@ def test_a_slip_is_reported() -> None:
     assert hinted(text) == f"{text} Is /joint_velocitys a misspelling of /joint_velocities?"
 
 
-@pytest.mark.parametrize("text", ["Expected /joint_velocity, got /joint_velocity, /log.", "Nothing came on /scan."])
+@pytest.mark.parametrize(
+    "text", ["Expected /joint_velocity, got /joint_velocity, /log.", "Got /joint/velocities.", "Nothing came on /scan."]
+)
 def test_the_exercises_own_names_and_quite_other_ones_are_no_slips(text: str) -> None:
     assert hinted(text) == text
 

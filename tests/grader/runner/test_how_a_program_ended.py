@@ -319,6 +319,9 @@ def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_i
         ("TypeError: bad argument type for built-in operation", "takes a str only"),
         ("AttributeError: 'Service' object has no attribute 'service_is_ready'", "is made by create_client()"),
         ("AttributeError: 'Subscription' object has no attribute 'publish'", "is made by create_publisher()"),
+        ("AttributeError: type object 'str' has no attribute '_TYPE_SUPPORT'", "comes before the name"),
+        ("RuntimeError: Subscription.__init__(): callback should be either be callable with", "takes the message"),
+        ("AttributeError: 'Push_Result' object has no attribute 'status'", "has two fields: status, and result"),
     ],
 )
 def test_advice_on_errors_that_beginners_meet_in_rclpy(error: str, advice: str) -> None:
@@ -349,6 +352,29 @@ def test_the_first_exception_that_a_program_survives_is_said_with_its_type_line_
     assert survived_by(log + raised(8, "KeyError: 'x'"), {"turnstile.py": NODE}) == (
         "Your program raised an exception: ZeroDivisionError: division by zero in line 12: `self.coin += 1`."
     )
+
+
+@pytest.mark.parametrize(
+    ("source", "advice"),
+    [
+        ("from coins.srv import Push\n", "each of its fields by name: Push.Response(field=value)."),
+        ("class Push_Response:\n    pass\n", "say in the response what is wrong"),
+    ],
+)
+def test_a_message_whose_fields_have_no_names_is_explained_and_no_other_class(source: str, advice: str) -> None:
+    error = "TypeError: Push_Response.__init__() takes 1 positional argument but 2 were given"
+
+    text, _ = of_exit(
+        ProcessExit(1, None, None), RAISES.replace("ValueError: no coins", error), {"turnstile.py": source}
+    )
+
+    assert text.endswith(advice + ("" if advice.endswith(".") else ", and return it."))
+
+
+def test_a_program_that_spins_once_learns_what_stays() -> None:
+    text, _ = of_exit(ProcessExit(0, None, None), "", {"turnstile.py": "rclpy.spin_once(node)\n"})
+
+    assert text.endswith("spin_once() returns after one callback; rclpy.spin(node) stays until Ctrl-C.")
 
 
 def test_an_attribute_of_node_that_is_replaced_without_an_error_is_named() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
+from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -14,6 +15,7 @@ from click.testing import CliRunner, Result
 from grader.checking.proofreader import problems_of
 from grader.exercise import load, starter
 from grader.exercise.mistakes import Mistake, mistakes_of
+from grader.exercise.rules import named_by, rules_of
 from grader.grading import Options, grading_of
 from grader.grading.grading import Grading
 from grader.submission import read
@@ -126,7 +128,7 @@ def test_an_exercise_of_each_kind_is_about_its_name_and_short(kind: ExerciseKind
     names = {name for name in re.findall(r'"/([\w/]+)"', text) if name not in OF_ROS}
     assert {name.split("/")[0].removesuffix("_gain").removesuffix("_limit") for name in names} == {"gripper_force"}
     assert len(files) <= 9
-    assert sum(len(text.splitlines()) for text in files.values()) <= 500
+    assert sum(len(text.splitlines()) for text in files.values()) <= 670
 
 
 #: What every node publishes or subscribes to.
@@ -142,6 +144,20 @@ def test_an_exercise_of_each_kind_works_by_any_name(tmp_path: Path) -> None:
         assert mistakes_of(load(folder))
         for file in folder.parents[1].rglob("*.py"):
             compile(file.read_text(encoding="utf-8"), file, "exec")
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+def test_each_rule_of_a_kind_has_a_check_and_two_mistakes_that_break_it(kind: ExerciseKind, course: Path) -> None:
+    exercise = load(course / "exercises" / exercise_of(kind.name))
+    rules = rules_of(exercise.task)
+    assert len(rules) >= 5
+    checks = "".join(file.read_text(encoding="utf-8") for file in exercise.check_files)
+    broken = Counter(
+        rule for mistake in mistakes_of(exercise) for name in mistake.breaks for rule in named_by(name, rules)
+    )
+    for rule in rules:
+        assert re.search(rf'rule=[^\n]*"{rule.id}"', checks), rule
+        assert broken[rule.id] >= 2, rule
 
 
 def test_a_class_never_hides_what_the_program_imports(tmp_path: Path) -> None:

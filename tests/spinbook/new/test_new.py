@@ -96,7 +96,7 @@ def test_its_own_tests_prove_the_exercise(course: Path) -> None:
 def test_a_mistake_is_reported_with_units(course: Path) -> None:
     done = run("spinbook", "grade", "speed_limit", "--mistake", "only_forwards", cwd=course)
     assert done.returncode == 1
-    assert "16 of 20 points" in done.stdout
+    assert "15 of 20 points" in done.stdout
     assert "expected data -1 m/s, got -" in " ".join(done.stdout.split())
 
 
