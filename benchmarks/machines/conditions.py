@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -35,7 +36,10 @@ class Condition:
     def missing(self) -> str | None:
         """Return why it can't be tried here, or `None`."""
         absent = [program for program in self.needs if not shutil.which(program)]
-        return f"no {', '.join(absent)} here" if absent else None
+        if absent:
+            return f"no {', '.join(absent)} here"
+        trial = subprocess.run([*self.prefix, "true"], capture_output=True, text=True, check=False)
+        return f"not possible here: {trial.stderr.strip()}" if trial.returncode else None
 
 
 def limited(name: str, limit: str) -> Condition:
