@@ -178,7 +178,7 @@ def _text(piece: NotebookCell, statement: ast.stmt) -> str:
     return "\n".join(piece.code.split("\n")[first - 1 : statement.end_lineno])
 
 
-def _can_be_used(one: NotebookCell, cell: NotebookCell) -> bool:
+def _can_be_used(one: NotebookCell) -> bool:
     return (
         (one.is_plain or one.magic.name == "part")
         and not python_code.is_empty(one.code)
@@ -196,7 +196,7 @@ def _needed(code: str, cell: NotebookCell, cells: Sequence[NotebookCell]) -> lis
     is_whole = cell.magic.name and python_code.starts(code) and not python_code.missing(code)
     if is_whole or len(cells) > _MOST_CELLS:
         return []
-    plain = [one for one in cells if _can_be_used(one, cell)]
+    plain = [one for one in cells if _can_be_used(one)]
     while True:
         whole = "\n".join([code, *(one.code for one in chosen)])
         more = _definers(python_code.missing(whole), cell, [one for one in plain if one not in chosen])

@@ -81,7 +81,7 @@ def read(given: str, exercise: Exercise) -> Submission:
         return _folder(given, path, exercise)
     if not os.path.lexists(path):
         if not can_be_read(given) and given.count("/") == 1:
-            return _executable(given, exercise)
+            return _executable(given)
         raise NoSubmission(
             f"{given}: there is no such file. Give a .py, .ipynb or .zip file, a folder, or package/executable."
         )
@@ -188,7 +188,7 @@ def _without_program(name: str, digest: str, exercise: Exercise, why: Unreadable
     return replace(nothing, problem=str(why))
 
 
-def _executable(given: str, exercise: Exercise) -> Submission:
+def _executable(given: str) -> Submission:
     found = find(given)
     if isinstance(found, str):
         raise NoSubmission(found)

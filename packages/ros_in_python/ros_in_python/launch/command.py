@@ -41,7 +41,7 @@ def launch(show_args: bool, package_or_file: str, words: tuple[str, ...]) -> Non
     """
     cwd = Path.cwd()
     _source(cwd)
-    file, rest = _find(package_or_file, words, cwd)
+    file, rest = _find(package_or_file, words)
     given = _given(rest)
     if show_args:
         _show(list(arguments_of(read(file).entities)))
@@ -74,7 +74,7 @@ def _source(cwd: Path) -> None:
     executables.add_own_prefix(os.environ)
 
 
-def _find(first: str, words: Sequence[str], cwd: Path) -> tuple[Path, list[str]]:
+def _find(first: str, words: Sequence[str]) -> tuple[Path, list[str]]:
     """Return the launch file and the words after it."""
     if not words or ":=" in words[0]:
         file = Path(first)
