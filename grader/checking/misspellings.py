@@ -69,9 +69,9 @@ def _constants(tree: ast.Module) -> dict[str, str]:
             target, value = node.targets[0], node.value
             names = target.elts if isinstance(target, ast.Tuple) else [target]
             values = value.elts if isinstance(value, ast.Tuple) else [value]
-            for name, given in zip(names, values, strict=False):
-                if isinstance(name, ast.Name) and isinstance(given, ast.Constant) and isinstance(given.value, str):
-                    found[name.id] = given.value
+            for name, item in zip(names, values, strict=False):
+                if isinstance(name, ast.Name) and isinstance(item, ast.Constant) and isinstance(item.value, str):
+                    found[name.id] = item.value
     return found
 
 

@@ -102,8 +102,8 @@ class ProgressDisplay:
         if self._console.is_terminal and not changed:
             return
         grade = entry.grade
-        what = f"{grade.score:g} of {grade.points:g} points" if grade.has_score else "not graded"
-        text = f"{self._done}/{self._total} {entry.student.id}: {changed or what}"
+        score = f"{grade.score:g} of {grade.points:g} points" if grade.has_score else "not graded"
+        text = f"{self._done}/{self._total} {entry.student.id}: {changed or score}"
         if grade.has_score and grade.outcome != "graded" and not changed:
             text += f" ({grade.outcome})"
         self._console.print(Text(printable(text)), soft_wrap=True)

@@ -59,8 +59,8 @@ def decisions(
     for question in collected.questions:
         questions[question.unclear].append(str(question))
     found = [
-        Decision(what.format(counted(len(texts), of)), tuple(texts), remedy)
-        for texts, (what, of, remedy) in ((texts, QUESTION_TEXTS[unclear]) for unclear, texts in questions.items())
+        Decision(sentence.format(counted(len(texts), of)), tuple(texts), remedy)
+        for texts, (sentence, of, remedy) in ((texts, QUESTION_TEXTS[unclear]) for unclear, texts in questions.items())
     ]
     found += [
         Decision(

@@ -21,11 +21,11 @@ def publish(results: Path, entries: Sequence[Entry]) -> Path:
     """Write a read-only `to-students/STUDENT.zip` per entry, and return the folder. Other zips are removed."""
     folder = results / FOLDER
     folder.mkdir(exist_ok=True)
-    wanted = {f"{entry.student.id}.zip": _zip(results, entry) for entry in entries}
+    zips = {f"{entry.student.id}.zip": _zip(results, entry) for entry in entries}
     for file in folder.glob("*.zip"):
-        if file.name not in wanted:
+        if file.name not in zips:
             file.unlink()
-    for name, content in wanted.items():
+    for name, content in zips.items():
         (folder / name).unlink(missing_ok=True)
         (folder / name).write_bytes(content)
         os.chmod(folder / name, 0o444)  # noqa: PTH101

@@ -276,20 +276,20 @@ def packages(top: TomlTable) -> tuple[str, ...]:
 def _pinned(top: TomlTable, text: str) -> str:
     from packaging.requirements import InvalidRequirement, Requirement  # a web page does not have it
 
-    wanted = None
+    package = None
     with contextlib.suppress(InvalidRequirement):
-        wanted = Requirement(text)
-    if wanted is None or wanted.url or wanted.marker or [one.operator for one in wanted.specifier] not in ([], ["=="]):
+        package = Requirement(text)
+    if package is None or package.url or package.marker or [s.operator for s in package.specifier] not in ([], ["=="]):
         fix = 'Write a name on PyPI, such as "scipy" or "scipy==1.16.3".'
         top.fault("packages", f"packages has {text!r}", fix)
     remedy = _FROM_HANDOUT if (top.file.parent / PUBLIC_FILE).exists() else f"Install it: pip install {text}"
     try:
-        version = metadata.version(wanted.name)
+        version = metadata.version(package.name)
     except metadata.PackageNotFoundError:
-        top.fault("packages", f"the package {wanted.name}, which programs may use, is not installed here", remedy)
-    if version not in wanted.specifier:
-        top.fault("packages", f"{wanted.name} is installed in version {version}, not as {text}", remedy)
-    return f"{wanted.name}=={version}"
+        top.fault("packages", f"the package {package.name}, which programs may use, is not installed here", remedy)
+    if version not in package.specifier:
+        top.fault("packages", f"{package.name} is installed in version {version}, not as {text}", remedy)
+    return f"{package.name}=={version}"
 
 
 def line_of(file: Path, kind: str, number: int, key: str) -> int | None:

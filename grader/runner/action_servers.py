@@ -144,16 +144,16 @@ class ScriptedActionServer:
         request = deserialized(asked.cdr, CancelService.Request)
         goal_id = bytes(request.goal_info.goal_id.uuid)
         at = self._ends.at(asked.moment)
-        wanted = [one for one in self._goals if one.accepted and goal_id in (one.id, bytes(16))]
-        running = [one for one in wanted if one.state in ("accepted", "executing")]
+        goals = [one for one in self._goals if one.accepted and goal_id in (one.id, bytes(16))]
+        running = [one for one in goals if one.state in ("accepted", "executing")]
         taken = [one for one in running if one.script.cancel != "refuse"]
         response = CancelService.Response()
         if not taken:
             ended = CancelService.Response.ERROR_GOAL_TERMINATED
             refused, unknown = CancelService.Response.ERROR_REJECTED, CancelService.Response.ERROR_UNKNOWN_GOAL_ID
-            response.return_code = refused if running else ended if wanted else unknown
+            response.return_code = refused if running else ended if goals else unknown
         response.goals_canceling = [_info(one) for one in taken]
-        for one in wanted:
+        for one in goals:
             one.cancels.append(Cancel(at, now, one in taken, int(response.return_code)))
         assert self._servers
         self._servers[1].respond(asked, serialize_message(response))
@@ -235,8 +235,8 @@ class ScriptedActionServer:
         return tuple(self._recorded(one) for one in self._goals)
 
     def _recorded(self, goal: RunningGoal) -> Goal:
-        given = goal.result_sent is not None
-        result = filled(self._kind.Result(), goal.script.result) if given else None
+        has_result = goal.result_sent is not None
+        result = filled(self._kind.Result(), goal.script.result) if has_result else None
         return Goal(
             number=goal.number,
             at=goal.at,
@@ -249,8 +249,8 @@ class ScriptedActionServer:
             states=tuple(goal.states),
             feedback=tuple(goal.feedback),
             cancels=tuple(goal.cancels),
-            status=goal.state if given else "",
-            result=to_fields(result) if given else None,
+            status=goal.state if has_result else "",
+            result=to_fields(result) if has_result else None,
             finished=goal.finished,
             asked_result=goal.asked_result,
             node=goal.asked.node,

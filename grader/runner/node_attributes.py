@@ -45,17 +45,17 @@ def advice_on_node_attribute(last: LastError, sources: Mapping[str, str]) -> str
     if not last.error.startswith(("AttributeError", "TypeError")):
         return ""
     told = f"{last.error}\n{last.text}\n" + "\n".join(last.traceback.splitlines()[-3:])
-    for name, what in {**PUBLIC, **PRIVATE}.items():
+    for name, meaning in {**PUBLIC, **PRIVATE}.items():
         if re.search(rf"\b{name}\b", told) and _is_replaced(name, sources):
-            return f"Every Node already has an attribute `{name}`: {what}. {_CHOOSE.format(name=name.lstrip('_'))}"
+            return f"Every Node already has an attribute `{name}`: {meaning}. {_CHOOSE.format(name=name.lstrip('_'))}"
     return ""
 
 
 def silently_replaced(sources: Mapping[str, str]) -> str:
     """Return which attribute of Node a program replaces without any error, in two sentences; "" if none."""
-    for name, what in PRIVATE.items():
+    for name, meaning in PRIVATE.items():
         if name not in ("_clock", "_logger") and _is_replaced(name, sources):
-            text = f"Your class sets self.{name}, in which rclpy's Node keeps {what}: the node loses them."
+            text = f"Your class sets self.{name}, in which rclpy's Node keeps {meaning}: the node loses them."
             return f"{text} {_CHOOSE.format(name=name.lstrip('_'))}"
     return ""
 

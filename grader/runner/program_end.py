@@ -45,8 +45,8 @@ def _of_signal(signal: int, log: str) -> str:
         action, _, kind = other["expected"].rpartition("_")
         return f"{text} {result_advice(action)}" if kind == "Result" else text
     if value := OTHER_VALUE.search(log):
-        what = re.split(r"(?:action|srv|msg)__", value["name"])[-1].replace("__", " ").replace("_", " ")
-        return f"it put a value of another type into a message ({what}): {_VALUES[value['kind']]}."
+        type_name = re.split(r"(?:action|srv|msg)__", value["name"])[-1].replace("__", " ").replace("_", " ")
+        return f"it put a value of another type into a message ({type_name}): {_VALUES[value['kind']]}."
     return f"it was killed by signal {signal}."
 
 

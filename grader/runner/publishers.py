@@ -49,8 +49,8 @@ class ReferencePublishers:
     def _add(self, message: Message) -> None:
         key = (message.topic, message.publisher)
         if key not in self._ready:
-            given = self._scenario.qos.get(message.topic)
-            offer = hub_qos(given) if given else OFFER
+            profile = self._scenario.qos.get(message.topic)
+            offer = hub_qos(profile) if profile else OFFER
             self._ready[key] = self._node.publisher(message.topic, message.type, offer)
         self._current.setdefault(message.topic, message.publisher)
 

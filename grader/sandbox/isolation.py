@@ -45,18 +45,18 @@ def available() -> dict[Isolation, str | None]:
     return {level: _tried(level) for level in Isolation}
 
 
-def choose(wanted: Isolation | None = None) -> Isolation:
-    """Return the level to use: `wanted`, or the strongest that works here. It is NONE only if that is `wanted`.
+def choose(requested: Isolation | None = None) -> Isolation:
+    """Return the level to use: `requested`, or the strongest that works here. It is NONE only if that is `requested`.
 
     Raises:
-        SandboxUnavailable: if `wanted`, or without it every level, does not work here, or what all need is missing.
+        SandboxUnavailable: if `requested`, or without it every level, does not work here, or what all need is missing.
     """
     _refuse_what_no_level_works_with()
-    if wanted is not None:
-        reason = _reason_against(wanted)
+    if requested is not None:
+        reason = _reason_against(requested)
         if reason is not None:
-            raise SandboxUnavailable(f"The sandbox '{wanted}' does not work on this machine: {reason}.")
-        return wanted
+            raise SandboxUnavailable(f"The sandbox '{requested}' does not work on this machine: {reason}.")
+        return requested
     reasons = []
     for level in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES, Isolation.LANDLOCK):
         reason = _reason_against(level)

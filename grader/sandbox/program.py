@@ -150,7 +150,7 @@ def apply_limits(limits: Limits, *, other_processes: int = 0) -> None:
         its own, on a kernel that counts for each namespace.
     """
     cpu_s = int(limits.cpu_s) + 1
-    wanted = {
+    rlimits = {
         resource.RLIMIT_AS: limits.memory_bytes,
         resource.RLIMIT_NPROC: limits.processes + other_processes,
         resource.RLIMIT_FSIZE: limits.file_bytes,
@@ -159,7 +159,7 @@ def apply_limits(limits: Limits, *, other_processes: int = 0) -> None:
         resource.RLIMIT_MEMLOCK: 8 * _MIB,
         resource.RLIMIT_MSGQUEUE: 0,
     }
-    for which, value in wanted.items():
+    for which, value in rlimits.items():
         hard = resource.getrlimit(which)[1]
         value = value if hard == resource.RLIM_INFINITY else min(value, hard)
         resource.setrlimit(which, (value, value))

@@ -203,13 +203,13 @@ _with_python = ctypes.PyDLL(None, use_errno=True)
 
 def _load(modules: list[str]) -> str | None:
     """Import modules. Return a message if rclpy has loaded another middleware than the grader's."""
-    wanted = os.environ.pop("RMW_IMPLEMENTATION", None)
-    if wanted and choosable():
-        os.environ["RMW_IMPLEMENTATION"] = wanted
+    middleware = os.environ.pop("RMW_IMPLEMENTATION", None)
+    if middleware and choosable():
+        os.environ["RMW_IMPLEMENTATION"] = middleware
     for name in modules:
         _import(name)
-    if wanted:
-        os.environ["RMW_IMPLEMENTATION"] = wanted
+    if middleware:
+        os.environ["RMW_IMPLEMENTATION"] = middleware
     if "rclpy" not in sys.modules:
         return None
     loaded = sys.modules["rclpy"].get_rmw_implementation_identifier()

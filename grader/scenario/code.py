@@ -53,14 +53,14 @@ class AuthorCode:
         return AuthorCode(str(file), self.name, digest_with_modules(file))
 
 
-def code_of(given: Callable[..., Any]) -> AuthorCode:
+def code_of(definition: Callable[..., Any]) -> AuthorCode:
     """Return where a function or a class is defined. Raises `ValueError` for one without a name, such as a lambda."""
-    name = getattr(given, "__qualname__", "")
+    name = getattr(definition, "__qualname__", "")
     if not name.isidentifier():
-        raise ValueError(f"{name or given!r} is not a function or a class at the top level of a file")
-    if given.__module__.startswith("grader."):
-        return AuthorCode(given.__module__, name)
-    file = Path(inspect.getfile(given)).resolve()
+        raise ValueError(f"{name or definition!r} is not a function or a class at the top level of a file")
+    if definition.__module__.startswith("grader."):
+        return AuthorCode(definition.__module__, name)
+    file = Path(inspect.getfile(definition)).resolve()
     return AuthorCode(str(file), name, digest_with_modules(file))
 
 

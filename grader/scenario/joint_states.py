@@ -148,8 +148,8 @@ def restarted(stream: Stream, after: int) -> Stream:
 
 def changed(stream: Stream, numbers: Iterable[int], change: Callable[[Sample], Sample]) -> Stream:
     """Return `stream` with `change` applied to the messages with these `numbers`, counted from 0."""
-    wanted = set(numbers)
-    return tuple(change(sample) if i in wanted else sample for i, sample in enumerate(stream))
+    chosen = set(numbers)
+    return tuple(change(sample) if i in chosen else sample for i, sample in enumerate(stream))
 
 
 def published(stream: Stream, topic: str = "/joint_commands") -> tuple[Message, ...]:

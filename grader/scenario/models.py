@@ -93,10 +93,10 @@ class JointChain:
     def step(self, seconds: float) -> None:
         """Move on."""
         for name, position in self._positions.items():
-            wanted = self._wanted.get(name, 0.0)
+            commanded = self._wanted.get(name, 0.0)
             if name in self._targets:
-                wanted = (self._targets[name] - position) / seconds
-            velocity = min(max(wanted, -self._fastest), self._fastest)
+                commanded = (self._targets[name] - position) / seconds
+            velocity = min(max(commanded, -self._fastest), self._fastest)
             self._positions[name], self._velocities[name] = position + velocity * seconds, velocity
 
     def state(self) -> dict[str, Fields]:

@@ -64,20 +64,20 @@ class Resolver:
 
     def scenario(self) -> Scenario:
         """Return the resolved scenario: see `resolved`."""
-        given = self._scenario
+        original = self._scenario
         self._timing()
         self._within_its_end()
         self._parameters()
         self._see_programs()
         self._see_launch()
         found = replace(
-            given,
-            messages=tuple(self._message(message) for message in given.messages),
-            servers=tuple(self._server(server) for server in given.servers),
-            companions=tuple(self._companion(one) for one in given.companions),
+            original,
+            messages=tuple(self._message(message) for message in original.messages),
+            servers=tuple(self._server(server) for server in original.servers),
+            companions=tuple(self._companion(one) for one in original.companions),
             steps=(),
         )
-        steps = tuple(self._step(step) for step in given.steps)
+        steps = tuple(self._step(step) for step in original.steps)
         self._see_world()
         return replace(found, steps=steps)
 
@@ -179,9 +179,9 @@ class Resolver:
 
     # --- messages and steps
 
-    def _message(self, given: Message) -> Message:
-        message = self._typed(given, given.topic, "msg", self._topics.get(given.topic), "subscribe")
-        fields = self._check(given.line, given.topic, message_class(message.type), given.fields, message.type)
+    def _message(self, original: Message) -> Message:
+        message = self._typed(original, original.topic, "msg", self._topics.get(original.topic), "subscribe")
+        fields = self._check(original.line, original.topic, message_class(message.type), original.fields, message.type)
         return replace(message, fields=fields)
 
     def _step(self, step: Step) -> Step:
@@ -274,57 +274,57 @@ class Resolver:
 
     # --- peers
 
-    def _server(self, given: Server | ActionServer) -> Server | ActionServer:
-        if isinstance(given, Server):
-            return self._service_server(given)
-        if not isinstance(given, ActionServer):
-            self._fault(0, f"servers has {given!r}", "Give Server(…) and ActionServer(…).")
-        return self._action_server(given)
+    def _server(self, server: Server | ActionServer) -> Server | ActionServer:
+        if isinstance(server, Server):
+            return self._service_server(server)
+        if not isinstance(server, ActionServer):
+            self._fault(0, f"servers has {server!r}", "Give Server(…) and ActionServer(…).")
+        return self._action_server(server)
 
-    def _service_server(self, given: Server) -> Server:
-        declared = self._type_of(given.service, self._exercise.clients)
-        self._typed(given, given.service, "srv", declared, "client")
-        type_name = given.type or declared or ""
-        replies = given.replies
+    def _service_server(self, server: Server) -> Server:
+        declared = self._type_of(server.service, self._exercise.clients)
+        self._typed(server, server.service, "srv", declared, "client")
+        type_name = server.type or declared or ""
+        replies = server.replies
         if isinstance(replies, tuple):
-            replies = tuple(self._reply(given, one, type_name) for one in replies)
-        return _with(given, type=type_name, replies=replies)
+            replies = tuple(self._reply(server, one, type_name) for one in replies)
+        return _with(server, type=type_name, replies=replies)
 
-    def _reply(self, given: Server, one: Reply, type_name: str) -> Reply:
+    def _reply(self, server: Server, one: Reply, type_name: str) -> Reply:
         if not isinstance(one, Reply):
-            self._fault(given.line, f"replies has {one!r}", "Give reply(…) or no_reply().")
+            self._fault(server.line, f"replies has {one!r}", "Give reply(…) or no_reply().")
         if one.fields is None:
             return one
         kind = message_class(type_name).Response
-        fields = self._check(given.line, given.service, kind, one.fields, f"{type_name}_Response")
+        fields = self._check(server.line, server.service, kind, one.fields, f"{type_name}_Response")
         return replace(one, fields=fields)
 
-    def _action_server(self, given: ActionServer) -> ActionServer:
-        declared = self._type_of(given.action, self._exercise.action_clients)
-        self._typed(given, given.action, "action", declared, "action_client")
-        type_name = given.type or declared or ""
-        if not given.goals:
-            self._fault(given.line, f"{given.action}: no script for a goal", "Give goals=succeeds(…), for example.")
-        scripts = tuple(self._script(given, script, type_name) for script in given.scripts)
-        return _with(given, type=type_name, goals=scripts)
+    def _action_server(self, server: ActionServer) -> ActionServer:
+        declared = self._type_of(server.action, self._exercise.action_clients)
+        self._typed(server, server.action, "action", declared, "action_client")
+        type_name = server.type or declared or ""
+        if not server.goals:
+            self._fault(server.line, f"{server.action}: no script for a goal", "Give goals=succeeds(…), for example.")
+        scripts = tuple(self._script(server, script, type_name) for script in server.scripts)
+        return _with(server, type=type_name, goals=scripts)
 
-    def _script(self, given: ActionServer, script: GoalScript, type_name: str) -> GoalScript:
+    def _script(self, server: ActionServer, script: GoalScript, type_name: str) -> GoalScript:
         kind = message_class(type_name)
-        result = self._check(given.line, given.action, kind.Result, script.result, f"{type_name}_Result")
+        result = self._check(server.line, server.action, kind.Result, script.result, f"{type_name}_Result")
         feedback = tuple(
-            (after, self._check(given.line, given.action, kind.Feedback, fields, f"{type_name}_Feedback"))
+            (after, self._check(server.line, server.action, kind.Feedback, fields, f"{type_name}_Feedback"))
             for after, fields in script.feedback
         )
         return replace(script, result=result, feedback=feedback)
 
-    def _companion(self, given: Companion) -> Companion:
-        file = self._exercise.folder / given.file
+    def _companion(self, companion: Companion) -> Companion:
+        file = self._exercise.folder / companion.file
         if not file.is_file():
-            self._fault(0, f"there is no file {given.file} in the exercise's folder", "Write the companion there.")
+            self._fault(0, f"there is no file {companion.file} in the exercise's folder", "Write the companion there.")
         own, *modules = with_modules([file])
         see_that_students_have([own, *modules])
         texts = {module.name: module.read_text(encoding="utf-8") for module in modules}
-        return replace(given, text=own.read_text(encoding="utf-8"), modules=texts)
+        return replace(companion, text=own.read_text(encoding="utf-8"), modules=texts)
 
     def _world_fault(self, world: World, error: Exception) -> NoReturn:
         subject, fix = f"the world {world.code.name} fails", "It needs reads, publishes, hear(), step() and state()."
@@ -361,9 +361,9 @@ _EXAMPLES = {
 Peer = TypeVar("Peer", Server, ActionServer)
 
 
-def _with(given: Peer, **others: Any) -> Peer:
+def _with(peer: Peer, **others: Any) -> Peer:
     """Return the same peer with other values; `replace` would lose its line."""
-    names = [field.name for field in dataclasses.fields(given) if field.name != "line"]
-    found = type(given)(**{name: getattr(given, name) for name in names} | others)
-    object.__setattr__(found, "line", given.line)
+    names = [field.name for field in dataclasses.fields(peer) if field.name != "line"]
+    found = type(peer)(**{name: getattr(peer, name) for name in names} | others)
+    object.__setattr__(found, "line", peer.line)
     return found

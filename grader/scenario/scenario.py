@@ -262,9 +262,9 @@ class Scenario:
 
     def __post_init__(self) -> None:
         """Separate messages from steps, and sort both."""
-        given = tuple(_flat(self.messages))
-        steps = (*self.steps, *(one for one in given if not isinstance(one, Message)))
-        messages = tuple(one for one in given if isinstance(one, Message))
+        entries = tuple(_flat(self.messages))
+        steps = (*self.steps, *(one for one in entries if not isinstance(one, Message)))
+        messages = tuple(one for one in entries if isinstance(one, Message))
         object.__setattr__(self, "messages", tuple(sorted(messages, key=_at)))
         object.__setattr__(self, "steps", tuple(sorted(steps, key=_at)))
         for name in ("arguments", "servers", "programs", "companions"):

@@ -65,18 +65,18 @@ class Server:
         back: float | None = None,
     ) -> None:
         """Accept a single reply for a tuple, and a function for its `AuthorCode`."""
-        given: dict[str, Any] = {"service": service, "type": type, "replies": _replies(replies)}
-        given |= {"appears": appears, "gone": gone, "back": back, "line": line_of_the_author()}
-        for name, value in given.items():
+        fields: dict[str, Any] = {"service": service, "type": type, "replies": _replies(replies)}
+        fields |= {"appears": appears, "gone": gone, "back": back, "line": line_of_the_author()}
+        for name, value in fields.items():
             object.__setattr__(self, name, value)
 
 
-def _replies(given: Any) -> tuple[Reply, ...] | AuthorCode:
-    if isinstance(given, Reply):
-        return (given,)
-    if isinstance(given, AuthorCode):
-        return given
-    return code_of(given) if callable(given) else tuple(given)
+def _replies(replies: Any) -> tuple[Reply, ...] | AuthorCode:
+    if isinstance(replies, Reply):
+        return (replies,)
+    if isinstance(replies, AuthorCode):
+        return replies
+    return code_of(replies) if callable(replies) else tuple(replies)
 
 
 @dataclass(frozen=True)
@@ -105,8 +105,8 @@ def succeeds(
     answers_after: float = 0.0,
 ) -> GoalScript:
     """Accept the goal, give feedback at these seconds, and succeed `after` s."""
-    given = tuple(sorted((feedback or {}).items(), key=lambda entry: entry[0]))
-    return GoalScript(True, answers_after, given, "succeeded", after, result or {}, cancel, cancel_takes)
+    timed_feedback = tuple(sorted((feedback or {}).items(), key=lambda entry: entry[0]))
+    return GoalScript(True, answers_after, timed_feedback, "succeeded", after, result or {}, cancel, cancel_takes)
 
 
 def _ending(end: End, script: Callable[_Given, GoalScript], doc: str) -> Callable[_Given, GoalScript]:

@@ -47,8 +47,8 @@ class World:
         """Take the class itself, and the arguments for its constructor."""
         if with_files := getattr(model, "with_files", None):
             arguments = with_files(arguments, folder_of_the_author())
-        given = {"code": model if isinstance(model, AuthorCode) else code_of(model), "arguments": arguments}
-        for name, value in {**given, "period": period, "line": line_of_the_author()}.items():
+        fields = {"code": model if isinstance(model, AuthorCode) else code_of(model), "arguments": arguments}
+        for name, value in {**fields, "period": period, "line": line_of_the_author()}.items():
             object.__setattr__(self, name, value)
 
     def begin(self) -> Model:

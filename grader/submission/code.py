@@ -93,8 +93,8 @@ def code_of(name: str, content: bytes, exercise: Exercise) -> Code:
         return code_of_python(content, exercise)
     if kind == "launch file" and exercise.nodes:
         return _launched({launch_file_name(name, content, exercise): content}, exercise, text_of(content))
-    what = NOT_UNPACKED if content.startswith(OTHER_ARCHIVES) else NEITHER
-    raise Unreadable(f"Your file is {what}. Hand in a .py, .ipynb or .zip file.")
+    reason = NOT_UNPACKED if content.startswith(OTHER_ARCHIVES) else NEITHER
+    raise Unreadable(f"Your file is {reason}. Hand in a .py, .ipynb or .zip file.")
 
 
 def code_of_python(content: bytes, exercise: Exercise) -> Code:

@@ -149,10 +149,8 @@ def _is_called(path: str, file: str) -> bool:
 def _by_executable(reading: ReadState, options: Sequence[FileOption], target: ProgramFile) -> list[FileOption]:
     """Return the programs that are installed under the exercise's name or launched as its node."""
     stem = target.file.removesuffix(".py")
-    wanted = {stem, target.node} | {
-        one.executable for one in launched(reading.files) if one.name in (stem, target.node)
-    }
-    entries = [entry for entry in reading.entries if entry.name.removesuffix(".py") in wanted]
+    names = {stem, target.node} | {one.executable for one in launched(reading.files) if one.name in (stem, target.node)}
+    entries = [entry for entry in reading.entries if entry.name.removesuffix(".py") in names]
     return [one for one in options if any(entry.file == one.file for entry in entries)]
 
 
@@ -241,11 +239,9 @@ def _nothing(reading: ReadState, target: ProgramFile) -> str:
     ):
         return "It is a document of an office program. Hand in your code as a .py file or a notebook."
     if lost := [*reading.contents.links, *reading.contents.damaged]:
-        what = (
-            "is a symbolic link" if reading.contents.links else "can't be read (is it damaged, or has it a password?)"
-        )
+        why = "is a symbolic link" if reading.contents.links else "can't be read (is it damaged, or has it a password?)"
         return (
-            f"{lost[0]} in it {what}, and there is no other code for {reading.exercise.name}. Hand in the file itself."
+            f"{lost[0]} in it {why}, and there is no other code for {reading.exercise.name}. Hand in the file itself."
         )
     if reading.exercise.programs:
         there = ", ".join(packages.programs(reading.files)[:5]) or "none"

@@ -108,10 +108,10 @@ def _unknown_package(file: str, files: Mapping[str, bytes]) -> str:
 
 
 def _fits(package: str, files: Mapping[str, bytes], code: bytes) -> bool:
-    wanted = {
+    modules = {
         m.split(".")[1] for m in python_code.imported(code.decode(errors="replace")) if m.startswith(f"{package}.")
     }
-    return any(f"{name}.py" in files for name in wanted)
+    return any(f"{name}.py" in files for name in modules)
 
 
 def _other_packages(chosen: Mapping[str, bytes], files: Mapping[str, bytes], root: str) -> Iterator[tuple[str, bytes]]:

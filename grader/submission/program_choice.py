@@ -194,7 +194,7 @@ def _consists_of(program: AssembledProgram) -> str:
 
 
 def _no_cell(notebook: Notebook, target: ProgramFile) -> str:
-    what = f"class {target.class_name}" if target.class_name else f"node {target.node}"
+    code = f"class {target.class_name}" if target.class_name else f"node {target.node}"
     stem = target.file.removesuffix(".py")
     conflict = next((one for one in notebook.cells if re.search(r"^<{7}( .*)?$", one.source, re.MULTILINE)), None)
     if conflict:
@@ -202,8 +202,8 @@ def _no_cell(notebook: Notebook, target: ProgramFile) -> str:
             f"{conflict.title} holds the marks of a merge conflict from git. Choose one version, and delete the marks."
         )
     if is_program(notebook.text, target):
-        return f"The {what} is in a text cell of the notebook, which is not run. Make it a code cell, and run %check."
+        return f"The {code} is in a text cell of the notebook, which is not run. Make it a code cell, and run %check."
     return (
-        f"None of the notebook's {len(notebook.cells)} code cells is the exercise's. Write the {what} in the cell that "
+        f"None of the notebook's {len(notebook.cells)} code cells is the exercise's. Write the {code} in the cell that "
         f"the chapter gives for it; it begins with %%node {stem}."
     )

@@ -83,15 +83,15 @@ def _of_error(error: SyntaxError, source: str) -> tuple[str, ...]:
     text = lines[line - 1] if line <= len(lines) else ""
     if running() < (3, 12) and ("f-string" in error.msg or re.search(r"""\b[rR]?[fF][rR]?['"].*\{""", text)):
         return (_needs(line, "an f-string with quotes, backslashes or comments inside its braces", (3, 12)),)
-    for version, pattern, what in _SYNTAX:
+    for version, pattern, feature in _SYNTAX:
         if version > running() and pattern.search(text):
-            return (_needs(line, what, version),)
+            return (_needs(line, feature, version),)
     return ()
 
 
-def _needs(line: int, what: str, version: _Version) -> str:
+def _needs(line: int, feature: str, version: _Version) -> str:
     return (
-        f"Line {line} has {what}, which only Python {_in_words(version)} and newer can read. The grader runs Python "
+        f"Line {line} has {feature}, which only Python {_in_words(version)} and newer can read. The grader runs Python "
         f"{_in_words(running())}."
     )
 

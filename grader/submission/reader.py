@@ -35,9 +35,9 @@ class Executable:
         return total.hexdigest()
 
 
-def find(given: str) -> Executable | str:
+def find(place: str) -> Executable | str:
     """Return the executable that `package/executable` names, or a sentence that says why there is none."""
-    package, _, name = given.partition("/")
+    package, _, name = place.partition("/")
     prefixes = [Path(prefix) for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
     for prefix in prefixes:
         script = prefix / "lib" / package / name
@@ -45,7 +45,7 @@ def find(given: str) -> Executable | str:
             return _described(prefix, script)
     looked = ", ".join(map(str, prefixes)) or "nowhere: AMENT_PREFIX_PATH is not set"
     return (
-        f"{given}: there is no such file, and no installed package {package} with the executable {name} (looked in "
+        f"{place}: there is no such file, and no installed package {package} with the executable {name} (looked in "
         f"{looked}). Build the package with colcon and source install/setup.sh first."
     )
 
@@ -70,26 +70,26 @@ class NoSubmission(Exception):
     """Raised if there is nothing to grade under a name, because the command was used wrongly."""
 
 
-def read(given: str, exercise: Exercise) -> Submission:
-    """Return the submission that `given` names: a file, a folder, or `package/executable` of an installed package.
+def read(place: str, exercise: Exercise) -> Submission:
+    """Return the submission that `place` names: a file, a folder, or `package/executable` of an installed package.
 
     A file is Python, a notebook, or an archive; one that can't be read is a submission with a `problem`. Raises
     `NoSubmission` if there is none.
     """
-    path = Path(given)
+    path = Path(place)
     if path.is_dir() and not path.is_symlink():
-        return _folder(given, path, exercise)
+        return _folder(place, path, exercise)
     if not os.path.lexists(path):
-        if not can_be_read(given) and given.count("/") == 1:
-            return _executable(given)
+        if not can_be_read(place) and place.count("/") == 1:
+            return _executable(place)
         raise NoSubmission(
-            f"{given}: there is no such file. Give a .py, .ipynb or .zip file, a folder, or package/executable."
+            f"{place}: there is no such file. Give a .py, .ipynb or .zip file, a folder, or package/executable."
         )
     try:
-        content = content_of(path, MOST_BYTES_OF[kind_of(given)])
+        content = content_of(path, MOST_BYTES_OF[kind_of(place)])
     except Unreadable as error:
-        return _without_program(given, _digest(str(error).encode()), exercise, error)
-    return of_content(given, content, exercise)
+        return _without_program(place, _digest(str(error).encode()), exercise, error)
+    return of_content(place, content, exercise)
 
 
 def is_one(folder: Path, exercise: Exercise) -> bool:
@@ -157,20 +157,20 @@ def _warning(upload: Upload, exercise: Exercise) -> str:
     return f"Not as it was handed in: {text[:500]}." if text else ""
 
 
-def _folder(given: str, path: Path, exercise: Exercise) -> Submission:
+def _folder(place: str, path: Path, exercise: Exercise) -> Submission:
     """Return the submission in a folder: a package, a workspace, or some files."""
     try:
         contents = folder_contents(path)
     except Unreadable as error:
-        return _without_program(given, _digest(str(error).encode()), exercise, error)
+        return _without_program(place, _digest(str(error).encode()), exercise, error)
     total = hashlib.sha256()
     for name, data in sorted(contents.files.items()):
         total.update(f"{name}\0{len(data)}\0".encode(errors="replace") + data)
     try:
         code = code_of_files(contents, exercise, path.resolve().name)
-        return of_code(given, code, exercise, total.hexdigest())
+        return of_code(place, code, exercise, total.hexdigest())
     except (Unreadable, AmbiguousProgram) as error:
-        return _without_program(given, total.hexdigest(), exercise, error)
+        return _without_program(place, total.hexdigest(), exercise, error)
 
 
 def of_code(name: str, code: Code, exercise: Exercise, digest: str = "") -> Submission:
@@ -188,15 +188,15 @@ def _without_program(name: str, digest: str, exercise: Exercise, why: Unreadable
     return replace(nothing, problem=str(why))
 
 
-def _executable(given: str) -> Submission:
-    found = find(given)
+def _executable(place: str) -> Submission:
+    found = find(place)
     if isinstance(found, str):
         raise NoSubmission(found)
     source = found.script.read_bytes()
     program = ProgramSpec(
         str(found.script), environment={"PYTHONPATH": found.python_path}, readonly=found.folders, preloaded=False
     )
-    return Submission(given, found.digest(), found.script.name, source.decode(errors="replace"), program)
+    return Submission(place, found.digest(), found.script.name, source.decode(errors="replace"), program)
 
 
 def _digest(content: bytes) -> str:

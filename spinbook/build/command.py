@@ -177,8 +177,8 @@ def _report_executed(console: Console, executed: ExecutionResult) -> None:
     name = executed.file.name.removesuffix(".ipynb")
     if executed.node_errors and not executed.failures:
         since = "unchanged since its last run" if executed.cached else f"ran in {executed.seconds:.0f} s"
-        what = f"but something went wrong in its nodes or threads ({counted(len(executed.node_errors), 'report')})"
-        console.print(f"  ✗ {name}: {since}, {what}", markup=False, style="red")
+        trouble = f"but something went wrong in its nodes or threads ({counted(len(executed.node_errors), 'report')})"
+        console.print(f"  ✗ {name}: {since}, {trouble}", markup=False, style="red")
     elif executed.cached:
         console.print(f"  ✓ {name}: unchanged since its last run", markup=False)
     elif not executed.failures:

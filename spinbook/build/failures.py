@@ -43,10 +43,10 @@ def find_failures(chapter: Path, ran: dict[str, Any], ended: dict[str, Any]) -> 
         # Prose does not run: the next code cell was the one that did.
         first = min(ended.get("timed_out", ended.get("died", 0)), len(cells) - 1)
         cell = next((cell for cell in cells[first:] if cell["cell_type"] == "code"), cells[first])
-        what = (
+        event = (
             "the notebook's time limit passed in this cell" if "timed_out" in ended else "the kernel died in this cell"
         )
-        note = f"{what}; it and its nodes were ended, and the cells below did not run."
+        note = f"{event}; it and its nodes were ended, and the cells below did not run."
         failures.append(CellFailure(chapter, _line(cell), note, _printed(cell)))
         if cell["cell_type"] == "code":
             cell["outputs"].append({"output_type": "stream", "name": "stderr", "text": f"{note.capitalize()}\n"})
@@ -63,8 +63,8 @@ def find_warnings(chapter: Path, ran: dict[str, Any]) -> list[CellFailure]:
     warnings = []
     for cell in _code_cells(ran):
         if never := NEVER_APPEARED.search(_printed(cell)):
-            what = f"`until` failed: {never[1]} was not printed within {never[2]} s. Correct it, or raise `seconds`."
-            warnings.append(CellFailure(chapter, _line(cell), what, ""))
+            message = f"`until` failed: {never[1]} was not printed within {never[2]} s. Correct it, or raise `seconds`."
+            warnings.append(CellFailure(chapter, _line(cell), message, ""))
     return warnings
 
 
@@ -76,8 +76,8 @@ def find_node_errors(chapter: Path, ran: dict[str, Any]) -> list[CellFailure]:
     meant = [about["node"] for _, about in reported if about["meant"]]
     for cell in cells:
         if _about(cell).get("expects_error") and not _had_error(cell, meant):
-            what = "this cell says `expect-error`, but nothing went wrong in what it started. Remove the word."
-            errors.append(CellFailure(chapter, _line(cell), what, ""))
+            message = "this cell says `expect-error`, but nothing went wrong in what it started. Remove the word."
+            errors.append(CellFailure(chapter, _line(cell), message, ""))
     return errors
 
 
@@ -143,8 +143,8 @@ def _failed_cells(chapter: Path, cells: list[dict[str, Any]]) -> Iterator[CellFa
         if error and not expected:
             yield _failure(chapter, cell, error)
         elif expected and not error and cell["execution_count"]:
-            what = "this cell says `raises`, but it did not fail."
-            yield CellFailure(chapter, _line(cell), what, in_short(_printed(cell), *_LOG_LINES))
+            message = "this cell says `raises`, but it did not fail."
+            yield CellFailure(chapter, _line(cell), message, in_short(_printed(cell), *_LOG_LINES))
 
 
 def _failure(chapter: Path, cell: dict[str, Any], error: dict[str, Any]) -> CellFailure:
@@ -160,8 +160,8 @@ def _failure(chapter: Path, cell: dict[str, Any], error: dict[str, Any]) -> Cell
     elif inside := _IN_CELL.findall(traceback):
         line += max(next(int(number) for number in inside[0] if number) - above, 1) - 1
     is_ours = error["ename"] == "CellFailed"
-    what = error["evalue"] if is_ours else f"{error['ename']}: {error['evalue']}"
-    return CellFailure(chapter, line, what, in_short(printed, *_LOG_LINES) if printed else "")
+    message = error["evalue"] if is_ours else f"{error['ename']}: {error['evalue']}"
+    return CellFailure(chapter, line, message, in_short(printed, *_LOG_LINES) if printed else "")
 
 
 def _about(cell: dict[str, Any]) -> dict[str, Any]:

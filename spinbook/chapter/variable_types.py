@@ -177,7 +177,7 @@ class ProgramTypes:
 
     def _callbacks(self) -> None:
         """Give the parameters of functions their annotations' types, or those that rclpy calls them with."""
-        given: dict[int, list[list[TypedValue | None]]] = {}
+        types_of: dict[int, list[list[TypedValue | None]]] = {}
         for function in list(self.functions):
             for call in (item for item in function.own_nodes if isinstance(item, ast.Call)):
                 for callback, types in _registered(call, functools.partial(self._type, function=function)):
@@ -186,10 +186,10 @@ class ProgramTypes:
                         callback = callback.args[0]
                     target = self._function_of(callback, function)
                     if target is not None:
-                        given.setdefault(id(target), []).append(types)
+                        types_of.setdefault(id(target), []).append(types)
         for function in self.functions:
             if isinstance(function.node, _FUNCTIONS):
-                self._annotate(function, given.get(id(function), []))
+                self._annotate(function, types_of.get(id(function), []))
 
     def _annotate(self, function: Function, calls: list[list[TypedValue | None]]) -> None:
         assert isinstance(function.node, _FUNCTIONS)

@@ -58,12 +58,12 @@ def secrets(exercise: Exercise, taught: str, others: str = "") -> list[Secret]:
     if exercise.solution_file:
         source = exercise.solution_file.read_text(encoding="utf-8")
         message += starter(source)
-        what = f"a part of the solution of {exercise.name}"
+        title = f"a part of the solution of {exercise.name}"
         place = f"solutions/{exercise.name}/solution.py"
         known = bare(message)
         for lines in _solved(source):
-            found += _pieces(what, place, lines, known)
-            windows = [secret for secret in _windows(what, place, lines) if secret.text not in elsewhere]
+            found += _pieces(title, place, lines, known)
+            windows = [secret for secret in _windows(title, place, lines) if secret.text not in elsewhere]
             found += [replace(secret, is_solution=True) for secret in windows]
     known = bare(message)
     found += [secret for secret in _other_programs(exercise) if secret.text not in known]
@@ -129,15 +129,15 @@ def bare(text: str) -> str:
     return "".join(text.split())
 
 
-def _pieces(what: str, place: str, lines: list[NumberedLine], known: str) -> list[Secret]:
+def _pieces(title: str, place: str, lines: list[NumberedLine], known: str) -> list[Secret]:
     long = [(number, line) for number, line in lines if len(line) >= _ONE_LINE]
-    return [Secret(what, line, f"{place}:{number}") for number, line in long if line not in known]
+    return [Secret(title, line, f"{place}:{number}") for number, line in long if line not in known]
 
 
-def _windows(what: str, place: str, lines: list[NumberedLine]) -> list[Secret]:
+def _windows(title: str, place: str, lines: list[NumberedLine]) -> list[Secret]:
     windows = [lines[i : i + _LINES] for i in range(max(1, len(lines) - _LINES + 1)) if lines]
     texts = [("".join(line for _, line in window), window[0][0]) for window in windows]
-    return [Secret(what, text, f"{place}:{number}") for text, number in texts if len(text) >= _CHARACTERS]
+    return [Secret(title, text, f"{place}:{number}") for text, number in texts if len(text) >= _CHARACTERS]
 
 
 def _solved(source: str) -> Iterator[list[NumberedLine]]:

@@ -111,9 +111,9 @@ def _installed() -> dict[str, bytes]:
     files = {}
     for file in distribution.files or ():
         name = file.as_posix()
-        wanted = name.startswith(kept)
+        is_kept = name.startswith(kept)
         own = name.rpartition("/")[2] not in ("INSTALLER", "REQUESTED", "direct_url.json") and "__pycache__" not in name
-        if wanted and own:
+        if is_kept and own:
             files[name] = Path(str(distribution.locate_file(file))).read_bytes()
     return files
 
@@ -150,8 +150,8 @@ def _packages(course: Course, text: bytes, environment: Path) -> Iterator[tuple[
     compiled = compile_course(course, collected)
     needed = {name for names in dependencies(collected.definitions).values() for name in names}
     for package in shipped.known():
-        wanted = package in shipped.standard() or package in needed or package.encode() in text
-        if wanted and prefixes.key_of(package, environment):
+        is_needed = package in shipped.standard() or package in needed or package.encode() in text
+        if is_needed and prefixes.key_of(package, environment):
             yield package, environment
     if compiled:
         yield from ((package, compiled.prefix) for package in compiled.packages)

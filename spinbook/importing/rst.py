@@ -140,8 +140,8 @@ class _Writer:
         language = node.get("language") or (classes[0] if classes else "")
         code = node.astext().split("\n")
         if kind in {"literalinclude", "mermaid", "math"}:
-            given = [f":{key}: {value or ''}".rstrip() for key, value in options.items()]
-            return [f"```{{{kind}}} {language}".rstrip(), *given, *(code if any(code) else []), "```"]
+            option_lines = [f":{key}: {value or ''}".rstrip() for key, value in options.items()]
+            return [f"```{{{kind}}} {language}".rstrip(), *option_lines, *(code if any(code) else []), "```"]
         file = str(options.get("caption") or options.get("name") or "")
         title = f' title="{file}"' if re.fullmatch(r"[\w./~-]+\.\w+", file) else ""
         mark = "````" if any(line.lstrip().startswith("```") for line in code) else "```"

@@ -218,9 +218,9 @@ def describe(node: str, log: NodeLog, ended: str, *, meant: bool = False) -> Nod
         return None
     first = shortened(causes[0]).rstrip(".") if causes else ""
     more = f" (and {len(causes) - 1} more)" if len(causes) > 1 else ""
-    what = f"{first}{more}. It {ended}" if causes and ended else f"It {ended}" if ended else f"{first}{more}."
+    message = f"{first}{more}. It {ended}" if causes and ended else f"It {ended}" if ended else f"{first}{more}."
     frames = [frame for item in raised[:1] for frame in item.frames]
     places = [(Path(file).name, shown) for file, line in frames if (shown := line_of_cell(file, line))]
     file, line = places[-1] if places else ("", 0)
     output = next((item.quoted for item in raised), "\n".join(log.last))
-    return NodeError(node, what, file, line, output, meant)
+    return NodeError(node, message, file, line, output, meant)

@@ -79,8 +79,8 @@ def _take(read: Notebooks, source: str, file: Path) -> None:
 
 
 def _package(words: Sequence[str]) -> Package:
-    given = dict(pairwise(words))
-    return Package(given.get("--package", "notebook_nodes"), given.get("--workspace", "notebook_ws"))
+    options = dict(pairwise(words))
+    return Package(options.get("--package", "notebook_nodes"), options.get("--workspace", "notebook_ws"))
 
 
 def _take_interface(read: Notebooks, title: str, text: str, file: Path) -> None:

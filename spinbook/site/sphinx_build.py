@@ -140,11 +140,11 @@ def prove_nothing_leaks(course: Course, contents: SiteContents) -> None:
     taught = "\n".join([*contents.taught, authors_code(contents.copies)])
     known, names = secrets_of_all(exercises, taught)
     leaked: dict[Path, str] = {}
-    for file, what in leaks(_published(contents), known + names):
+    for file, secret in leaks(_published(contents), known + names):
         page = file.removesuffix(".frame").partition(".")[0]
-        leaked.setdefault(contents.origins.get(page, Path("build", file)), what)
+        leaked.setdefault(contents.origins.get(page, Path("build", file)), secret)
     if leaked:
-        problems = (Problem(file, None, f"{what} would be published.", _FIX) for file, what in leaked.items())
+        problems = (Problem(file, None, f"{secret} would be published.", _FIX) for file, secret in leaked.items())
         raise SpinbookError(*problems)
 
 

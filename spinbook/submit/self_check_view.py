@@ -68,8 +68,8 @@ def next_step(grade: Grade, exercise: Exercise) -> str:
     if grade.outcome == "undecided":
         return "keep only one of them, run its cell, then this one again."
     node = exercise.file_name.removesuffix(".py")
-    what = "fix the first ✗" if grade.outcome == "graded" else "fix that"
-    return f"{what}, run the cell that begins with %%node {node}, then this one again."
+    step = "fix the first ✗" if grade.outcome == "graded" else "fix that"
+    return f"{step}, run the cell that begins with %%node {node}, then this one again."
 
 
 def as_html(grade: Grade, exercise: Exercise) -> str:

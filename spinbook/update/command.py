@@ -115,7 +115,7 @@ def _lines(text: MergeReport) -> list[str]:
     if text.order_kept:
         lines.append("you and the course moved cells: yours are in your order")
     counted = (("changed", text.taken), ("new", text.added), ("taken out", text.removed))
-    counts = [f"{len(names)} {what}" for what, names in counted if names]
+    counts = [f"{len(names)} {verb}" for verb, names in counted if names]
     return [*lines, f"other cells: {_and(counts)}. Yours are as they were."]
 
 

@@ -139,15 +139,15 @@ def _with_child(node: cst.CSTNode, old: cst.CSTNode, new: cst.CSTNode) -> cst.CS
 
 def _with_imports(lines: list[str], names: list[str]) -> Iterator[str]:
     """Add lines with imports above the first import, in each of several programs."""
-    wanted, in_file = bool(names), any(line.startswith(("import ", "from ")) for line in lines)
-    if wanted and not in_file:
+    missing, in_file = bool(names), any(line.startswith(("import ", "from ")) for line in lines)
+    if missing and not in_file:
         yield from (f"import {name}\n" for name in names)
     for line in lines:
         if line.startswith("# file: "):
-            wanted = bool(names)
-        if wanted and in_file and line.startswith(("import ", "from ")):
+            missing = bool(names)
+        if missing and in_file and line.startswith(("import ", "from ")):
             yield from (f"import {name}\n" for name in names)
-            wanted = False
+            missing = False
         yield line
 
 

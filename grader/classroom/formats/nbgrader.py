@@ -47,30 +47,30 @@ def read(export: Export) -> Callable[[Parts], Interpretation] | None:
     if export.root != SUBMITTED and not own:
         return None
     # A course may use any name for the assignment, as long as there is only one.
-    wanted = next(iter(own or sorted(assignments)), "")
+    assignment = next(iter(own or sorted(assignments)), "")
     if len(assignments) > 1 and not own and all(len(parts) > 2 for parts in export.files):
         raise SubmissionsError(
             f"{SUBMITTED}/ has the assignments {', '.join(sorted(assignments))}, and none is called "
             f"{export.exercise.name}. Rename the folders of the right one, or, if these are not assignments, "
             "say --format folder."
         )
-    times = {student: _time(export, student, wanted) for student in {parts[0] for parts in export.files}}
+    times = {student: _time(export, student, assignment) for student in {parts[0] for parts in export.files}}
 
     def understand(parts: Parts) -> Interpretation:
         if len(parts) < 3:
             return None
-        if parts[1] != wanted:
+        if parts[1] != assignment:
             return f"another assignment, {parts[1]}"
         return UploadedFile((person(parts[0]),), parts[2:], time=times[parts[0]], aside=parts[2:] == (TIMESTAMP,))
 
     return understand
 
 
-def _in_exchange(export: Export, wanted: str, parts: Parts) -> Interpretation:
+def _in_exchange(export: Export, assignment: str, parts: Parts) -> Interpretation:
     match = EXCHANGE.fullmatch(parts[0])
     if not match or len(parts) < 2:
         return None
-    if wanted and match["assignment"].casefold() != wanted.casefold():
+    if assignment and match["assignment"].casefold() != assignment.casefold():
         return f"another assignment, {match['assignment']}"
     time = read_time(match["time"], "nbgrader's exchange", timezone.utc, export.zone)
     aside = parts[1:] == (TIMESTAMP,)

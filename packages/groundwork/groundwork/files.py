@@ -18,8 +18,8 @@ PART = ".part"
 
 def cached(kind: str) -> Path:
     """The folder for one kind of what can be made again: in `SPINBOOK_CACHE`, else in the user's cache folder."""
-    if given := os.environ.get("SPINBOOK_CACHE"):
-        return Path(given) / kind
+    if folder := os.environ.get("SPINBOOK_CACHE"):
+        return Path(folder) / kind
     # A user whom no list of users names, and without HOME, has no home folder: / is HOME in containers.
     home = os.path.expanduser("~").replace("~", "/", 1)  # noqa: PTH111 (Path.home raises where there is none)
     base = os.environ.get("XDG_CACHE_HOME") or Path(home, ".cache")

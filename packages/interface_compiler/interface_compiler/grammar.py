@@ -102,16 +102,16 @@ class _LineReader:
         self._commented, self._at_top = False, True
 
     def _count(self, separators: list[int]) -> None:
-        kind, wanted = self._definition.kind, KINDS[self._definition.kind]
-        if len(separators) == wanted:
+        kind, needed = self._definition.kind, KINDS[self._definition.kind]
+        if len(separators) == needed:
             return
-        self._line = separators[wanted] if len(separators) > wanted else self._definition.line
+        self._line = separators[needed] if len(separators) > needed else self._definition.line
         parts = {"msg": "", "srv": "the request from the response", "action": "goal, result and feedback"}[kind]
-        fix = f"Write {wanted} line{'s' * (wanted > 1)} with --- only, to separate {parts}."
-        if not wanted:
+        fix = f"Write {needed} line{'s' * (needed > 1)} with --- only, to separate {parts}."
+        if not needed:
             fix = "A message has none: remove it. A request and a response belong in a .srv file."
         self._fault(
-            f"a .{kind} file has {wanted} line{'s' * (wanted != 1)} with ---, and this one has {len(separators)}.", fix
+            f"a .{kind} file has {needed} line{'s' * (needed != 1)} with ---, and this one has {len(separators)}.", fix
         )
 
     def _fault(self, found: str, fix: str) -> None:

@@ -77,8 +77,8 @@ def key_of(package: str, prefix: Path) -> str:
 
 def _listed(marker: Path) -> frozenset[str]:
     names = (line.strip().rpartition(".") for line in marker.read_text(encoding="utf-8").splitlines())
-    wanted = ("msg", "srv", "action", "idl")
-    return frozenset(stem for stem, _, ending in names if ending in wanted and stem.split("/")[0] in wanted[:3])
+    endings = ("msg", "srv", "action", "idl")
+    return frozenset(stem for stem, _, ending in names if ending in endings and stem.split("/")[0] in endings[:3])
 
 
 def _markers(prefix: Path, kind: str) -> list[Path]:

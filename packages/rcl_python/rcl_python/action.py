@@ -222,8 +222,8 @@ class ActionServer(_Action[Service, Publisher]):
         return self._find(info) is not None
 
     def _find(self, info: Any) -> ActionGoalHandle | None:
-        wanted = bytes(info.goal_id.uuid)
-        return next((goal for goal in self.goals if goal.identity == wanted), None)
+        identity = bytes(info.goal_id.uuid)
+        return next((goal for goal in self.goals if goal.identity == identity), None)
 
     def accept(self, goal: ActionGoalHandle) -> None:
         """Keep track of a goal. Raises RCLError if it is already known."""

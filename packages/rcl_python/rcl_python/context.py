@@ -75,9 +75,9 @@ class Context(Destroyable):
         self._valid = False
 
 
-def _domain(given: int) -> int:
-    if given != RCL_DEFAULT_DOMAIN_ID:
-        return int(given)
+def _domain(domain: int) -> int:
+    if domain != RCL_DEFAULT_DOMAIN_ID:
+        return int(domain)
     text = os.environ.get("ROS_DOMAIN_ID", "")
     try:
         return int(text) if text else 0

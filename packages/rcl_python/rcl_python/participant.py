@@ -230,12 +230,12 @@ class Participant:
             self.link.send({"op": "node_gone", "key": key})
             self._changed()
 
-    def add_endpoint(self, kind: str, node: NodeInfo, topic: str, type_name: str, given: Profile) -> LocalEndpoint:
+    def add_endpoint(self, kind: str, node: NodeInfo, topic: str, type_name: str, profile: Profile) -> LocalEndpoint:
         """Announce an endpoint, and find its matches."""
         with self.link.lock:
             self.pump()
             others = self.graph.ends(node.domain, OPPOSITE[kind], topic=topic)
-            found = quality.resolved(given, [end.qos for end in others], publishes=kind == PUBLISHER)
+            found = quality.resolved(profile, [end.qos for end in others], publishes=kind == PUBLISHER)
             info = EndpointInfo(self.new_key(), kind, node.key, topic, type_name, found, node.domain)
             mine = self.local[info.gid] = LocalEndpoint(self, info)
             self.graph.endpoints[info.gid] = info

@@ -121,30 +121,30 @@ def action_profile(name: str) -> dict[str, Any]:
     return _ACTION_STATUS.to_dict()
 
 
-def resolved(given: Profile, others: Iterable[Profile], *, publishes: bool) -> Profile:
+def resolved(profile: Profile, others: Iterable[Profile], *, publishes: bool) -> Profile:
     """Return the profile that an endpoint really gets: with defaults, and "best available" chosen by existing ends."""
     others = list(others)
-    found = replace(given, reliability=given.reliability or RELIABLE, durability=given.durability or VOLATILE)
-    if given.history == SYSTEM_DEFAULT:
-        found = replace(found, history=_HISTORY_OF_DEFAULT, depth=given.depth or _DEPTH_OF_DEFAULT)
-    if given.reliability == BEST_AVAILABLE:
+    found = replace(profile, reliability=profile.reliability or RELIABLE, durability=profile.durability or VOLATILE)
+    if profile.history == SYSTEM_DEFAULT:
+        found = replace(found, history=_HISTORY_OF_DEFAULT, depth=profile.depth or _DEPTH_OF_DEFAULT)
+    if profile.reliability == BEST_AVAILABLE:
         strict = publishes or (bool(others) and all(other.reliability == RELIABLE for other in others))
         found = replace(found, reliability=RELIABLE if strict else BEST_EFFORT)
-    if given.durability == BEST_AVAILABLE:
+    if profile.durability == BEST_AVAILABLE:
         strict = publishes or (bool(others) and all(other.durability == TRANSIENT_LOCAL for other in others))
         found = replace(found, durability=TRANSIENT_LOCAL if strict else VOLATILE)
     return _best_times(found, others, publishes=publishes)
 
 
-def _best_times(given: Profile, others: list[Profile], *, publishes: bool) -> Profile:
+def _best_times(profile: Profile, others: list[Profile], *, publishes: bool) -> Profile:
     """Return the longest of the times that publishers offer, or the shortest that subscriptions request."""
     choose = min if publishes else max
-    found = given
-    if given.deadline == RMW_QOS_DEADLINE_BEST_AVAILABLE:
+    found = profile
+    if profile.deadline == RMW_QOS_DEADLINE_BEST_AVAILABLE:
         found = replace(found, deadline=choose((_span(other.deadline) for other in others), default=0))
-    if given.lease == RMW_QOS_DEADLINE_BEST_AVAILABLE:
+    if profile.lease == RMW_QOS_DEADLINE_BEST_AVAILABLE:
         found = replace(found, lease=choose((_span(other.lease) for other in others), default=0))
-    if given.liveliness == LIVELINESS_BEST_AVAILABLE:
+    if profile.liveliness == LIVELINESS_BEST_AVAILABLE:
         manual = any(other.liveliness == MANUAL_BY_TOPIC for other in others)
         found = replace(found, liveliness=MANUAL_BY_TOPIC if publishes and manual else AUTOMATIC)
     return found

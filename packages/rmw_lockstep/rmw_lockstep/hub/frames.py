@@ -278,19 +278,19 @@ def to_welcome(process: int, now: int, epoch: int) -> bytes:
     return frame(b"W", _WELCOME.pack(VERSION, process, now, epoch))
 
 
-def to_node(what: NodeFrame) -> bytes:
+def to_node(node: NodeFrame) -> bytes:
     """Encode a NODE."""
-    return frame(b"N", _ID.pack(what.id) + _text(what.name) + _text(what.namespace))
+    return frame(b"N", _ID.pack(node.id) + _text(node.name) + _text(node.namespace))
 
 
-def to_endpoint(what: EndpointFrame) -> bytes:
+def to_endpoint(endpoint: EndpointFrame) -> bytes:
     """Encode an ENDPOINT."""
-    qos = what.qos
+    qos = endpoint.qos
     policies = _QOS.pack(
         qos.history, qos.depth, qos.reliability, qos.durability, qos.liveliness, qos.deadline, qos.lifespan, qos.lease
     )
-    names = _text(what.name) + _text(what.type)
-    return frame(b"E", _ENDPOINT.pack(what.id, what.kind, what.node) + names + what.hash + policies)
+    names = _text(endpoint.name) + _text(endpoint.type)
+    return frame(b"E", _ENDPOINT.pack(endpoint.id, endpoint.kind, endpoint.node) + names + endpoint.hash + policies)
 
 
 def to_gone(kind: bytes, number: int) -> bytes:

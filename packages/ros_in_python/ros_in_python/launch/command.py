@@ -42,23 +42,23 @@ def launch(show_args: bool, package_or_file: str, words: tuple[str, ...]) -> Non
     cwd = Path.cwd()
     _source(cwd)
     file, rest = _find(package_or_file, words)
-    given = _given(rest)
+    arguments = _given(rest)
     if show_args:
         _show(list(arguments_of(read(file).entities)))
         return
-    raise click.exceptions.Exit(launch_file(file, given, cwd))
+    raise click.exceptions.Exit(launch_file(file, arguments, cwd))
 
 
-def launch_file(file: Path, given: dict[str, str], cwd: Path, parameters: Sequence[Any] = ()) -> int:
+def launch_file(file: Path, arguments: dict[str, str], cwd: Path, parameters: Sequence[Any] = ()) -> int:
     """Run what a file describes, with these `parameters` for every node; return 1 if a program died by itself.
 
     Raises `CommandError`.
     """
     description = read(file)
-    _refuse_unknown(given, list(arguments_of(description.entities)))
+    _refuse_unknown(arguments, list(arguments_of(description.entities)))
     with tempfile.TemporaryDirectory(prefix="launch_params_") as folder:
         plan = LaunchPlan.into(Path(folder), cwd, read)
-        context = Context(given, file=file.absolute(), parameters=list(parameters))
+        context = Context(arguments, file=file.absolute(), parameters=list(parameters))
         return ProcessGroup(plan).run(list(plan.steps(description.entities, context)))
 
 
@@ -108,18 +108,18 @@ def _in_package(package: str, name: str) -> Path:
 
 
 def _given(words: Sequence[str]) -> dict[str, str]:
-    given: dict[str, str] = {}
+    arguments: dict[str, str] = {}
     for word in words:
         name, mark, value = word.partition(":=")
         if not mark or not name:
             raise CommandError(f"malformed launch argument '{word}', expected format '<name>:=<value>'")
-        given[name] = value
-    return given
+        arguments[name] = value
+    return arguments
 
 
-def _refuse_unknown(given: dict[str, str], declared: Sequence[DeclareLaunchArgument]) -> None:
+def _refuse_unknown(arguments: dict[str, str], declared: Sequence[DeclareLaunchArgument]) -> None:
     names = [argument.name for argument in declared]
-    unknown = [name for name in given if name not in names]
+    unknown = [name for name in arguments if name not in names]
     if unknown:
         raise CommandError(f"the launch file has no argument '{unknown[0]}'. It has: {', '.join(names) or 'none'}.")
 

@@ -94,17 +94,17 @@ class LaunchPlan:
         own = [(text_of(old, context), text_of(new, context)) for old, new in node.remappings]
         return words + [word for old, new in (*context.remappings, *own) for word in ("-r", f"{old}:={new}")]
 
-    def _parameter_file(self, given: Any, name: str, namespace: str, context: Context) -> str:
-        if isinstance(given, NodeParameter):
-            given = {given.name: given.value}
-        if isinstance(given, Mapping):
-            values = _nested({text_of(key, context): value for key, value in given.items()}, context)
+    def _parameter_file(self, parameters: Any, name: str, namespace: str, context: Context) -> str:
+        if isinstance(parameters, NodeParameter):
+            parameters = {parameters.name: parameters.value}
+        if isinstance(parameters, Mapping):
+            values = _nested({text_of(key, context): value for key, value in parameters.items()}, context)
             node = f"{namespace or ''}/{name}" if name else "/**"
             return self._written(yaml.safe_dump({node: {"ros__parameters": values}}))
-        path = Path(text_of(given.file if isinstance(given, ParameterFile) else given, context))
+        path = Path(text_of(parameters.file if isinstance(parameters, ParameterFile) else parameters, context))
         if not path.is_file():
             raise CommandError(f"the parameter file {path} does not exist.")
-        if isinstance(given, ParameterFile) and given.allow_substs:
+        if isinstance(parameters, ParameterFile) and parameters.allow_substs:
             return self._written(text_of(markup_text.parse(path.read_text(encoding="utf-8")), context))
         return os.fspath(path)
 
@@ -208,8 +208,8 @@ class LaunchPlan:
         yield from self.steps(group.actions, inner)
 
     def _include(self, action: known.IncludeLaunchDescription, context: Context) -> Iterator[Step]:
-        given = action.launch_arguments
-        for name, value in given.items() if isinstance(given, Mapping) else given or ():
+        arguments = action.launch_arguments
+        for name, value in arguments.items() if isinstance(arguments, Mapping) else arguments or ():
             context.values[text_of(name, context)] = text_of(value, context)
         source = action.launch_description_source
         if isinstance(source, known.LaunchDescription):
@@ -240,8 +240,8 @@ class LaunchPlan:
         except CommandError:
             raise
         except Exception as error:
-            what = type(action).__name__
-            raise CommandError(f"the function of an {what} fails: {_fault(error)}") from None
+            kind = type(action).__name__
+            raise CommandError(f"the function of an {kind} fails: {_fault(error)}") from None
         yield from self.steps(known.as_actions(found), context)
 
 

@@ -48,11 +48,11 @@ def launch_unbuilt(file: str, packages: Mapping[str, UnbuiltPackage], here: Path
     All paths are below `here`. `words` are the launch arguments, up to `--ros-args`. Raises `RuntimeError` with the
     file and the line if it can't be launched.
     """
-    given = dict(word.split(":=", 1) for word in words[: [*words, "--ros-args"].index("--ros-args")])
+    arguments = dict(word.split(":=", 1) for word in words[: [*words, "--ros-args"].index("--ros-args")])
     with tempfile.TemporaryDirectory(prefix="install_") as prefix:
         _install(packages, here, Path(prefix))
         try:
-            return launch_file(here / file, given, here, [{"use_sim_time": True}])
+            return launch_file(here / file, arguments, here, [{"use_sim_time": True}])
         except CommandError as refusal:
             text = ". ".join(line.strip().rstrip(".") for line in refusal.message.splitlines())
             raise RuntimeError(text.replace(f"{here}{os.sep}", "")) from None

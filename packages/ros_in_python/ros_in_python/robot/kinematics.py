@@ -10,12 +10,12 @@ from tf2_py.rigid_motion import RigidMotion
 from ros_in_python.robot.urdf import Joint, RobotDescription
 
 
-def all_positions(robot: RobotDescription, given: Mapping[str, float]) -> dict[str, float]:
+def all_positions(robot: RobotDescription, known: Mapping[str, float]) -> dict[str, float]:
     """Return the position (rad or m) of each moving joint that is given, and of each that mimics one of these."""
-    positions = {joint.name: given[joint.name] for joint in robot.joints if joint.moves and joint.name in given}
+    positions = {joint.name: known[joint.name] for joint in robot.joints if joint.moves and joint.name in known}
     for joint in robot.joints:
-        if joint.mimic and joint.mimic.joint in given:
-            positions[joint.name] = joint.mimic.follow(given[joint.mimic.joint])
+        if joint.mimic and joint.mimic.joint in known:
+            positions[joint.name] = joint.mimic.follow(known[joint.mimic.joint])
     return positions
 
 

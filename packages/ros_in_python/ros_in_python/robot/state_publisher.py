@@ -39,7 +39,7 @@ class RobotStatePublisher(Node):
 
         super().__init__("robot_state_publisher")
         self._log = Node.get_logger(self)
-        given = self.declare_parameter("robot_description", description).value or description
+        urdf = self.declare_parameter("robot_description", description).value or description
         self.declare_parameter("publish_frequency", RATE)
         self.declare_parameter("ignore_timestamp", False)
         self.declare_parameter("frame_prefix", "")
@@ -48,7 +48,7 @@ class RobotStatePublisher(Node):
         self._description = self.create_publisher(String, "robot_description", latched)
         self._sent: dict[str, int] = {}
         self._newest_state = 0
-        self._use(given)
+        self._use(urdf)
         self.create_subscription(JointState, "joint_states", self._on_joint_states, qos_profile_sensor_data)
         self.add_on_set_parameters_callback(self._on_parameters)
         self._log.info("Robot initialized")

@@ -83,8 +83,8 @@ def info(graph: GraphView, action_name: str, show_types: bool, count: bool) -> N
         "servers": _nodes_with(graph, name, get_action_server_names_and_types_by_node),
     }
     click.echo(f"Action: {action_name}")
-    for what, nodes in ends.items():
-        click.echo(f"Action {what}: {len(nodes)}")
+    for role, nodes in ends.items():
+        click.echo(f"Action {role}: {len(nodes)}")
         for node_name, types in [] if count else nodes:
             click.echo(f"    {node_name} [{', '.join(types)}]" if show_types else f"    {node_name}")
 
@@ -171,16 +171,16 @@ def _print_feedback(message: Any) -> None:
     print(f"Feedback:\n    {to_yaml(message.feedback)}", flush=True)
 
 
-def _wait_for_server(graph: GraphView, client: Any, name: str, wanted: str) -> None:
+def _wait_for_server(graph: GraphView, client: Any, name: str, type_name: str) -> None:
     """Wait for the server, without a limit. Raises `CommandError` if it has another type."""
     from rclpy.action import get_action_server_names_and_types_by_node
 
     def ready_or_never() -> bool:
         if client.server_is_ready():
             return True
-        others = [kind for found in graph.actions() if found.name == name for kind in found.types if kind != wanted]
+        others = [kind for found in graph.actions() if found.name == name for kind in found.types if kind != type_name]
         if others:
-            raise CommandError(f"The action '{name}' is of type {' or '.join(others)}, not {wanted}.")
+            raise CommandError(f"The action '{name}' is of type {' or '.join(others)}, not {type_name}.")
         return False
 
     graph.spin_until(ready_or_never)

@@ -37,23 +37,23 @@ def create(words: tuple[str, ...]) -> None:
     Also: --license, --description, --maintainer-name, --maintainer-email, --destination-directory. To build a package
     of C++ takes a ROS 2 installation; one of messages, services and actions alone is compiled without.
     """
-    given = _read(words)
-    if given.build_type not in ("ament_cmake", "ament_python"):
-        raise CommandError(f"There is no build type '{given.build_type}' here: ament_cmake, ament_python.")
-    if given.library_name and given.build_type == "ament_python":
+    options = _read(words)
+    if options.build_type not in ("ament_cmake", "ament_python"):
+        raise CommandError(f"There is no build type '{options.build_type}' here: ament_cmake, ament_python.")
+    if options.library_name and options.build_type == "ament_python":
         raise CommandError("A package of Python has no library: leave out --library-name.")
-    name = given.package_name
+    name = options.package_name
     # REP 144's rule for package names.
     if not (name[:1].isalpha() and name.isidentifier() and name.islower() and "__" not in name):
         raise CommandError(
             f"'{name}' is not a valid package name: use lower-case letters, digits and single underscores."
         )
-    folder = Path(given.destination_directory) / name
+    folder = Path(options.destination_directory) / name
     if folder.exists():
         raise CommandError(
             f"\nAborted!\nThe directory already exists: {folder}\nEither remove the directory or choose another."
         )
-    _write_new(folder, given)
+    _write_new(folder, options)
 
 
 def _read(words: tuple[str, ...]) -> argparse.Namespace:
@@ -72,18 +72,18 @@ def _read(words: tuple[str, ...]) -> argparse.Namespace:
     return reader.parse_args(list(words))
 
 
-def _write_new(folder: Path, given: argparse.Namespace) -> None:
+def _write_new(folder: Path, options: argparse.Namespace) -> None:
     manifest = Manifest(
-        given.package_name,
+        options.package_name,
         "0.0.0",
-        given.description,
-        given.maintainer_name,
-        given.maintainer_email,
-        given.license,
-        depends=given.dependencies,
+        options.description,
+        options.maintainer_name,
+        options.maintainer_email,
+        options.license,
+        depends=options.dependencies,
     )
-    files = _files(manifest, given)
-    _say(manifest, given)
+    files = _files(manifest, options)
+    _say(manifest, options)
     click.echo(f"creating folder {folder}")
     for path, text in files.items():
         click.echo(f"creating {folder / path}")
@@ -92,29 +92,29 @@ def _write_new(folder: Path, given: argparse.Namespace) -> None:
         file.write_text(text, encoding="utf-8")
 
 
-def _files(manifest: Manifest, given: argparse.Namespace) -> dict[str, str]:
-    if given.build_type == "ament_cmake":
-        return cmake_files(manifest, given.dependencies, given.node_name, given.library_name)
-    files = package_files(manifest, [(given.node_name, given.node_name)] if given.node_name else [])
-    if given.node_name:
-        files[f"{manifest.name}/{given.node_name}.py"] = NODE.format(package=manifest.name)
+def _files(manifest: Manifest, options: argparse.Namespace) -> dict[str, str]:
+    if options.build_type == "ament_cmake":
+        return cmake_files(manifest, options.dependencies, options.node_name, options.library_name)
+    files = package_files(manifest, [(options.node_name, options.node_name)] if options.node_name else [])
+    if options.node_name:
+        files[f"{manifest.name}/{options.node_name}.py"] = NODE.format(package=manifest.name)
     return files
 
 
-def _say(manifest: Manifest, given: argparse.Namespace) -> None:
+def _say(manifest: Manifest, options: argparse.Namespace) -> None:
     click.echo("going to create a new package")
-    for what, value in (
+    for label, value in (
         ("package name", manifest.name),
-        ("destination directory", Path(given.destination_directory).resolve()),
+        ("destination directory", Path(options.destination_directory).resolve()),
         ("package format", 3),
         ("version", manifest.version),
         ("description", manifest.description),
         ("maintainer", [f"{manifest.maintainer} <{manifest.email}>"]),
         ("licenses", [manifest.license]),
-        ("build type", given.build_type),
-        ("dependencies", given.dependencies),
+        ("build type", options.build_type),
+        ("dependencies", options.dependencies),
     ):
-        click.echo(f"{what}: {value}")
-    for what, value in (("node_name", given.node_name), ("library_name", given.library_name)):
+        click.echo(f"{label}: {value}")
+    for label, value in (("node_name", options.node_name), ("library_name", options.library_name)):
         if value:
-            click.echo(f"{what}: {value}")
+            click.echo(f"{label}: {value}")

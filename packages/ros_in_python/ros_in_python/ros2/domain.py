@@ -47,10 +47,10 @@ def participants(domain: int) -> int | None:
 def participates(domain: int, processes: Iterable[int]) -> bool:
     """Return whether one of these processes (ids) takes part in a ROS domain; False if the kernel does not say."""
     try:
-        wanted = {f"socket:[{inode}]" for inode in _discovery_sockets(domain).values()}
+        sockets = {f"socket:[{inode}]" for inode in _discovery_sockets(domain).values()}
     except OSError:
         return False
-    return any(not wanted.isdisjoint(_open_files(process)) for process in processes)
+    return any(not sockets.isdisjoint(_open_files(process)) for process in processes)
 
 
 def _open_files(process: int) -> set[str]:

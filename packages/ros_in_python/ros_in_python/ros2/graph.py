@@ -166,11 +166,11 @@ class GraphView:
 
     # Waiting
 
-    def settle(self, wanted: Callable[[], bool] | None = None) -> None:
+    def settle(self, condition: Callable[[], bool] | None = None) -> None:
         """Return when the graph is known: every participant on this host has been found, every endpoint has a node, and
         nothing has changed for a while.
 
-        With `wanted`, wait until that holds, too, or until `ABSENT` seconds have passed.
+        With `condition`, wait until that holds, too, or until `ABSENT` seconds have passed.
         """
         deadline = self._born + (self._spin_time or DEADLINE)
         seen, changed = self._look(), time.monotonic()
@@ -182,7 +182,7 @@ class GraphView:
                 seen, changed = look, now
             if now - changed < QUIET or not self._complete():
                 continue
-            nothing = not self.nodes() or (wanted is not None and not wanted())
+            nothing = not self.nodes() or (condition is not None and not condition())
             if now - self._born >= self._shortest(nothing):
                 return
 

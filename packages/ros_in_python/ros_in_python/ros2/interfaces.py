@@ -177,7 +177,7 @@ _TITLES = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 
 
 def _kinds(only_msgs: bool, only_srvs: bool, only_actions: bool) -> list[str]:
-    chosen = [kind for kind, wanted in zip(_TITLES, (only_msgs, only_srvs, only_actions), strict=True) if wanted]
+    chosen = [kind for kind, is_chosen in zip(_TITLES, (only_msgs, only_srvs, only_actions), strict=True) if is_chosen]
     return chosen or list(_TITLES)
 
 

@@ -64,14 +64,14 @@ def check_installed() -> None:
 
 
 def _check_rmw() -> None:
-    wanted = os.environ.get("RMW_IMPLEMENTATION")
-    if not wanted:
+    middleware = os.environ.get("RMW_IMPLEMENTATION")
+    if not middleware:
         return
     here = prefixes.resources("rmw_typesupport", prefixes.installed())
     here.pop("rmw_implementation", None)
-    if here and wanted not in here:
+    if here and middleware not in here:
         raise CommandError(
-            f"RMW_IMPLEMENTATION is '{wanted}', which is not installed here.",
+            f"RMW_IMPLEMENTATION is '{middleware}', which is not installed here.",
             f"Installed: {', '.join(here)}. Set it to one of these, or unset it: unset RMW_IMPLEMENTATION",
         )
 

@@ -216,8 +216,8 @@ def set_(graph: GraphView, name: str, client: Any, parameter_name: str, value: s
     """
     from rcl_interfaces.msg import Parameter
 
-    wanted = Parameter(name=parameter_name, value=parameter_value(value))
-    result = answer(graph, name, client.set_parameters([wanted])).results[0]
+    parameter = Parameter(name=parameter_name, value=parameter_value(value))
+    result = answer(graph, name, client.set_parameters([parameter])).results[0]
     if result.successful:
         click.echo(_with_reason("Set parameter successful", result.reason))
     else:

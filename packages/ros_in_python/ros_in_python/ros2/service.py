@@ -69,9 +69,9 @@ def find(graph: GraphView, service_type: str, count_services: bool, include_hidd
     \b
       ros2 service find std_srvs/srv/Trigger
     """
-    wanted = interfaces.full_name(service_type, "srv")
-    graph.settle(lambda: any(wanted in found.types for found in graph.services()))
-    names = [found.name for found in _visible(graph, include_hidden_services) if wanted in found.types]
+    type_name = interfaces.full_name(service_type, "srv")
+    graph.settle(lambda: any(type_name in found.types for found in graph.services()))
+    names = [found.name for found in _visible(graph, include_hidden_services) if type_name in found.types]
     show_names(names, count_services)
 
 
@@ -132,7 +132,7 @@ def _ask(graph: GraphView, client: Any, request: Any, period: float | None) -> N
         graph.spin_until(lambda: False, max(0.0, start + period - time.monotonic()))
 
 
-def _wait_until_ready(graph: GraphView, client: Any, name: str, wanted: str) -> None:
+def _wait_until_ready(graph: GraphView, client: Any, name: str, type_name: str) -> None:
     """Wait for the service, without a limit. Raises `CommandError` if it has another type."""
     if not client.service_is_ready():
         print("waiting for service to become available...", flush=True)
@@ -141,12 +141,12 @@ def _wait_until_ready(graph: GraphView, client: Any, name: str, wanted: str) -> 
             print(f"There is no service '{name}' yet. Did you mean {alike}? Ctrl-C ends the wait.", file=sys.stderr)
 
     def ready_or_never() -> bool:
-        types = next((found.types for found in graph.services() if found.name == name), (wanted,))
+        types = next((found.types for found in graph.services() if found.name == name), (type_name,))
         # The client of this call is in the graph with its own type.
-        others = [kind for kind in types if kind != wanted]
+        others = [kind for kind in types if kind != type_name]
         if others and not client.service_is_ready() and graph.node.count_services(name):
             raise CommandError(
-                f"The service '{name}' is of type {' or '.join(others)}, not {wanted}.",
+                f"The service '{name}' is of type {' or '.join(others)}, not {type_name}.",
                 f"ros2 service call {name} {others[0]}",
             )
         return bool(client.service_is_ready())

@@ -30,25 +30,25 @@ def main(words: Sequence[str]) -> int:
 def transform_of(words: Sequence[str]) -> TransformStamped:
     """Return the transform (m, rad) that the command's words describe."""
     parser = _parser()
-    given = parser.parse_args(_named(parser, list(words)))
-    turned = [name for name in _QUATERNION if getattr(given, name) is not None]
-    if turned and any(getattr(given, name) for name in _ANGLES):
+    options = parser.parse_args(_named(parser, list(words)))
+    turned = [name for name in _QUATERNION if getattr(options, name) is not None]
+    if turned and any(getattr(options, name) for name in _ANGLES):
         parser.error("give either --roll, --pitch and --yaw, or --qx, --qy, --qz and --qw")
-    return _message(given, turned)
+    return _message(options, turned)
 
 
-def _message(given: argparse.Namespace, turned: Sequence[str]) -> TransformStamped:
+def _message(options: argparse.Namespace, turned: Sequence[str]) -> TransformStamped:
     from tf2_py.rigid_motion import from_euler, normalized
 
-    message = TransformStamped(child_frame_id=given.child_frame_id)
-    message.header.frame_id = given.frame_id
+    message = TransformStamped(child_frame_id=options.child_frame_id)
+    message.header.frame_id = options.frame_id
     move, turn = message.transform.translation, message.transform.rotation
-    move.x, move.y, move.z = given.x, given.y, given.z
+    move.x, move.y, move.z = options.x, options.y, options.z
     if turned:
-        parts = [getattr(given, name) if getattr(given, name) is not None else 0.0 for name in _QUATERNION]
+        parts = [getattr(options, name) if getattr(options, name) is not None else 0.0 for name in _QUATERNION]
         turn.x, turn.y, turn.z, turn.w = normalized((parts[0], parts[1], parts[2], parts[3]))
     else:
-        turn.x, turn.y, turn.z, turn.w = from_euler(given.roll, given.pitch, given.yaw)
+        turn.x, turn.y, turn.z, turn.w = from_euler(options.roll, options.pitch, options.yaw)
     return message
 
 

@@ -24,8 +24,8 @@ def main(words: Sequence[str]) -> int:
     parser.add_argument("source_frame", help="the frame in which to look from")
     parser.add_argument("target_frame", help="the frame to look at")
     parser.add_argument("rate", type=float, nargs="?", default=1.0, help="how often to print (Hz, default 1)")
-    given = parser.parse_args(remove_ros_args(list(words)))
-    return spin_until_stopped(lambda: _echo(given.source_frame, given.target_frame, given.rate))
+    options = parser.parse_args(remove_ros_args(list(words)))
+    return spin_until_stopped(lambda: _echo(options.source_frame, options.target_frame, options.rate))
 
 
 def _echo(source: str, target: str, rate: float) -> Node:

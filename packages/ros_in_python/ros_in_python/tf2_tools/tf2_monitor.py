@@ -51,10 +51,10 @@ def main(words: Sequence[str]) -> int:
     """Print reports until stopped; return the exit code."""
     parser = argparse.ArgumentParser("tf2_monitor")
     parser.add_argument("frames", nargs="*", metavar="FRAME", help="two frames: watch the chain between them")
-    given = parser.parse_args(remove_ros_args(list(words)))
-    if len(given.frames) not in (0, 2):
+    options = parser.parse_args(remove_ros_args(list(words)))
+    if len(options.frames) not in (0, 2):
         parser.error("give no frame, or two")
-    return spin_until_stopped(lambda: _monitor(given.frames))
+    return spin_until_stopped(lambda: _monitor(options.frames))
 
 
 class FrameMonitor:

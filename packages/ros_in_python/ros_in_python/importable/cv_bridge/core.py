@@ -91,9 +91,9 @@ class CvBridge:
         message.data.frombytes(data.tobytes())
         return message
 
-    def _converted(self, image: Any, source: str, wanted: str) -> Any:
+    def _converted(self, image: Any, source: str, target: str) -> Any:
         try:
-            return image if wanted == "passthrough" else converted(image, source, wanted)
+            return image if target == "passthrough" else converted(image, source, target)
         except ValueError as error:
             raise CvBridgeError(str(error)) from None
 

@@ -56,37 +56,37 @@ def cv_type(dtype: str, channels: int) -> int:
     return int(getattr(cv2, f"CV_{list(DEPTHS)[place]}C{channels}"))
 
 
-def converted(image: Any, source: str, wanted: str) -> Any:
+def converted(image: Any, source: str, target: str) -> Any:
     """Return an image in another encoding. Raises ValueError if it makes no sense, or OpenCV is missing."""
-    if source == wanted:
+    if source == target:
         return image
-    colours = [_COLOUR.fullmatch(name) for name in (source, wanted)]
+    colours = [_COLOUR.fullmatch(name) for name in (source, target)]
     if all(colours):
-        return _depth(_colour(image, colours[0][1], colours[1][1]), *type_of(wanted))  # type: ignore[index]
-    plain = [_PLAIN.fullmatch(name) is not None for name in (source, wanted)]
+        return _depth(_colour(image, colours[0][1], colours[1][1]), *type_of(target))  # type: ignore[index]
+    plain = [_PLAIN.fullmatch(name) is not None for name in (source, target)]
     if all(plain):
-        if type_of(source)[1] != type_of(wanted)[1]:
-            raise ValueError(f"[{source}] and [{wanted}] do not have the same number of channels")
-        return image.astype(type_of(wanted)[0])
+        if type_of(source)[1] != type_of(target)[1]:
+            raise ValueError(f"[{source}] and [{target}] do not have the same number of channels")
+        return image.astype(type_of(target)[0])
     if any(plain):
-        if type_of(source) == type_of(wanted):
+        if type_of(source) == type_of(target):
             return image
-        raise ValueError(f"[{source}] and [{wanted}]: one is a color format and the other is not")
-    return _by_opencv(image, source, wanted)
+        raise ValueError(f"[{source}] and [{target}]: one is a color format and the other is not")
+    return _by_opencv(image, source, target)
 
 
-def _colour(image: Any, source: str, wanted: str) -> Any:
-    if source == wanted:
+def _colour(image: Any, source: str, target: str) -> Any:
+    if source == target:
         return image
     if source == "mono":
         channels = dict.fromkeys("rgb", image)
     else:
         channels = {name: image[..., place] for place, name in enumerate(source)}
-    if wanted == "mono":
+    if target == "mono":
         grey = sum(weight * channels[name].astype(float) for weight, name in zip(_GREY, "rgb", strict=True))
         return np.rint(grey).astype(image.dtype)
     opaque = np.full(image.shape[:2], np.iinfo(image.dtype).max, image.dtype)
-    return np.stack([channels.get(name, opaque) for name in wanted], axis=-1)
+    return np.stack([channels.get(name, opaque) for name in target], axis=-1)
 
 
 def _depth(image: Any, dtype: str, channels: int) -> Any:
@@ -96,14 +96,14 @@ def _depth(image: Any, dtype: str, channels: int) -> Any:
     return image.astype(dtype) * 257 if dtype == "uint16" else np.rint(image / 257).astype(dtype)
 
 
-def _by_opencv(image: Any, source: str, wanted: str) -> Any:
+def _by_opencv(image: Any, source: str, target: str) -> Any:
     try:
         import cv2
     except ImportError:
-        raise ValueError(f"from [{source}] to [{wanted}] needs OpenCV: pip install opencv-python-headless") from None
+        raise ValueError(f"from [{source}] to [{target}] needs OpenCV: pip install opencv-python-headless") from None
     match = _BAYER.fullmatch(source)
     start = f"Bayer{_PATTERNS[source[6:10]]}2BGR" if match else _YUV.get(source)
     code = getattr(cv2, f"COLOR_{start}", None)
     if code is None:
-        raise ValueError(f"from [{source}] to [{wanted}] is not supported")
-    return converted(cv2.cvtColor(image, code), f"bgr{match[1] if match else 8}", wanted)
+        raise ValueError(f"from [{source}] to [{target}] is not supported")
+    return converted(cv2.cvtColor(image, code), f"bgr{match[1] if match else 8}", target)

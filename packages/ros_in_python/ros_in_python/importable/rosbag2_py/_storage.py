@@ -144,11 +144,11 @@ def check_formats(options: ConverterOptions) -> None:
 def check_storage(options: StorageOptions) -> str:
     """Return `mcap` or `sqlite3`. Raises RuntimeError for options that have an effect in ROS 2 alone."""
     names = ("max_bagfile_size", "max_bagfile_duration", "storage_config_uri", "snapshot_mode")
-    given = [name for name in names if getattr(options, name)]
+    unsupported = [name for name in names if getattr(options, name)]
     if options.storage_preset_profile not in ("", "none", "fastwrite", "resilient"):
-        given.append("storage_preset_profile")
-    if given:
-        raise RuntimeError(f"StorageOptions.{given[0]} is not supported here.")
+        unsupported.append("storage_preset_profile")
+    if unsupported:
+        raise RuntimeError(f"StorageOptions.{unsupported[0]} is not supported here.")
     storage = options.storage_id or get_default_storage_id()
     if storage not in ("mcap", "sqlite3"):
         raise RuntimeError(f"No storage '{storage}'. There are 'mcap' and 'sqlite3'.")

@@ -68,7 +68,7 @@ def listen(
     printed = 0
     options = {"once": False, "timeout": None, "raw": False, "filter_expression": None, **options}
     text = _printer(options)
-    wanted = options["filter_expression"]
+    passes = options["filter_expression"]
     start = time.monotonic()
 
     def arrived(data: Any, info: dict[str, Any]) -> None:
@@ -76,7 +76,7 @@ def listen(
         if options["once"] and printed:
             return
         part = data if options["raw"] else field(data, path)
-        if wanted is None or wanted(part):
+        if passes is None or passes(part):
             sys.stdout.write(text(part, info))
             sys.stdout.flush()
             printed += 1

@@ -56,10 +56,10 @@ def find(graph: GraphView, topic_type: str, count_topics: bool, include_hidden_t
       ros2 topic find sensor_msgs/msg/JointState
       /joint_commands
     """
-    wanted = interfaces.full_name(topic_type, "msg")
-    graph.settle(lambda: any(wanted in topic.types for topic in graph.topics()))
+    type_name = interfaces.full_name(topic_type, "msg")
+    graph.settle(lambda: any(type_name in topic.types for topic in graph.topics()))
     topics = [topic for topic in graph.topics() if include_hidden_topics or not topic.hidden]
-    show_names([topic.name for topic in topics if wanted in topic.types], count_topics)
+    show_names([topic.name for topic in topics if type_name in topic.types], count_topics)
 
 
 @click.command()
@@ -77,8 +77,8 @@ def info(graph: GraphView, topic_name: str, verbose: bool) -> None:
     publishers, subscriptions = graph.publishers(name), graph.subscriptions(name)
     gap = "\n\n" if verbose else "\n"
     click.echo(f"Type: {types[0] if len(types) == 1 else list(types)}{gap}", nl=False)
-    for what, ends in (("Publisher", publishers), ("Subscription", subscriptions)):
-        click.echo(f"{what} count: {len(ends)}{gap}", nl=False)
+    for role, ends in (("Publisher", publishers), ("Subscription", subscriptions)):
+        click.echo(f"{role} count: {len(ends)}{gap}", nl=False)
         if verbose:
             for end in ends:
                 click.echo(f"{end}{gap}", nl=False)
