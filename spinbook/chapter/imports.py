@@ -125,8 +125,9 @@ def _not_installed(top: str, line: int) -> MissingPackage:
 
 def remedy(package: str) -> str:
     """Return how to get a package of interfaces that is not here."""
-    unknown = f"PyPI does not have it: show its .msg, .srv and .action files in the chapter, or {IN_ROS}."
-    return shipped.how_to_add(package) or unknown
+    if package in shipped.known():
+        return f"Compile it, once: spinbook interfaces add {package}"
+    return f"PyPI does not have it: show its .msg, .srv and .action files in the chapter, or {IN_ROS}."
 
 
 def _no_module(module: str, names: list[str], line: int) -> MissingPackage:

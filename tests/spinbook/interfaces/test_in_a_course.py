@@ -395,7 +395,7 @@ def test_what_asks_for_an_interface_that_the_course_lacks_is_shown_with_the_reme
     said = course.spinbook("lint").stdout
     assert "1 shell, 1 interface, 2 fences shown and not run" in said
     assert "`robot_interfaces/srv` has no `Gripp`" in said
-    assert "Compile it, once: python -m interface_compiler add control_msgs" in said
+    assert "Compile it, once: spinbook interfaces add control_msgs" in said
 
 
 def test_colcon_may_name_a_package_of_interfaces_that_a_cell_above_defines(tmp_path: Path) -> None:
