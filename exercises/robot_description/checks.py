@@ -73,8 +73,7 @@ def test_publishes_at_the_start(late: Run) -> None:
     "is volatile: a message that it has sent is gone, and who subscribes later gets nothing. A QoSProfile "
     "(from rclpy.qos) says more: with the durability transient local, the publisher keeps its last messages "
     "for subscribers that come later, if they are transient local, too, and depth says how many. To see it, "
-    "start your node, wait, and then run `ros2 topic echo --qos-durability transient_local "
-    "/robot_description`.",
+    "start your node, wait, and then run `ros2 topic echo --once /robot_description`.",
     depends=[test_publishes_the_description],
     misconception="volatile",
     rule=("late", "qos"),

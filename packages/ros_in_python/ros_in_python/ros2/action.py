@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ros_in_python.ros2 import interfaces
-from ros_in_python.ros2.cli import CommandError, Menu, StopSignal, held_back, show_names
+from ros_in_python.ros2.cli import CommandError, Menu, StopSignal, held_back, show_names, stdin_option
 from ros_in_python.ros2.names import absolute, seen
 from ros_in_python.ros2.opening import with_graph
 
@@ -93,6 +93,7 @@ def info(graph: GraphView, action_name: str, show_types: bool, count: bool) -> N
 @click.argument("action_name")
 @click.argument("action_type")
 @click.argument("goal", default="{}")
+@stdin_option("goal")
 @click.option("-f", "--feedback", is_flag=True, help="Print the feedback on the way.")
 @with_graph
 def send_goal(graph: GraphView, action_name: str, action_type: str, goal: str, feedback: bool) -> None:

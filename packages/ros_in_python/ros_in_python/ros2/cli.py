@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import functools
 import importlib
 import signal
 import sys
@@ -11,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import FrameType
-from typing import Any, NoReturn, TypeVar
+from typing import Any, NoReturn, TypeVar, cast
 
 import click
 
@@ -98,6 +99,20 @@ def discovery_options(command: F) -> F:
     ):
         command = option(command)
     return command
+
+
+def stdin_option(argument: str) -> Callable[[F], F]:
+    """Add `--stdin`: the function gets the standard input's text as this argument."""
+
+    def add(command: F) -> F:
+        @click.option("--stdin", "reads", is_flag=True, help="Read the values from the standard input.")
+        @functools.wraps(command)
+        def run(*arguments: Any, reads: bool, **named: Any) -> Any:
+            return command(*arguments, **{**named, argument: sys.stdin.read()} if reads else named)
+
+        return cast("F", run)
+
+    return add
 
 
 class CommandError(click.ClickException):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ros_in_python.ros2 import interfaces
-from ros_in_python.ros2.cli import CommandError, Menu, show_names
+from ros_in_python.ros2.cli import CommandError, Menu, show_names, stdin_option
 from ros_in_python.ros2.names import absolute, seen
 from ros_in_python.ros2.opening import with_graph
 from ros_in_python.ros2.topic.selection import reading_options
@@ -95,6 +95,7 @@ def info(graph: GraphView, service_name: str) -> None:
 @click.argument("service_name")
 @click.argument("service_type")
 @click.argument("values", default="{}")
+@stdin_option("values")
 @click.option(
     "-r", "--rate", type=click.FloatRange(min=0, min_open=True), metavar="N", help="Repeat N times per second."
 )

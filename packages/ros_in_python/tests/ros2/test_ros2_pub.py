@@ -12,7 +12,7 @@ pytestmark = pytest.mark.usefixtures("ros_domain")
 
 def test_once_reaches_a_subscription_and_prints_what_the_real_command_prints(robot: Robot, terminal: Terminal) -> None:
     listener = robot("counter")
-    answer = terminal.ros2("topic", "pub", "--once", "/cmd", "std_msgs/msg/String", "{data: sit}")
+    answer = terminal.ros2("topic", "pub", "--once", "--stdin", "/cmd", "std_msgs/msg/String", stdin="data: sit\n")
     assert answer.out == "publisher: beginning loop\npublishing #1: std_msgs.msg.String(data='sit')\n\n"
     assert answer.code == 0
     assert listener.stdout is not None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ros_in_python.ros2 import interfaces, qos
-from ros_in_python.ros2.cli import CommandError, discovery_options
+from ros_in_python.ros2.cli import CommandError, discovery_options, stdin_option
 from ros_in_python.ros2.names import absolute
 from ros_in_python.ros2.opening import open_graph
 
@@ -25,6 +25,7 @@ CONFIRMATION = 2.0
 @click.argument("topic_name")
 @click.argument("message_type")
 @click.argument("values", default="{}")
+@stdin_option("values")
 @click.option("-1", "--once", is_flag=True, help="Publish one message and exit.")
 @click.option("-t", "--times", type=click.IntRange(min=0), default=0, help="Publish this many messages and exit.")
 @click.option(
