@@ -32,6 +32,7 @@ class KnownNames:
     parameters: set[str] = field(default_factory=set)
     subscribers: set[str] = field(default_factory=set)
     programs: set[str] = field(default_factory=set)
+    truth: set[str] = field(default_factory=set)
     complete: bool = True
 
     @property
@@ -85,6 +86,7 @@ def _add(names: KnownNames, scenario: Scenario) -> None:
     if scenario.world:
         model = scenario.world.begin()
         names.topics |= {**model.reads, **model.publishes}
+        names.truth |= set(getattr(model, "truth", dict)())
     _in_namespaces(names, scenario)
 
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import ast
 import difflib
 import inspect
+import re
 from collections.abc import Collection, Iterator
 from dataclasses import fields as fields_of_class
 from pathlib import Path
 from typing import Any, get_args
 
 from grader.checking import known_names
+from grader.checking.closed_loops import TRUTH
 from grader.checking.graph import Kind
 from grader.checking.known_names import KnownNames
 from grader.checking.message import Message
@@ -249,12 +251,25 @@ class _Function:
         for text in self._texts(argument) if known else ():
             if text not in known:
                 yield self._error(node, f"there is no {word} {text!r}", text, known)
+        yield from self._of_truth(node, method, name, argument)
         if name in ("field", "fields", "per", "place"):
             types = self._types(method, self._text((self._arguments(node, method) or {}).get("topic")))
             for path in self._texts(argument):
                 if types and not any(known_names.has(type_, path) for type_ in types):
                     every = {known for type_ in types for known in known_names.fields(type_)}
                     yield self._error(node, f"{' and '.join(types)} has no field {path!r}", path, every)
+
+    def _of_truth(self, node: ast.Call, method: str, name: str, argument: Any) -> Iterator[ExerciseError]:
+        """Yield the errors of names in the world's truth."""
+        texts: list[str] = []
+        if method == "must_estimate" and name == "fields" and isinstance(argument, ast.Dict):
+            texts = [text for value in argument.values if (text := self._text(value))]
+        elif name in ("field", "fields", "place"):
+            topic = self._text((self._arguments(node, method) or {}).get("topic"))
+            texts = self._texts(argument) if topic == TRUTH else []
+        for text in texts:
+            if self._known.truth and re.split(r"[.\[]", text)[0] not in self._known.truth:
+                yield self._error(node, f"the world's truth has no {text!r}", text, self._known.truth)
 
     def _texts(self, argument: Any) -> list[str]:
         """Return the texts of an argument: one, the keys of a dictionary, or several positional ones."""

@@ -151,7 +151,9 @@ class Checks:
         """Report a file of checks that can't be imported: the author must fix it."""
         if isinstance(report, pytest.CollectReport) and call.excinfo and not self.problem:
             error = call.excinfo.value.__cause__ or call.excinfo.value
-            self.problem = error_in(error, node.path.parent, node.path, "it can't be read", "It must import.")
+            self.problem = error_in(
+                error, node.path.parent, node.path, "it can't be read", "Fix it: this file is imported first."
+            )
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, object, object]:
@@ -215,7 +217,8 @@ class Checks:
         if isinstance(error, pytest.skip.Exception):
             return replace(verdict, status="blocked", blocked_by=self._blocking(item.name))
         if isinstance(error, AssertionError):
-            wrong = error if isinstance(error, Wrong) else Wrong(Finding(str(error)))
+            text = str(error) or f"“{verdict.title}” is not so."  # an assert without a message
+            wrong = error if isinstance(error, Wrong) else Wrong(Finding(text))
             finding = wrong.finding.shortened()
             return replace(verdict, status="failed", finding=finding, share=wrong.share, partial=mark.partial)
         return replace(verdict, status="error", error=_describe(error, item.path))

@@ -19,12 +19,14 @@ from pathlib import Path
 from grader.checking.agreement import disagreements
 from grader.checking.judge import ListedCheck, listed
 from grader.checking.misspellings import misspellings
+from grader.checking.weak_checks import weak_checks
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.imported_files import with_modules
 from grader.exercise.loading import load
 from grader.exercise.mistakes import each_mistake
 from grader.exercise.rules import named_by, rules_of, without_markup
 from grader.exercise.starter import MarkerError, starter
+from grader.recording.arrays import ArrayEncoder
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Scenario
 from grader.submission import python_code
@@ -66,11 +68,13 @@ def faults(folder: Path) -> Iterator[ExerciseError]:
     scenarios: tuple[Scenario, ...] = ()
     try:
         scenarios = declared(exercise, seed=0)
+        yield from others_each_time(exercise, scenarios, declared(exercise, seed=0))
         yield from misspellings(exercise, scenarios)
     except ExerciseError as error:
         yield error
     for file in exercise.check_files:
         yield from same_name_twice(file)
+        yield from weak_checks(file, _parsed(file))
     yield from rules_that_the_task_lacks(exercise.task, exercise.check_files)
     try:
         checks = listed(exercise, tuple(scenario.name for scenario in scenarios))
@@ -79,6 +83,25 @@ def faults(folder: Path) -> Iterator[ExerciseError]:
         return
     yield from points_that_do_not_add_up(exercise, [(check.hidden, check.points) for check in checks])
     yield from _of_mistakes(exercise, checks)
+
+
+def others_each_time(
+    exercise: Exercise, scenarios: tuple[Scenario, ...], again: tuple[Scenario, ...]
+) -> Iterator[ExerciseError]:
+    """Yield scenarios that differ although their seed is the same: students would not get the same grade twice."""
+    for first, second in zip(scenarios, again, strict=False):
+        if _content(first) != _content(second):
+            problem = f"the scenario {first.name} is another one each time, with the same seed"
+            fix = "Take random values from the seed: random.Random(seed)."
+            yield ExerciseError(exercise.scenarios_file, problem, fix, first.line or None)
+
+
+def _content(scenario: Scenario) -> str:
+    messages = json.dumps([(one.at, one.topic, one.fields) for one in scenario.messages], cls=ArrayEncoder)
+    world = repr(scenario.world.arguments) if scenario.world else ""
+    # Objects that say only where they are in memory differ each time.
+    parts = (part for part in (repr(scenario.steps), repr(scenario.parameters), world) if " at 0x" not in part)
+    return "\n".join([messages, repr(scenario.duration), *parts])
 
 
 def same_name_twice(file: Path) -> Iterator[ExerciseError]:

@@ -67,6 +67,7 @@ _FROM_HANDOUT = (
 )
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*")
+_FULL_NAME = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]*)+")
 _PYTHON_FILE = re.compile(r"[a-z_][a-z0-9_]*\.py")
 
 
@@ -117,8 +118,9 @@ class TomlTable:
     def name(self, key: str) -> str:
         """Return the full name of a topic, a service or an action."""
         value = self.text(key)
-        if not value.startswith("/"):
-            self.fault(key, f"{key} = {value!r}", f"Write the full name of the {self._what}, beginning with '/'.")
+        if not _FULL_NAME.fullmatch(value):
+            fix = f"Write the full name of the {self._what}, beginning with '/', in letters, digits and _."
+            self.fault(key, f"{key} = {value!r}", fix)
         return value
 
     @property
@@ -175,7 +177,18 @@ def tables(entries: dict[str, Any], kind: str, file: Path) -> list[TomlTable]:
     all_tables = [TomlTable(file, kind, number, item) for number, item in enumerate(items)]
     for table in all_tables:
         table.see_keys()
+    _see_names(all_tables)
     return all_tables
+
+
+def _see_names(all_tables: list[TomlTable]) -> None:
+    """Raise `ExerciseError` if two tables of a kind are about the same thing."""
+    names: list[Any] = []
+    for table in all_tables:
+        key = next(one for one in ("topic", "name", "file") if one in KEYS[table.kind])
+        if table.entries[key] in names:
+            table.fault(key, f"there are two [[{table.kind}]] for {table.entries[key]!r}", "Leave one of them out.")
+        names.append(table.entries[key])
 
 
 def topics(entries: dict[str, Any], file: Path) -> tuple[Topic, ...]:
@@ -233,7 +246,7 @@ def _parameter(table: TomlTable) -> Parameter:
         problem = f"default = {default!r}, but the parameter {name} is of type {kind}"
         table.fault("default", problem, "Write the default as that type, such as 1.0 for a double.")
     limits = table.entries.get("range")
-    if limits is not None and not (isinstance(limits, list) and len(limits) == 2):
+    if limits is not None and not (isinstance(limits, list) and len(limits) == 2 and limits == sorted(limits)):
         table.fault("range", f"range = {limits!r}", "Give the lowest and the highest value: range = [0.0, 10.0].")
     return Parameter(name, kind, default, table.text("unit"), (limits[0], limits[1]) if limits else None)
 

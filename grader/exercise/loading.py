@@ -84,6 +84,8 @@ def _main_program(top: TomlTable, parts: tuple[ProgramFile, ...], launched: tupl
             top.fault("file", f"file = {file_name!r}", fix)
         return file_name, "", launched[0]
     if not parts:
+        if not re.fullmatch(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*", _text(top, "node"), re.ASCII):
+            top.fault("node", f"node = {top.entries['node']!r}", "Give a node's name, in letters, digits and _.")
         return file_name, top.text("class"), _text(top, "node")
     for key in ("class", "node"):
         if key in top.entries:

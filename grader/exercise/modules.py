@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -59,7 +60,7 @@ def _remedy(error: BaseException, folder: Path) -> str:
         return f"Did you mean {near[0]}?" if near else f"Put {error.name}.py next to this file, or install it."
     if isinstance(error, FileNotFoundError):
         return 'Is it there? Write its path from this file: Path(__file__).parent / "…".'
-    if isinstance(error, TypeError) and "check() missing" in str(error):
+    if isinstance(error, TypeError) and re.search(r"\bcheck\(\) (missing|takes)", str(error)):
         return 'Each check has points and a hint: @check(points=5, hint="…").'
     return ""
 

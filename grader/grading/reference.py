@@ -141,9 +141,10 @@ def _prove(runner: ScenarioRunner, recordings: dict[str, Recording]) -> None:
     verdicts = runner.judge(recordings, recordings)
     for verdict in verdicts:
         file = exercise.folder / ("hidden_checks.py" if verdict.hidden else "checks.py")
-        line = line_with(file, rf"def {re.escape(verdict.name)}\b")
+        line = line_with(file, rf"(?:async )?def {re.escape(verdict.name)}\b")
         if verdict.status == "error":
-            raise ExerciseError(file, f"the check {verdict.name} breaks: {verdict.error}", "Fix the check.", line)
+            fix = "Fix the check, or the scenario that it is about."
+            raise ExerciseError(file, f"the check {verdict.name} breaks: {verdict.error}", fix, line)
         if verdict.status == "failed":
             message = verdict.finding.text if verdict.finding else ""
             problem = f"the solution does not pass the check {verdict.name}: {message}"

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Iterable
+from pathlib import Path
+from types import FunctionType
+from typing import Any
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.imported_files import importable, imported
@@ -36,13 +40,29 @@ def _returned(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
     try:
         with importable(folder):
             module = imported(file, f"scenarios_of_{exercise.name}")
+            _see_signature(module, file)
             found = module.scenarios(seed) if hasattr(module, "scenarios") else ()
+    except ExerciseError:
+        raise
     except Exception as error:
-        raise error_in(error, folder, file, fix="It must run.") from None
+        raise error_in(error, folder, file, fix="Fix it: this file runs before anything is graded.") from None
     several = tuple(found) if isinstance(found, Iterable) else ()
     if not several or not all(isinstance(scenario, Scenario) for scenario in several):
         line = module.scenarios.__code__.co_firstlineno if hasattr(module, "scenarios") else None
-        returned = found and type(found).__name__
-        problem = f"scenarios(seed) returns {returned}, and not scenarios" if line else "there is no scenarios(seed)"
+        other = next((one for one in several if not isinstance(one, Scenario)), found)
+        returned = f"{other!r}, which is no Scenario" if several else f"{found!r}, and not scenarios"
+        problem = f"scenarios(seed) returns {returned}" if line else "there is no scenarios(seed)"
         raise ExerciseError(file, problem, "Return a tuple of at least one: return (Scenario(…),)", line)
     return several
+
+
+def _see_signature(module: Any, file: Path) -> None:
+    function = getattr(module, "scenarios", None)
+    if not isinstance(function, FunctionType):
+        return
+    try:
+        inspect.signature(function).bind(0)
+    except TypeError:
+        problem = f"scenarios{inspect.signature(function)} does not take the seed"
+        line = function.__code__.co_firstlineno
+        raise ExerciseError(file, problem, "Write def scenarios(seed):", line) from None

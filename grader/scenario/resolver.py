@@ -40,6 +40,7 @@ from grader.scenario.values import InvalidValue, checked_fields
 from grader.scenario.world import World
 from interface_compiler import prefixes
 
+_NAMESPACE = re.compile(r"(/?[A-Za-z_][A-Za-z0-9_]*)+/?|/")
 _TYPE = re.compile(r"[a-z][a-z0-9_]*/(?P<kind>msg|srv|action)/[A-Z][A-Za-z0-9]*")
 _KINDS = {"msg": "message", "srv": "service", "action": "action"}
 
@@ -68,6 +69,7 @@ class Resolver:
         self._timing()
         self._within_its_end()
         self._parameters()
+        self._see_namespaces()
         self._see_programs()
         self._see_launch()
         found = replace(
@@ -242,6 +244,13 @@ class Resolver:
             fix = f"There are: {', '.join(known)}." if known else "Declare each program in exercise.toml: [[program]]."
             self._fault(step.line, f"there is no program {step.program!r}", fix)
 
+    def _see_namespaces(self) -> None:
+        for namespace in (self._scenario.namespace, *(one.namespace for one in self._scenario.programs)):
+            if namespace and not _NAMESPACE.fullmatch(namespace):
+                self._fault(
+                    0, f"namespace={namespace!r}", 'Give a namespace of letters, digits and _, such as "/left".'
+                )
+
     def _see_programs(self) -> None:
         files = [part.file for part in self._exercise.programs] or [self._exercise.file_name]
         names: list[str] = []
@@ -335,13 +344,19 @@ class Resolver:
         world = self._scenario.world
         if world is None:
             return
+        if isinstance(world.period, bool) or not isinstance(world.period, (int, float)) or not world.period > 0:
+            self._fault(world.line, f"the world's period={world.period!r}", "Give seconds, such as period=0.02.")
         try:
             model = world.begin()
             topics = {**model.reads, **model.publishes}
             model.step(world.period)
             state = model.state()
+            truth = model.truth() if hasattr(model, "truth") else {}
         except Exception as error:
             self._world_fault(world, error)
+        if not isinstance(truth, dict) or not _is_plain(truth):
+            fix = 'Return a dictionary of numbers, texts and lists, such as {"x": float(self.x)}.'
+            self._fault(world.line, f"{world.code.name}.truth() returns {truth!r}", fix)
         for topic, type_name in topics.items():
             self._typed(Message(0, topic, type_name, {}, line=world.line), topic, "msg", None, "subscribe")
         for topic, fields in state.items():
@@ -350,6 +365,15 @@ class Resolver:
                 self._fault(world.line, f"{world.code.name}.state() has {topic!r}", fix)
             kind = message_class(topics[topic])
             self._check(world.line, f"{world.code.name}.state() for {topic}", kind, fields, topics[topic])
+
+
+def _is_plain(value: Any) -> bool:
+    """Return whether a recording can keep a value."""
+    if isinstance(value, dict):
+        return all(isinstance(key, str) and _is_plain(part) for key, part in value.items())
+    if isinstance(value, (list, tuple)):
+        return all(map(_is_plain, value))
+    return value is None or isinstance(value, (bool, int, float, str))
 
 
 _EXAMPLES = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from numbers import Real
 from typing import Any, TypeVar
 
 from grader.exercise.exercise import Durability, Qos, Reliability
@@ -104,7 +105,10 @@ class At:
 
 
 def at(*seconds: float) -> At:
-    """Return steps for these instants (s after the start)."""
+    """Return steps for these instants (s after the start). Raises ValueError for what is no such time."""
+    for second in seconds:
+        if isinstance(second, bool) or not isinstance(second, Real) or not second >= 0:
+            raise ValueError(f"at({second!r}): give seconds after the start, such as at(1.5)")
     return At(tuple(START + round(second * SECOND) for second in seconds))
 
 

@@ -45,9 +45,14 @@ SCENARIOS = """\
 from grader.scenario import *
 
 
+class Seen(Turtle):
+    def truth(self):
+        return {"level": 1.0, "x": 0.5}
+
+
 def scenarios(seed):
     steps = (at(0.5).publish("/scan", range=1.0), at(1.0).subscribe("/cmd_vel", name="late"))
-    return (Scenario("near", "", steps, duration=2.0, world=World(Turtle)), Scenario("far", "", steps, duration=2.0))
+    return (Scenario("near", "", steps, duration=2.0, world=World(Seen)), Scenario("far", "", steps, duration=2.0))
 """
 
 CHECKS = """\
@@ -97,6 +102,8 @@ def problems(folder: Path, line: str) -> list[tuple[int | None, str]]:
         ("near.must_take('gian', 1.0)", "there is no parameter 'gian'. Did you mean gain?"),
         ("near.must_match_series('linear.x', subscriber='lat')", "there is no subscriber 'lat'. Did you mean late?"),
         ("[m.linaer for m in near.messages_on(SPEED)]", "geometry_msgs/msg/Twist has no linaer. Did you mean linear?"),
+        ("near.must_reach('truth', {'lvel': 1.0}, tolerance=1, within=1)", "the world's truth has no 'lvel'"),
+        ("near.must_estimate('/cmd_vel', {'linear.x': 'levle'}, rmse=0.1)", "the world's truth has no 'levle'"),
         ("[m.stamp for m in near.messages_on(SPEED)]", "Twist has no stamp. There are: angular, linear"),
         ("each(near.messages_on(SPEED), lambda m: m.linaer)", "Twist has no linaer. Did you mean linear?"),
         ("[t.heder for m in near.messages_on('/tf') for t in m.transforms]", "TransformStamped has no heder"),

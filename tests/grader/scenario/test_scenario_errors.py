@@ -96,6 +96,18 @@ def scenarios(seed):
             MORE
         ),
     )
+
+
+class ListAsTruth:
+    reads, publishes = {}, {}
+
+    def step(self, seconds): ...
+
+    def state(self):
+        return {}
+
+    def truth(self):
+        return [0.98]
 """
 
 STEP_LINE = 27
@@ -138,6 +150,8 @@ def scenario_of(folder: Path, step: str = "", more: str = "") -> Scenario:
         ('at(0.5).leave("/moon")', "nothing here is called '/moon'"),
         ('at(0.5).transition("start")', "there is no transition 'start'"),
         ("Message(0, '/in', 'std_msgs/msg/Float64', {'data': None})", "which is double"),
+        ('at("0.5").publish("/in", data=1.0)', r"at\('0.5'\): give seconds after the start"),
+        ('at(-1.0).publish("/in", data=1.0)', r"at\(-1.0\): give seconds after the start"),
         ('at(6.05).publish("/in", data=1.0)', "6.05 s after the start, but the scenario first ends after 3 s"),
     ],
 )
@@ -161,6 +175,9 @@ def test_a_step_that_can_not_be_is_reported_with_its_line(tmp_path: Path, step: 
         ("world=World(Tank)", "the world Tank fails"),
         ('companions=Companion("nobody.py")', "there is no file nobody.py"),
         ("rate=-1", "rate=-1"),
+        ("world=World(Tank, level=1.0, period=0)", "the world's period=0"),
+        ("world=World(ListAsTruth)", r"ListAsTruth.truth\(\) returns \[0.98\].*Return a dictionary"),
+        ("namespace='/le ft'", "namespace='/le ft'"),
         ('servers=Server("/lamp", replies=reply(), gone=9.0)', "gone of /lamp comes 9 s after the start, but .* ends"),
         ("parameters={'gain': None}", "the parameter gain is NoneType"),
     ],
@@ -171,6 +188,25 @@ def test_so_is_what_is_wrong_with_a_peer(tmp_path: Path, more: str, message: str
         return
     with pytest.raises(ExerciseError) as caught:
         scenario_of(tmp_path, more=more)
+    assert caught.value.problem.line
+    assert re.search(message, f"{caught.value.problem.problem} {caught.value.problem.fix}"), str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("range = [0.0, 10.0]", "range = [10.0, 0.0]", "Give the lowest and the highest value"),
+        ('"/in"', '"/ín"', "in letters, digits and _"),
+        (
+            "[[parameter]]",
+            '[[parameter]]\nname = "gain"\ntype = "double"\n\n[[parameter]]',
+            "there are two .*for 'gain'",
+        ),
+    ],
+)
+def test_so_is_what_is_wrong_with_a_declaration(tmp_path: Path, old: str, new: str, message: str) -> None:
+    with pytest.raises(ExerciseError) as caught:
+        load(exercise_in(tmp_path, toml=TOML.replace(old, new)))
     assert caught.value.problem.line
     assert re.search(message, f"{caught.value.problem.problem} {caught.value.problem.fix}"), str(caught.value)
 
