@@ -13,6 +13,9 @@ VENV=${VENV%/}
 MARK=$VENV/.spinbook
 LOG=$VENV/setup.log
 
+# Root's environment is for students' programs, too, which run as another user.
+umask 022
+
 say() { printf '%s\n' "$@" >&2; }
 fail() { say "" "$@"; exit 1; }
 

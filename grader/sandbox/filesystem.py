@@ -17,6 +17,7 @@ import rmw_lockstep
 import ros_in_python
 from grader.sandbox.middleware import library_folder
 from grader.sandbox.program import SUBMISSION
+from groundwork.clean_environment import own_path
 from interface_compiler import activation
 
 HOME = "/home/student"
@@ -173,6 +174,16 @@ def interpreter() -> tuple[Path, ...]:
     return tuple(
         path for path in (*found, *ros_prefixes(), *library, *in_python, *activation.active()) if path.exists()
     )
+
+
+def closed_to_others() -> list[Path]:
+    """Return what a program would be shown of Python, of ROS 2 and of modules, and only its owner can read."""
+    folders = [path for path in (*interpreter(), *map(Path, own_path(sys.path))) if path.is_dir()]
+    # A module that was installed later may be closed alone.
+    entries = (entry for folder in folders for entry in os.scandir(folder) if entry.name.isidentifier())
+    modules = [Path(entry.path) for entry in entries if entry.is_dir() and entry.name != "__pycache__"]
+    readable = stat.S_IROTH | stat.S_IXOTH
+    return [path for path in dict.fromkeys((*folders, *modules)) if path.stat().st_mode & readable != readable]
 
 
 def own_packages() -> tuple[Path, ...]:

@@ -18,6 +18,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from grader.sandbox import filesystem
 from grader.sandbox.environment import RUNTIME_VARIABLES, for_trusted
 from grader.sandbox.program import IN_DOCKER, OPEN_FILES, Isolation, SandboxUnavailable
 from groundwork.clean_environment import module_command
@@ -52,6 +53,8 @@ def choose(requested: Isolation | None = None) -> Isolation:
         SandboxUnavailable: if `requested`, or without it every level, does not work here, or what all need is missing.
     """
     _refuse_what_no_level_works_with()
+    if requested is not Isolation.NONE:
+        refuse_what_students_can_not_read()
     if requested is not None:
         reason = _reason_against(requested)
         if reason is not None:
@@ -80,6 +83,17 @@ def _refuse_what_no_level_works_with() -> None:
         raise SandboxUnavailable(
             f"A program here may open {hard} files at once, and a student's needs {OPEN_FILES}. Raise the limit: "
             "`ulimit -Hn` shows it, /etc/security/limits.conf or the container's --ulimit sets it."
+        )
+
+
+def refuse_what_students_can_not_read() -> None:
+    """Refuse modules that only root can read: a student who imports one would be told that there is none."""
+    closed = filesystem.closed_to_others() if os.geteuid() == 0 else []
+    if closed:
+        places = [path for path in closed if not any(other in path.parents for other in closed)]
+        raise SandboxUnavailable(
+            "Root starts students' programs as another user, who can't read what is installed here. Let others read "
+            f"it: chmod -R a+rX {' '.join(map(str, places))}"
         )
 
 

@@ -18,10 +18,14 @@ _ALLOW = (
 def examine_sandbox(name: str) -> MachineFinding:
     """Let the grader run a program in each of its sandboxes."""
     try:
-        from grader.sandbox.isolation import available
-        from grader.sandbox.program import Isolation
+        from grader.sandbox.isolation import available, refuse_what_students_can_not_read
+        from grader.sandbox.program import Isolation, SandboxUnavailable
     except ImportError as error:
         return missing(name, f"the grader does not load: {error}", set_up_again())
+    try:
+        refuse_what_students_can_not_read()
+    except SandboxUnavailable as error:
+        return missing(name, "students' programs can't read all modules", str(error))
     levels = available()
     strong = [level for level in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES) if levels[level] is None]
     reasons = "; ".join(f"{level}: {reason}" for level, reason in levels.items() if reason)

@@ -57,15 +57,19 @@ def for_domain(domain: int, environment: Mapping[str, str]) -> dict[str, str]:
     if "HOME" not in environment:
         # rclpy.init raises without one, even if ROS_LOG_DIR is set.
         settings["HOME"] = tempfile.gettempdir()
-    if "ROS_LOG_DIR" not in environment and not _home_is_writable(environment):
+    if not _can_write_logs(environment):
         # It also raises if it can't write its log files.
         settings["ROS_LOG_DIR"] = os.fspath(Path(tempfile.gettempdir()) / f"spinbook-ros-log-{os.getuid()}")
     return settings
 
 
-def _home_is_writable(environment: Mapping[str, str]) -> bool:
-    home = environment.get("HOME")
-    return bool(home) and os.access(home or "", os.W_OK)
+def _can_write_logs(environment: Mapping[str, str]) -> bool:
+    """Make the folder of ROS's logs, as rclpy.init does; return whether that is possible."""
+    home = environment.get("ROS_HOME") or Path(environment.get("HOME", "/nowhere"), ".ros")
+    folder = Path(environment.get("ROS_LOG_DIR") or Path(home, "log")).expanduser()
+    with contextlib.suppress(OSError):
+        folder.mkdir(parents=True, exist_ok=True)
+    return os.access(folder, os.W_OK)
 
 
 def missing_middleware(environment: Mapping[str, str]) -> str | None:

@@ -13,6 +13,7 @@ from typing import Any
 from IPython.display import display
 
 from groundwork.clean_environment import without_foreign
+from groundwork.plain_text import print_in_any_encoding
 from spinbook.kernel import environment, magics
 from spinbook.kernel import environment as domain
 from spinbook.kernel.node_errors import ERROR
@@ -31,6 +32,7 @@ def load(shell: Any) -> None:
     if getattr(shell, "spinbook_session", None) is not None:
         return
     _leave_other_installations()
+    print_in_any_encoding()  # IPython in a terminal
     if name := environment.missing_middleware(os.environ):
         warnings.warn(
             f"RMW_IMPLEMENTATION names {name}, which is not installed here; the notebook uses the default middleware.",

@@ -142,6 +142,9 @@ def _compile(definitions: Sequence[Definition], found: dict[str, str], prefix: P
     _run_compiler(unfinished, checks.in_order(definitions))
     for package, key in found.items():
         (unfinished / "share" / package / prefixes.KEY).write_text(key, encoding="utf-8")
+    # Whatever the umask: where root grades, students' programs read them as another user.
+    for path in (unfinished, *unfinished.rglob("*")):
+        path.chmod(0o755 if path.is_dir() else 0o644)
     unfinished.rename(prefix)
 
 

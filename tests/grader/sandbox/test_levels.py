@@ -21,6 +21,7 @@ from grader.sandbox import (
     SandboxUnavailable,
     available,
     choose,
+    filesystem,
     isolation,
     landlock,
 )
@@ -211,7 +212,24 @@ def test_as_root_landlock_names_the_folder_that_hides_python_from_others(
 ) -> None:
     (tmp_path / "root").mkdir(mode=0o700)
     monkeypatch.setattr(os, "geteuid", lambda: 0)
-    monkeypatch.setattr(landlock.filesystem, "interpreter", lambda: (tmp_path / "root" / "bin" / "python",))
+    monkeypatch.setattr(filesystem, "interpreter", lambda: (tmp_path / "root" / "bin" / "python",))
 
     with pytest.raises(OSError, match=r"Python that other users can read, .* VENV=/opt/spinbook setup"):
         landlock.student_user()
+
+
+def test_as_root_what_other_users_can_not_read_is_named_before_a_student_misses_it(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, tried: list[Isolation]
+) -> None:
+    (tmp_path / "modules" / "numpy").mkdir(parents=True)
+    (tmp_path / "modules" / "numpy").chmod(0o700)
+    (tmp_path / "modules" / "__pycache__").mkdir(mode=0o700)
+    monkeypatch.setattr(filesystem, "interpreter", lambda: (tmp_path / "modules",))
+    monkeypatch.setattr(filesystem, "own_path", lambda path: [])
+
+    monkeypatch.setattr(os, "geteuid", lambda: 1000)
+    assert choose() is Isolation.BUBBLEWRAP
+    monkeypatch.setattr(os, "geteuid", lambda: 0)
+    with pytest.raises(SandboxUnavailable, match=rf"chmod -R a\+rX {tmp_path}/modules/numpy$"):
+        choose()
+    assert choose(Isolation.NONE) is Isolation.NONE
