@@ -2,9 +2,11 @@
 #
 #   make PYTHON=python3.12 ...     with another Python (default: the environment's own, otherwise python3)
 #   make VENV=/some/place ...      with the environment in another place
+#   make TESTS=yes setup           with what the tests and linters need, which `make test` installs otherwise
 
 PYTHON ?=
 VENV   ?= .venv
+TESTS  ?=
 BIN    := $(VENV)/bin
 
 # Set by another environment's ROS wheels, it would keep ours from finding their libraries.
@@ -22,13 +24,16 @@ unexport PYTHONDONTWRITEBYTECODE
 # A sourced ROS 2 brings pytest plugins that do not load with a current pytest: only those named here are.
 PYTEST := PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BIN)/pytest -p pytest_timeout -p xdist.plugin -p _hypothesis_pytestplugin
 
+# A target's variable is that of its prerequisites, too: here, of `setup`.
+test soak: TESTS := yes
+
 .PHONY: help setup course class test soak audit doctor wheel lock clean
 
 help:    ## List what can be made.
 	@sed -nE 's/^([a-z-]+):.*##/\1\t/p' Makefile | expand -t 10
 
 setup:   ## Make the virtual environment with every pinned dependency, or update it.
-	@PYTHON="$(PYTHON)" VENV="$(VENV)" sh setup.sh
+	@PYTHON="$(PYTHON)" VENV="$(VENV)" TESTS="$(TESTS)" sh setup.sh
 	@VENV="$(VENV)" sh fetch-pyodide.sh
 
 course: setup   ## Build, run and package the real course, make its site, and grade a class of twelve in every exercise.

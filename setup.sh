@@ -1,8 +1,9 @@
 #!/bin/sh
 # Makes the virtual environment in which everything runs. `make` calls this first each time; when nothing has
-# changed it does nothing. Set by the caller, both optional:
+# changed it does nothing. Set by the caller, all optional:
 #   PYTHON  the Python to use    (default: the environment's own, else python3 or a faster build of its version)
 #   VENV    where to make it     (default: .venv)
+#   TESTS   not empty: install what the tests and linters need, too
 #
 # What an environment was made for is written into $VENV/.spinbook, its pins last of all. Made for another Python, place
 # or ROS 2, it is made anew; with other pins, it is brought up to date; without pins, an interrupted set-up goes on.
@@ -184,6 +185,17 @@ install_batch() {
     rm "$1.unfinished"
 }
 
+# What only tests and linters need is more than a quarter of everything, so courses do without.
+install_for_tests() {
+    if [ -z "${TESTS:-}" ]; then return; fi
+    pins_of_tests=$(cksum <constraints-test.txt)
+    if [ "$(cat "$VENV/.tests" 2>/dev/null)" = "$pins_of_tests" ]; then return; fi
+    say "Installing what the tests need ..."
+    cp constraints-test.txt "$VENV/pins-of-tests.txt"
+    install_batch "$VENV/pins-of-tests.txt"
+    printf '%s\n' "$pins_of_tests" >"$VENV/.tests"
+}
+
 # What ended it, from the log: pip's errors, then what to do.
 give_up() {
     say "" "$1" ""
@@ -195,7 +207,7 @@ give_up() {
     elif grep -q 'DO NOT MATCH THE HASHES' "$LOG"; then
         say "" "A download is not the file that was pinned. Try again; if it stays so, something on the way alters it."
     elif grep -qi 'no space left' "$LOG"; then
-        say "" "The disk is full: about 1 GB is needed in $VENV, and as much for a moment in ${TMPDIR:-/tmp}."
+        say "" "The disk is full: about 0.8 GB is needed in $VENV, and as much for a moment in ${TMPDIR:-/tmp}."
     fi
     say "" "The whole log: $LOG. Run make again when it is fixed; set-up goes on where it was."
     exit 1
@@ -276,6 +288,7 @@ choose_python
 read_wishes
 if [ "$(cat "$MARK" 2>/dev/null)" = "$(mark "$interfaces")" ] && [ -x "$VENV/bin/python" ]; then
     compile_middleware again
+    install_for_tests
     exit 0
 fi
 
@@ -309,3 +322,4 @@ compile_middleware anew
 compile_interfaces
 pwd -P >"$VENV/.checkout"
 mark "$interfaces" >"$MARK"
+install_for_tests

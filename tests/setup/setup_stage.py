@@ -123,6 +123,7 @@ def make_checkout(parent: Path) -> Checkout:
         "setuptools==79.0.1 \\\n    --hash=sha256:0\nclick==8 \\\n    --hash=sha256:1\n"
     )
     (folder / "constraints-ros.txt").write_text("ros-rclpy==7 \\\n    --hash=sha256:2\n")
+    (folder / "constraints-test.txt").write_text("mypy==2 \\\n    --hash=sha256:4\n")
     (stage / "bin").mkdir(parents=True)
     environment = {
         "PATH": f"{stage / 'bin'}:/usr/bin:/bin",

@@ -50,6 +50,19 @@ def test_a_second_run_does_nothing_and_says_nothing(checkout: Checkout) -> None:
     assert checkout.calls == []
 
 
+def test_what_only_tests_need_is_installed_once_and_only_for_them(checkout: Checkout) -> None:
+    checkout.set_up()
+    assert not any("pins-of-tests" in call for call in pips(checkout))
+    checkout.forget_calls()
+    code, said = checkout.set_up(TESTS="yes")
+    assert (code, said) == (0, "Installing what the tests need ...\n")
+    (pins,) = pips(checkout)
+    assert "--no-deps --require-hashes" in pins
+    assert (checkout.folder / ".venv" / "pins-of-tests.txt").read_text().startswith("mypy==2")
+    for tests in ("yes", ""):
+        assert checkout.set_up(TESTS=tests) == (0, "")
+
+
 def test_changed_pins_are_installed_into_the_same_environment(checkout: Checkout) -> None:
     checkout.set_up()
     checkout.forget_calls()
