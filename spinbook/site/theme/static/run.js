@@ -45,10 +45,18 @@
         button.disabled = false;
       });
     }
-    add(cell.querySelector(".cell-links"), "page.js", "Run", `Run ${name}`, (page) => page.run(cell)).classList.add("play");
+    const run = (page) => (keep("has-run", true), page.run(cell));
+    add(cell.querySelector(".cell-links"), "page.js", "Run", `Run ${name}`, run).classList.add("play");
     // A click into the code edits it. Who selects some of it wants to copy.
     const edit = ({ clientX: x, clientY: y }) => getSelection().isCollapsed && load("page.js").then((page) => page.edit(cell, { x, y }), () => {});
     cell.querySelector(".cell_input pre, .highlight pre")?.addEventListener("click", edit);
+  }
+  // Who has never run anything can't know that it works in the page.
+  if (places.length > 0 && !kept("has-run")) {
+    const hint = document.createElement("p");
+    hint.className = "run-hint";
+    hint.textContent = "Run starts a program here, in your browser. The first time, it downloads ROS 2. To change the code, click into it.";
+    places[0].before(hint);
   }
   // Who has run nodes of this course before gets a process while reading. Nothing has to be loaded from the website.
   const near = new IntersectionObserver((entries) => {
@@ -60,7 +68,7 @@
   isKept?.then((is) => is && places.forEach((cell) => near.observe(cell)), () => {});
   const starter = document.querySelector("body.kind-exercise main #starter");
   if (starter) {
-    add(starter.querySelector("p"), "exercise.js", "Edit and check here", "Edit and check the starter here", (page, button) => {
+    add(starter.querySelector("p:has(.button)"), "exercise.js", "Edit and check here", "Edit and check the starter here", (page, button) => {
       button.remove();
       page.open(starter).open();
     }).className = "button";
