@@ -277,6 +277,7 @@ def test_a_head_is_one_row_and_housekeeping_one_line(browser: Browser, changed: 
         assert max(heads) <= 46
         assert shown.page.locator(".cell-strip").evaluate_all(height) == [pytest.approx(43, abs=4)]
         assert shown.page.get_by_role("button", name=re.compile("^Run ")).count() == 6
+        expect(shown.page.get_by_text("Run starts a program here, in your browser.")).to_have_count(1)
         choose(shown.page.locator(".cell-node").first, "Download talker.py")
         expect(shown.page.locator(".more[open]")).to_have_count(0)
 
