@@ -56,9 +56,9 @@ class Cell {
     return this.editor.text;
   }
 
-  // What the bar calls it: its file, otherwise how its first line begins.
+  // What the bar calls it: its file, otherwise how its last line begins.
   get title() {
-    return this.file || this.source.trim().split(/\s+/, 3).join(" ") || this.name;
+    return this.file || this.source.trim().split("\n").at(-1).split(/\s+/, 3).join(" ") || this.name;
   }
 
   get program() {

@@ -132,7 +132,7 @@ async function magic(cell, [word, ...written]) {
   else if (word === "ros2") {
     const command = { kind: "ros2", words: ["ros2", ...args], text: `ros2 ${args.join(" ")}` };
     await inTerminal(cell, (process) => runCommand(cell, process, command));
-  } else cell.fail(`%${word} does not work in a page. It works in the notebook.`);
+  } else cell.fail(`%${word} does not work in a page. These do: %${[...Object.keys(known), "timeline", "plot", "robot", "graph", "ros2"].join(", %")}.`);
 }
 
 // `%env NAME=VALUE`, `%env NAME VALUE`, `%env NAME`, `%env`, and a terminal's `export`: for processes started later.
@@ -146,6 +146,7 @@ function setVariable(cell, args) {
 
 async function drawPlot(cell, process, args) {
   const { words: paths, seconds = cell.about.seconds ?? SHOWN_S, title = "" } = optionsOf(args);
+  if (paths.length === 0) return cell.fail("Plot what? Write %plot /TOPIC/FIELD.");
   cell.say(`Recording for ${seconds} s …`, "running");
   const drawn = await process.call("plot", { paths, seconds: Number(seconds), title });
   if (drawn) show(cell, drawn, "live-plot");
