@@ -1,4 +1,8 @@
-"""The course's own exercises pass their audit."""
+"""The course's own exercises pass their audit.
+
+Every `make test` grades the course's solutions and beginners' mistakes (tests/grader/grading), and every mistake in the
+exercise of a new course (tests/spinbook/new/test_new.py).
+"""
 
 from __future__ import annotations
 
@@ -21,22 +25,9 @@ ROOT = Path(__file__).parents[3]
 COURSES = (ROOT, ROOT / "spinbook" / "new" / "template")
 EXERCISES = [file.parent for course in COURSES for file in sorted(course.glob("exercises/*/exercise.toml"))]
 
-#: Audited by every `make test`. The course's solutions are graded by tests/grader/grading, and beginners' mistakes.
-ALWAYS = {"speed_limit"}
-
-
 def to_fix(result: Audit) -> str:
     """Return what there is to fix, as text."""
     return "\n".join(f"{problem.problem}\n    {problem.place}\n    {problem.fix}" for problem in result.problems)
-
-
-@pytest.mark.timeout(900)
-@pytest.mark.parametrize("folder", [f for f in EXERCISES if f.name in ALWAYS], ids=lambda folder: folder.name)
-def test_every_mistake_is_caught_by_the_checks_that_it_names(
-    folder: Path, workers_with_interfaces: WorkerPool, cache: Path
-) -> None:
-    result = audit(load(folder), Options(), workers_with_interfaces, Silence(), quick=True, most=0)
-    assert not result.problems, to_fix(result)
 
 
 @pytest.mark.soak
