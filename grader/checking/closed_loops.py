@@ -214,6 +214,8 @@ def _of_way(way: Way, goal: tuple[float, ...]) -> Cause:
         nearly = math.dist(end, goal) < length / 4
         steps = hints("stopped_before") if nearly else hints("stopped_elsewhere")
         return Cause(f"It stopped {math.dist(end, goal):.3g} away.", *steps)
+    if all(math.dist(end, goal) <= math.dist(point, goal) for _, point in way):
+        return Cause("It was still coming closer at the end.", *hints("too_slow"))
     return UNKNOWN
 
 

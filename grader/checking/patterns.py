@@ -64,7 +64,7 @@ def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "") -> 
     """
     telling = [(e, g) for e, g in pairs if abs(e) > SMALLEST and math.isfinite(e) and math.isfinite(g)]
     if len(telling) < FEWEST:
-        return UNKNOWN
+        return _degrees(telling, field, unit)
     if len({got for _, got in telling}) == 1:
         return _constant(field, telling[0][1])
     if any(e < 0 for e, _ in telling) and all(math.isclose(g, abs(e), rel_tol=1e-6) for e, g in telling):
@@ -76,6 +76,12 @@ def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "") -> 
     if all(math.isclose(g - e, offset, rel_tol=1e-3, abs_tol=1e-9) for e, g in telling):
         return _offset(offset, field)
     return UNKNOWN
+
+
+def _degrees(telling: Sequence[tuple[float, float]], field: str, unit: str) -> Cause:
+    """Return the cause of degrees for radians: no other mistake has this factor, so that one value shows it."""
+    exact = all(math.isclose(got, math.degrees(expected), rel_tol=1e-5) for expected, got in telling)
+    return _unit(field, "degrees", "rad") if telling and exact and unit == "rad" else UNKNOWN
 
 
 def _constant(field: str, value: float) -> Cause:

@@ -2,178 +2,19 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from grader.checking.comparator import equal
-from grader.checking.message import Message
-from grader.checking.run import Run
 from grader.exercise.exercise import Exercise
+from grader.report.curves import Curve, Point, curves, drawn_quantity
 from grader.report.pages import template
 from grader.report.path_plot import path_of, path_plot
-from grader.scenario.times import SECOND, START
 from ros_in_python.axis_marks import round_values
 
 if TYPE_CHECKING:
     from grader.grading.grade import Grade
-
-#: (seconds after the scenario's start, value)
-Point = tuple[float, float]
-
-#: The highest value that is drawn, and the largest number of curves.
-HIGHEST, MOST = 1e9, 24
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """The field that is drawn. `element` is the word for one value; the list `named_by` contains the names of all.
-
-    `topic` is the node's. `state` is the topic on which a world publishes it instead, if the node moves it.
-    """
-
-    field: str
-    unit: str
-    element: str
-    named_by: str
-    topic: str
-    state: str = ""
-
-
-@dataclass(frozen=True)
-class Curve:
-    """One element. Values that are not finite are left out of `expected` and `got`, but count as wrong.
-
-    `first_wrong` is the first point that differs from the solution, at the node's value. If the node has no value
-    there, or none that can be drawn, it is at the solution's.
-    """
-
-    element: str
-    expected: tuple[Point, ...]
-    got: tuple[Point, ...]
-    first_wrong: Point | None
-
-
-def drawn_quantity(exercise: Exercise, grade: Grade, scenario: str) -> Quantity | None:
-    """Return the first field that exercise.toml gives a unit for, and that the node publishes; without units, the first
-    number that changes.
-
-    In a closed loop, it is the first that the node moves: each node may do that with values of its own.
-    """
-    for topic in exercise.inputs if scenario in grade.recordings else ():
-        mine, its = (
-            [message.fields for message in runs[scenario].sent if message.topic == topic.name]
-            for runs in (grade.recordings, grade.references)
-        )
-        if mine != its:
-            for field, unit in topic.units.items():
-                return Quantity(field, unit, "value", "name", "", topic.name)
-    for topic in exercise.outputs:
-        for field, unit in topic.units.items():
-            called, named_by = (topic.elements.called, topic.elements.named_by) if topic.elements else ("value", "name")
-            return Quantity(field, unit, called, named_by, topic.name)
-    runs = [of[scenario] for of in (grade.references, grade.recordings) if scenario in of]
-    published = [message for run in runs for message in run.received]
-    for topic in exercise.outputs:
-        values = [dict(_numbers(message.fields)) for message in published if message.topic == topic.name]
-        if changing := [field for field in values[0] if len({v.get(field) for v in values}) > 1] if values else []:
-            return Quantity(changing[0], "", "value", "name", topic.name)
-    return None
-
-
-def _numbers(fields: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, float]]:
-    """Yield each field that is a number, by its full name. A header's stamp only says when."""
-    for name, value in fields.items():
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
-            yield f"{before}{name}", value
-        elif isinstance(value, Mapping) and name not in ("header", "stamp"):
-            yield from _numbers(value, f"{before}{name}.")
-
-
-def curves(grade: Grade, exercise: Exercise, scenario: str, quantity: Quantity) -> tuple[Curve, ...]:
-    """Return the curves of one scenario that is in the grade's recordings, one for each name.
-
-    A field that is a single number gives one curve, named as the field. Messages without such a field or without names
-    give none.
-    """
-    if quantity.state:
-        return (_state_curve(grade, scenario, quantity),)
-    run = Run(exercise, grade.recordings[scenario], grade.references[scenario])
-    expected: dict[str, list[Point]] = {}
-    got: dict[str, list[Point]] = {}
-    moments = [(one.sent.at, one.expected, one.answers) for one in run.exchanges]
-    if not moments:
-        # It publishes on its own.
-        its, mine = (run.published_on(quantity.topic, reference) for reference in (True, False))
-        moments = [(Message(m).at, (Message(m),), ()) for m in its] + [(Message(m).at, (), (Message(m),)) for m in mine]
-    try:
-        for at, right, answers in moments:
-            for lines, messages in ((expected, right), (got, answers)):
-                for message in [one for one in messages if one.topic == quantity.topic]:
-                    for element, value in _values(message, quantity).items():
-                        lines.setdefault(str(element), []).append((at, _number(value)))
-    except (LookupError, TypeError):
-        return ()
-    elements = [*expected, *(element for element in got if element not in expected)][:MOST]
-    since = _first_finding(grade, scenario, [at for at, _, _ in moments])
-    return tuple(_curve(element, expected.get(element, []), got.get(element, []), since) for element in elements)
-
-
-def _state_curve(grade: Grade, scenario: str, quantity: Quantity) -> Curve:
-    """Return what a world published of its state. The cross is at the first finding that has a time."""
-    expected, got = (
-        [
-            ((message.at - START) / SECOND, _number(Message(message).value(quantity.field)))
-            for message in runs[scenario].sent
-            if message.topic == quantity.state
-        ]
-        for runs in (grade.references, grade.recordings)
-    )
-    at = _times_of_findings(grade, scenario)
-    before = [point for point in _drawable(got) if at and point[0] <= at[0] + 1e-6]
-    return Curve(quantity.field, _drawable(expected), _drawable(got), before[-1] if before else None)
-
-
-def _times_of_findings(grade: Grade, scenario: str) -> list[float]:
-    findings = [verdict.finding for verdict in grade.verdicts if verdict.status == "failed" and not verdict.hidden]
-    return sorted(one.at for one in findings if one and one.scenario == scenario and one.at is not None)
-
-
-def _first_finding(grade: Grade, scenario: str, times: list[float]) -> float:
-    """Return the time of the last message before the first finding: an earlier difference is allowed."""
-    at = next(iter(_times_of_findings(grade, scenario)), 0.0)
-    return max((time for time in times if time <= at + 1e-9), default=at)
-
-
-def _values(message: Message, quantity: Quantity) -> dict[str, object]:
-    value = message.value(quantity.field)
-    if isinstance(value, (int, float)):
-        return {quantity.field: value}
-    return message.by(quantity.named_by, quantity.field)
-
-
-def _number(value: object) -> float:
-    return float(value) if isinstance(value, (int, float)) else math.nan
-
-
-def _curve(element: str, expected: list[Point], got: list[Point], since: float) -> Curve:
-    return Curve(element, _drawable(expected), _drawable(got), _first_difference(dict(expected), dict(got), since))
-
-
-def _drawable(points: list[Point]) -> tuple[Point, ...]:
-    return tuple(point for point in points if abs(point[1]) < HIGHEST)
-
-
-def _first_difference(expected: dict[float, float], got: dict[float, float], since: float) -> Point | None:
-    for at in sorted(at for at in {*expected, *got} if at >= since):
-        if at not in expected or at not in got or not equal(got[at], expected[at], 1e-6):
-            shown = (value for value in (got.get(at), expected.get(at)) if value is not None and abs(value) < HIGHEST)
-            return at, next(shown, 0.0)
-    return None
-
 
 #: In units of the picture, which is drawn as wide as its page allows.
 WIDTH, LEFT, RIGHT, HEIGHT, GAP, TOP, BOTTOM = 500, 52, 8, 80, 34, 52, 12

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
-from grader.report.feedback_plot import Curve, Point, Quantity, curves, drawn_quantity
+from grader.report.curves import Curve, Point, Quantity, curves, drawn_quantity
 from grader.report.path_plot import PlanePath, path_of
 from grader.report.printable import printable
 from groundwork.files import write_if_changed

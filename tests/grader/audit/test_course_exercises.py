@@ -25,6 +25,7 @@ ROOT = Path(__file__).parents[3]
 COURSES = (ROOT, ROOT / "spinbook" / "new" / "template")
 EXERCISES = [file.parent for course in COURSES for file in sorted(course.glob("exercises/*/exercise.toml"))]
 
+
 def to_fix(result: Audit) -> str:
     """Return what there is to fix, as text."""
     return "\n".join(f"{problem.problem}\n    {problem.place}\n    {problem.fix}" for problem in result.problems)

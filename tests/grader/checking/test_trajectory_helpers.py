@@ -29,6 +29,10 @@ def test_a_right_way_passes() -> None:
             moved(START, (1.0, 2.0, 1.5), (2.5, 2.0, 1.5), (3.0, 2.0, 1.5)),
             "the closest it got was 2.5. It stopped 2.5 away.",
         ),
+        (
+            moved(START, (1.0, 1.0, 1.0), (2.0, 2.0, 2.0)),
+            "the closest it got was 2.24. It was still coming closer at the end.",
+        ),
         (moved(START, (3.0, 4.0, 3.0)), "but got there only after 3.00 s."),
         (moved(START, (1.0, 4.0, 3.0), (1.5, 8.0, 6.0), (2.0, 4.0, 3.0)), "it goes 5 beyond x = 4, y = 3; at most 0.5"),
         (moved(START, (2.0, 4.0, 3.0), (3.0, 3.0, 3.0)), "it reached x = 4, y = 3 at 2.00 s, but did not stay there."),
