@@ -141,7 +141,7 @@ class Shells:
 
     def _refused(self, command: Command, out: list[ClassifiedFence], line: int) -> Reason | None:
         if command.kind is CommandKind.COLCON:
-            return self._colcon(command)
+            return self._colcon(command, out)
         if command.kind is not CommandKind.ROS2:
             return None
         if self._lacks_file(command):
@@ -287,11 +287,14 @@ class Shells:
         self._hello.add((name, created_node(command.words)))
         return None
 
-    def _colcon(self, command: Command) -> Reason | None:
+    def _colcon(self, command: Command, out: Sequence[ClassifiedFence]) -> Reason | None:
         words = command.words
         makes = bool(self._nodes) or self.has_exercise
         there = self._created | ({self.package} if makes else set())
         there |= {package for package, _ in self.own.executables} & self.own.names if self._nodes else set()
+        if words[1:2] == ("build",):
+            # `ros2 run` has told which package a node above belongs to.
+            there |= {package for number in self._nodes.values() for package, _ in out[number].executables}
         chosen = _selected(words)
         unknown = [name for name in chosen if name not in there]
         if not there or (chosen and unknown and not (self._nodes and set(chosen) & self.own.names)):

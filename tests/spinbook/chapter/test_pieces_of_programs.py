@@ -157,6 +157,7 @@ GRIPPER = f'```python title="gripper.py"\n{IMPORTS}{TALKER}{MAIN}```\n'
         ([GRIPPER, SETUP], "ros2 run arm hand"),
         ([GRIPPER], "ros2 run arm talker"),
         ([IMPORTS + TALKER + MAIN], "ros2 run my_package talker"),
+        ([IMPORTS + TALKER + MAIN], "ros2 run my_package talker\ncolcon build --packages-select my_package"),
         (["```bash\nros2 pkg create --build-type ament_python arm\n```\n"], "colcon build --packages-select arm"),
         ([GRIPPER, SETUP], "cd ~/ros2_ws && colcon build --packages-select arm && source install/setup.bash"),
         ([GRIPPER], "ros2 topic echo /chatter std_msgs/msg/String"),
