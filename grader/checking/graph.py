@@ -224,6 +224,10 @@ def _has_no_others(run: RecordedRun, declared: list[tuple[Kind, str]]) -> None:
     for kind, name in declared:
         ends = end_points(run, kind, name)
         nodes = [end.node for end in ends] if run.exercise.programs else ["" for _ in ends]
+        if len({end.node for end in ends}) > 1 and any(start.namespace for start in _starts(run)):
+            expected = ", ".join(start.resolved(f"{start.namespace}{name}") for start in _starts(run))
+            text = f"{len(ends)} programs have a {kind} on {name}: a name that begins with / is in no namespace."
+            _wrong(f"{text} Expected {expected}.", expected, name)
         if (count := max(map(nodes.count, nodes), default=0)) > 1:
             _wrong(f"your node has {count} {kind}s on {name}. Expected 1.", "1", str(count))
 

@@ -8,9 +8,9 @@ from collections.abc import Callable
 from grader.classroom.formats.format import Export, Format, Interpretation, Parts, UploadedFile, person
 from grader.classroom.names import normal, student_id
 from grader.classroom.times import UNKNOWN
-from grader.submission.file_kinds import original_name
+from grader.submission.file_kinds import kind_of, original_name
 
-SUFFIX = re.compile(r"(\.py\.txt|\.ipynb\.(json|txt)|\.tar\.\w+|\.[^.]+)$", re.IGNORECASE)
+SUFFIX = re.compile(r"(\.py\.txt|\.launch\.\w+|\.ipynb\.(json|txt)|\.tar\.\w+|\.[^.]+)$", re.IGNORECASE)
 
 #: Instructors' own tables and notes, next to the submissions.
 NOT_WORK = (".csv", ".tsv", ".xls", ".xlsx", ".ods", ".md", ".yml", ".yaml", ".toml", ".html")
@@ -26,7 +26,8 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
     originals = list(names.values())
 
     def understand(parts: Parts) -> Interpretation:
-        if len(parts) == 1 and (parts[0].lower().endswith(NOT_WORK) or README.fullmatch(parts[0])):
+        is_work = len(parts) > 1 or kind_of(parts[0]) == "launch file"
+        if not is_work and (parts[0].lower().endswith(NOT_WORK) or README.fullmatch(parts[0])):
             return "a table, a note or a page, not a submission"
         name = _name(parts)
         while names.get(name, name) != name and (names[name] in names or originals.count(names[name]) == 1):

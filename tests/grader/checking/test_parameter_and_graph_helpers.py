@@ -10,7 +10,7 @@ from made_up import EMPTY, ENDS, EXERCISE, ns, run, says
 
 from grader.exercise.exercise import ProgramFile, Topic
 from grader.recording import Ending, Recording
-from grader.recording.events import ParameterChange, ParameterReading, ProgramExit
+from grader.recording.events import ParameterChange, ParameterReading, ProgramExit, ProgramStart
 
 
 def set_to(*changes: tuple[Any, bool | None]) -> Recording:
@@ -115,6 +115,14 @@ def test_end_points_that_are_too_many() -> None:
     assert "a publisher on /clock, which is not" in says(lambda: run(clock).must_have_interface(only=True))
     twice = replace(EMPTY, end_points=(*ENDS, ENDS[1]))
     assert says(lambda: run(twice).must_have_interface(only=True)) == "Your node has 2 publishers on /out. Expected 1."
+
+
+def test_a_name_that_two_robots_share_although_they_have_namespaces_is_said_to_be_absolute() -> None:
+    ends = tuple(replace(end, node=f"/{side}/worker") for side in ("left", "right") for end in ENDS)
+    programs = tuple(ProgramStart(side, "worker", f"/{side}") for side in ("left", "right"))
+    message = says(lambda: run(replace(EMPTY, end_points=ends, programs=programs)).must_have_interface(only=True))
+    assert message.startswith("2 programs have a ")
+    assert "a name that begins with / is in no namespace. Expected /left/" in message
 
 
 def test_each_of_several_programs_may_have_one_end_of_a_topic() -> None:

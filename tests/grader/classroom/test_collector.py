@@ -60,6 +60,12 @@ def test_a_file_a_student_or_a_folder_a_student(tmp_path: Path) -> None:
     assert not collected.questions
 
 
+def test_launch_files_in_xml_and_yaml_are_submissions_and_other_yaml_is_not(tmp_path: Path) -> None:
+    collected = taken(written(tmp_path / "s", "anna.launch.xml", "bert.launch.yaml", "cleo.py", "class.yaml"), tmp_path)
+    assert files(collected) == {"anna": "anna.launch.xml", "bert": "bert.launch.yaml", "cleo": "cleo.py"}
+    assert "not a submission" in why(collected)["class.yaml"]
+
+
 def test_the_upload_that_spinbook_submit_writes_is_a_submission(tmp_path: Path) -> None:
     assert files(taken(written(tmp_path / "s", "anna.zip"), tmp_path)) == {"anna": "anna.zip"}
 
