@@ -66,7 +66,8 @@ def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "") -> 
     if len(telling) < FEWEST:
         return _degrees(telling, field, unit)
     if len({got for _, got in telling}) == 1:
-        return _constant(field, telling[0][1])
+        right = sum(math.isclose(got, expected, rel_tol=1e-6) for expected, got in telling)
+        return _constant(field, telling[0][1]) if 2 * right < len(telling) else UNKNOWN
     if any(e < 0 for e, _ in telling) and all(math.isclose(g, abs(e), rel_tol=1e-6) for e, g in telling):
         return Cause(f"No {field} is negative: the sign is lost.", *hints("wrong_sign"))
     ratio = telling[0][1] / telling[0][0]

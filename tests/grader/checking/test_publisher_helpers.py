@@ -142,6 +142,16 @@ def test_a_sign_that_is_lost_is_named() -> None:
     assert not common(wrong, "speed")
 
 
+def test_a_value_at_its_limit_is_not_said_to_be_constant() -> None:
+    assert not common([(1.0, 1.0), (0.9, 1.0), (1.0, 1.0)], "speed")
+    assert common([(1.0, 1.0), (0.9, 1.0), (0.8, 1.0)], "speed").seen == "Every speed is 1."
+
+
+def test_one_value_in_degrees_is_named_and_one_factor_of_another_kind_is_not() -> None:
+    assert common([(-0.0314, -1.79909)], "offset", "rad").seen == "Every offset is in degrees."
+    assert not common([(0.5, 1.0)], "offset", "rad")
+
+
 def test_a_series_that_is_one_message_late_or_early() -> None:
     late, early = published(TIMES, [0.0, *VALUES[:-1]]), published(TIMES, [*VALUES[1:], 0.0])
     assert says(lambda: run(late, RIGHT).must_match_series("data")).endswith("Every message is one message late.")
