@@ -27,7 +27,7 @@ PYTEST := PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BIN)/pytest -p pytest_timeout -p xd
 # A target's variable is that of its prerequisites, too: here, of `setup`.
 test soak: TESTS := yes
 
-.PHONY: help setup course class test soak audit doctor wheel lock clean
+.PHONY: help setup course class figures test soak audit doctor wheel lock clean
 
 help:    ## List what can be made.
 	@sed -nE 's/^([a-z-]+):.*##/\1\t/p' Makefile | expand -t 10
@@ -56,6 +56,9 @@ test: setup   ## Check style and the direction of imports, then run every test; 
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
 	$(PYTEST) -n 4
+
+figures: setup   ## Write docs/figures.md: seconds, memory and ratios to other graders, on an idle machine in half an hour.
+	$(BIN)/python benchmarks/figures.py
 
 soak: setup   ## Run the long suites in full, and count how often the same program gets another recording or grade.
 	$(PYTEST) -m soak
