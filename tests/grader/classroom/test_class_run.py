@@ -48,7 +48,7 @@ def test_everybody_gets_what_is_theirs_whatever_others_hand_in(graded: tuple[Sma
     assert small.entry("fay")["grade"]["outcome"] == "did-not-start"
     assert "6 students in a folder with one file (or one folder) per student." in printed
     assert "fay: 0 of 20 points (did-not-start)" in printed
-    assert "6 grades: median 17 of 20 points, 2 with full marks." in printed
+    assert "6 grades: median 16 of 20 points, 2 with full marks." in printed
 
 
 def test_grades_of_another_exercise_are_never_replaced(done: SmallClass) -> None:
@@ -100,7 +100,7 @@ def test_what_changed_is_graded_again_and_the_difference_is_reported(done: Small
     code, printed = done.grade()
     assert code == 0, printed
     assert "5 unchanged since they were graded." in printed
-    assert "1/1 carl: 16 -> 20 points; up: test_too_fast_backwards (+4)" in printed
+    assert "1/1 carl: 15 -> 20 points; up: test_too_fast_backwards (+5)" in printed
     assert done.finals() == {**POINTS, "carl": 20}
 
 
@@ -110,15 +110,16 @@ def test_regrade_grades_one_student_again_though_nothing_changed(done: SmallClas
     for verdict in entry["grade"]["verdicts"]:
         # As an older, mistaken version might have judged.
         if verdict["name"] == "test_not_a_number":
-            verdict |= {"status": "passed", "earned": 2, "finding": None}
-        if verdict["name"] == "test_node_is_as_described":
+            verdict |= {"status": "passed", "earned": 3, "finding": None}
+        if verdict["name"] in ("test_safe_speeds_pass", "test_node_is_as_described"):
             verdict |= {"status": "failed", "earned": 0}
-    entry["grade"]["score"] = 18
+    entry["grade"]["score"] = 17
     kept.write_text(json.dumps(entry), encoding="utf-8")
     code, printed = done.grade("--regrade", "dora")
     assert code == 0, printed
     assert "5 unchanged" in printed
-    assert "dora: 18 -> 18 points; up: test_node_is_as_described (+2); down: test_not_a_number (-2)" in printed
+    up = "up: test_safe_speeds_pass (+1), test_node_is_as_described (+2)"
+    assert f"dora: 17 -> 17 points; {up}; down: test_not_a_number (-3)" in printed
     code, printed = done.grade("--regrade", "nobody")
     assert code == 2
     assert '--regrade nobody: no submission from a student called "nobody".' in printed
@@ -183,9 +184,9 @@ def test_late_work_loses_and_a_changed_due_date_needs_no_grading(done: SmallClas
     code, printed = done.grade("--overrides", str(wishes))
     assert code == 0, printed
     assert "6 unchanged since they were graded." in printed
-    assert done.finals() == {"ana": 20, "bert": 18, "carl": 17.4, "dora": 16.2, "emil": 12.6, "fay": 0}
+    assert done.finals() == {"ana": 20, "bert": 18, "carl": 16.5, "dora": 15.3, "emil": 10.8, "fay": 0}
     reasons = [adjustment["reason"] for adjustment in done.entry("carl")["adjustments"]]
-    assert reasons[0].startswith("handed in 23 h 7 min late, by the file's date: 10 % of 16 points")
+    assert reasons[0].startswith("handed in 23 h 7 min late, by the file's date: 10 % of 15 points")
     assert reasons[1] == "found a mistake in the task"
     assert "was ill" in (done.folder / "results" / "students" / "ana" / "feedback.html").read_text(encoding="utf-8")
 
@@ -274,14 +275,14 @@ def test_changed_checks_judge_what_was_recorded_and_replace_nothing_unasked(done
     done.hand_in("bert", "changed = True\n")
     code, printed = done.grade("--rejudge")
     assert code == 0, printed
-    assert "carl: 16 -> 20 points; up: test_too_fast_backwards (+4)" in printed
-    assert "emil: 14 -> 18 points; up: test_too_fast_backwards (+4)" in printed
+    assert "carl: 15 -> 20 points; up: test_too_fast_backwards (+5)" in printed
+    assert "emil: 12 -> 17 points; up: test_too_fast_backwards (+5)" in printed
     assert "no recordings that fit, so grade them without --rejudge: bert" in printed
     assert "Nothing was replaced." in printed
     assert done.finals() == POINTS
     code, printed = done.grade("--rejudge", "--yes", "--publish")
     assert code == 0, printed
-    assert done.finals() == {**POINTS, "carl": 20, "emil": 18}
+    assert done.finals() == {**POINTS, "carl": 20, "emil": 17}
     zips = done.folder / "results" / "to-students"
     assert {file.stem for file in zips.iterdir()} == set(POINTS)
     with zipfile.ZipFile(zips / "carl.zip") as archive:
