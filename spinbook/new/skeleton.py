@@ -76,7 +76,7 @@ if __name__ == "__main__":
 
 #: A launch file's code. The author says which program each node is.
 _LAUNCH = '''\
-"""{title}."""
+"""{title}"""
 
 from launch import LaunchDescription
 from launch_ros.actions import Node
@@ -109,7 +109,7 @@ def skeleton(exercise: Exercise) -> str:
     exercise.toml does not say which of several programs has which topic: comments then list them for the author.
     """
     if exercise.nodes:
-        return _LAUNCH.format(title=exercise.title, nodes="\n".join(map(_launched, exercise.nodes)))
+        return _LAUNCH.format(title=_sentence(exercise.title), nodes="\n".join(map(_launched, exercise.nodes)))
     if not exercise.programs:
         node = ProgramFile(exercise.file_name, exercise.node_name, exercise.class_name)
         return _program(exercise.title, node, exercise.topics, exercise.endpoints, exercise.parameters)
@@ -157,14 +157,20 @@ def _filled(title: str, node: ProgramFile, imports: str, init: Sequence[str], me
     # With one thread, an action's callback that waits by the node's clock would wait forever.
     spun = "node, MultiThreadedExecutor()" if "MultiThreadedExecutor" in imports else "node"
     body = _BODY.format(class_name=class_name, node=node.node, init="\n".join(init), methods=methods, spun=spun)
-    return f'"""{title}."""\n\n{imports}\n\n\n{body}'
+    return f'"""{_sentence(title)}"""\n\n{imports}\n\n\n{body}'
+
+
+def _sentence(title: str) -> str:
+    return title if title.endswith((".", "?", "!")) else f"{title}."
 
 
 def _parameter(parameter: Parameter) -> str:
     if parameter.default is None:
         kind = f"Parameter.Type.{parameter.type.upper()}"
         return f'self.declare_parameter("{parameter.name}", rclpy.parameter.{kind})'
-    return f'self.declare_parameter("{parameter.name}", {parameter.default!r})'
+    default = parameter.default
+    written = json.dumps(default, ensure_ascii=False) if isinstance(default, str) else repr(default)
+    return f'self.declare_parameter("{parameter.name}", {written})'
 
 
 def _topic(topic: Topic) -> Iterator[str]:

@@ -34,6 +34,11 @@ HEAD = """\
 
 Made from the docstrings; each example is run by a test. The [guide](writing-checks.md) says how to write a check.
 `run` is the recording of one scenario, which the check's argument names. Times are in seconds unless it says ns.
+
+```python
+from grader.checking import Run, check, each, fail
+from grader.checking.cause import Cause
+```
 """
 
 #: Title -> the module whose functions are methods of a run.
