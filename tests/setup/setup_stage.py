@@ -39,7 +39,8 @@ _ENVIRONMENT_PYTHON = """#!/bin/sh
 if [ "$1 $2" = "-m pip" ]; then
     shift 2
     echo "pip $* PYTHONPATH=${PYTHONPATH-unset} guard=${_ROS_WHEELS_BOOTSTRAP_COMPLETE-unset}" >>"$STAGE/calls"
-    [ ! -e "$STAGE/pip-waits" ] || read -r _ <"$STAGE/pip-waits"
+    # Opened while the writer of the line before has not closed it yet, a pipe ends without a line.
+    while [ -e "$STAGE/pip-waits" ] && ! read -r _ <"$STAGE/pip-waits"; do :; done
     [ ! -e "$STAGE/pip-fails" ] || { cat "$STAGE/pip-fails" >&2; exit 1; }
     exit 0
 fi
