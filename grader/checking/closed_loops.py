@@ -97,7 +97,8 @@ def must_stay_between(
     for at, (value,) in trajectory(run, topic, field):
         if at >= start - 1e-9 and not lowest - 1e-9 <= value <= highest + 1e-9:
             expected, got = f"{lowest:g} to {_measure(highest, unit)}", _measure(value, unit)
-            run.wrong_at(_ns(at), f"expected {field} from {expected}, got {got}.", topic, expected, got)
+            part = "" if topic == TRUTH else topic  # which is no name that a student knows
+            run.wrong_at(_ns(at), f"expected {field} from {expected}, got {got}.", part, expected, got)
 
 
 def must_estimate(run: RecordedRun, topic: str, fields: dict[str, str], rmse: float, start: float = 0.0) -> None:
