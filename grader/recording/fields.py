@@ -6,8 +6,6 @@ import difflib
 from collections.abc import Mapping
 from typing import Any
 
-from ros_in_python.field_path import field_of
-
 SECOND = 1_000_000_000
 
 
@@ -44,6 +42,8 @@ class OnTopic:
 
     def value(self, field: str) -> Any:
         """Return a field by its full name, such as `header.frame_id`."""
+        from ros_in_python.field_path import field_of
+
         return field_of(self._fields, field)
 
     def by(self, key: str, field: str) -> dict[str, Any]:

@@ -16,8 +16,6 @@ from enum import Enum
 
 import click
 
-from ros_in_python.ros2.command import NOUNS, ros2
-
 #: The nouns of `ros2` that a package follows, not a verb.
 _STARTING = frozenset({"run", "launch"})
 #: Next to a command that runs, this is the general form of it.
@@ -275,12 +273,16 @@ def _unknown(text: str, line: int, before: str, word: str, known: Iterable[str])
 @functools.cache
 def _verbs(noun: str) -> tuple[str, ...]:
     """Return the verbs of `ros2 NOUN`."""
+    from ros_in_python.ros2.command import ros2
+
     context = click.Context(ros2)
     menu = None if noun in _STARTING else ros2.get_command(context, noun)
     return tuple(menu.list_commands(context)) if isinstance(menu, click.Group) else ()
 
 
 def _ros2(text: str, words: tuple[str, ...], line: int) -> Command | UnsupportedCommand:
+    from ros_in_python.ros2.command import NOUNS
+
     noun = words[1] if len(words) > 1 else ""
     if noun in _IN_A_TERMINAL:
         return UnsupportedCommand(text, line, f"`ros2 {noun}` runs in a terminal, not in a notebook")
