@@ -27,7 +27,7 @@ from spinbook import __version__
 from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course, find_course
 from spinbook.handout.leaks import Secret, authors_code, located, secrets_of_all
-from spinbook.handout.pins import jupyterlab_pins, students_pins
+from spinbook.handout.pins import declared_pins, jupyterlab_pins, students_pins
 from spinbook.handout.student_copy import exercise_files, for_students
 from spinbook.handout.wheels import interface_wheels, package_of, requirement, spinbook_wheel
 from spinbook.interfaces.definitions import compile_course
@@ -91,7 +91,7 @@ def guide_files(
         "pinned": (pinned := students_pins()),
         # Every package is in the list: pip need not look for more.
         "options": " --no-deps --no-compile" if pinned else "",
-        "pins": pinned or _pins(distro),
+        "pins": [*(pinned or _pins(distro)), *declared_pins(packages, pinned)],
         "jupyterlab": jupyterlab_pins(),
         "packages": packages,
         "compiled": [requirement(file) for file in compiled],

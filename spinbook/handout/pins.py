@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from importlib.metadata import distributions
 from pathlib import Path
+
+from packaging.utils import canonicalize_name
 
 import spinbook
 from grader.gradescope.pins import needed
@@ -24,6 +27,19 @@ def jupyterlab_pins() -> list[str]:
     """Return the lines for what JupyterLab needs besides; without pins, its name."""
     known = needed("spinbook", "student") | needed("spinbook", "colcon")
     return list(_pins(needed("jupyterlab", "") - known)) or ["jupyterlab>=4.2"]
+
+
+def declared_pins(packages: Sequence[str], pinned: Sequence[str]) -> list[str]:
+    """Return the lines for `packages`, such as "rosbags==0.11.9", and for what these need besides what is `pinned`.
+
+    Without pins, pip finds what they need.
+    """
+    if not pinned:
+        return list(packages)
+    known = {canonicalize_name(re.split("[=; ]", line, maxsplit=1)[0]) for line in pinned}
+    names = {name for package in packages for name in needed(canonicalize_name(package.partition("==")[0]), "")}
+    versions: dict[str, str] = {canonicalize_name(one.metadata["Name"]): one.version for one in distributions()}
+    return [f"{name}=={versions[name]}" for name in sorted(names - known) if name in versions]
 
 
 def _pins(names: set[str]) -> Iterator[str]:

@@ -25,6 +25,7 @@ from handout.conftest import NOTE, ROOT, HandedOut, append, copy_course, write_s
 from interface_compiler.wheel_file import zipped
 from spinbook.chapter.comments import without_comments
 from spinbook.handout.leaks import Secret, hidden_names, leaks, secrets
+from spinbook.handout.pins import declared_pins, students_pins
 from spinbook.handout.student_copy import for_students
 from spinbook.handout.wheels import spinbook_wheel
 
@@ -157,6 +158,14 @@ def test_the_means_to_install_are_there_and_can_be_read(real: HandedOut) -> None
     assert {"pip": [f"./wheels/{wheel.name}[notebooks]"]} in conda["dependencies"]
     container = json.loads((real.folder / ".devcontainer" / "devcontainer.json").read_text())
     assert f"./wheels/{wheel.name}[colcon,notebooks,lab]" in container["postCreateCommand"]
+
+
+def test_packages_that_exercises_declare_are_installed_with_what_they_need() -> None:
+    pins = students_pins()
+    lines = declared_pins(["rosbags==0.11.9", "numpy==2.3.1"], pins)
+    assert {line.partition("==")[0] for line in lines} >= {"rosbags", "lz4"}
+    assert not [line for line in lines if line.startswith("numpy")], "it is pinned for each Python"
+    assert declared_pins(["rosbags==0.11.9"], []) == ["rosbags==0.11.9"]
 
 
 def test_the_wheel_holds_every_package_of_ours_that_its_modules_import() -> None:
