@@ -27,7 +27,7 @@ Some prose.
 
 ```bash seconds=3
 cd humanoid_ws
-ros2 topic hz /chatter
+ros2 topic hz /rosout
 ```
 
 ```python
@@ -62,13 +62,13 @@ def test_cells_are_what_the_chapter_says_with_ids_that_can_be_read(course: Cours
         "spinbook-setup",
         "node-talker",
         "see-it",
-        "ros2-topic-hz-chatter",
+        "ros2-topic-hz-rosout",
         "code-see-it",
         "see-it-2",
         "code-see-it-2",
     ]
     assert cells["node-talker"] == f"%%node talker --seconds 2\n{NODE}".rstrip("\n")
-    assert cells["ros2-topic-hz-chatter"] == "# cd humanoid_ws\n%ros2 --seconds 3 topic hz /chatter"
+    assert cells["ros2-topic-hz-rosout"] == "# cd humanoid_ws\n%ros2 --seconds 3 topic hz /rosout"
     assert cells["see-it-2"] == "> **Note**\n>\n> Remember.\n\n```yaml\n# not a heading\na: 1\n```"
 
 
