@@ -96,7 +96,7 @@ def test_the_class_at_a_glance(browser: Browser, site: Path) -> None:
         expect(page.get_by_role("region", name="Not graded because of a fault on our side")).to_contain_text(
             "Unlucky Person"
         )
-        expect(page.get_by_role("region", name="SkippedFile")).to_contain_text("s77/")
+        expect(page.get_by_role("region", name="Skipped")).to_contain_text("s77/")
         expect(page.get_by_role("region", name="Most failed checks")).to_contain_text(
             "Velocities are right when the messages arrive at uneven times"
         )

@@ -398,11 +398,12 @@ def test_what_asks_for_an_interface_that_the_course_lacks_is_shown_with_the_reme
     assert "Compile it, once: spinbook interfaces add control_msgs" in said
 
 
-def test_colcon_may_name_a_package_of_interfaces_that_a_cell_above_defines(tmp_path: Path) -> None:
+def test_a_build_of_a_package_of_interfaces_is_not_run_as_it_is_compiled_here(tmp_path: Path) -> None:
     definition = '# One\n\n```text title="srv/Grip.srv"\nfloat64 force\n---\nbool held\n```\n'
     build = "```bash\ncolcon build --packages-select robot_interfaces\n```\n"
     course = CourseFolder(tmp_path).write(one=f"{definition}\n{build}", two=f"# Two\n\n{build}")
 
-    said = course.spinbook("lint").stdout
-    assert "chapters/one.md: 1 prose, 1 shell, 1 interface, 0 fences shown and not run" in said
-    assert "chapters/two.md: 1 prose, 1 fences shown and not run" in said
+    said = course.spinbook("lint", "--static").stdout
+    assert "chapters/one.md:9: bash: it makes a package of interfaces, which is compiled here" in said
+    assert "chapters/two.md:3: bash: it makes a package of interfaces, which is compiled here" in said
+    assert "0 errors, 0 warnings" in said
