@@ -236,7 +236,7 @@ def test_a_killed_kernel_is_reported_and_takes_its_nodes_along(course: CourseFol
     process_mark.wait_until_none()
 
 
-@pytest.mark.parametrize("count", [3, pytest.param(20, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("count", [2, pytest.param(20, marks=pytest.mark.soak)])
 def test_notebooks_that_run_at_once_do_not_hear_each_other(course: CourseFolder, count: int) -> None:
     names = [f"c{number:02}" for number in range(count)]
     course.write(**{name: f"# C\n\n{TALKER.replace('WHO', name)}\n{LISTENER}" for name in names})

@@ -1,7 +1,6 @@
 """The real Week 3 chapter, built and run: every cell does what the chapter says about it.
 
-The whole chapter takes minutes, and `make course` runs it, too: `make test` runs the sections about the joints, and
-`make soak` all of it.
+`make soak` runs it, first the sections about the joints, then all of it; `make course` runs the whole chapter, too.
 """
 
 from __future__ import annotations
@@ -22,7 +21,8 @@ THE_JOINTS = (
     *("A publisher: the joint commands", "A subscriber: the joint monitor", "Are the warnings real?"),
     *("Look into the running system", "See it move", "As a ROS 2 package", "Practice: joint velocities"),
 )
-WHOLE = pytest.param((), id="whole chapter", marks=[pytest.mark.soak, pytest.mark.timeout(900)])
+pytestmark = pytest.mark.soak
+WHOLE = pytest.param((), id="whole chapter", marks=pytest.mark.timeout(900))
 
 
 @pytest.fixture(scope="module", params=[pytest.param(THE_JOINTS, id="the joints"), WHOLE])
