@@ -99,6 +99,9 @@ def diagnosis(ended: Ended, _: Place) -> str | None:
     return None if ended.code in (0, 1) and "sandbox" in ended.text.lower() else _last_line(ended.text)
 
 
+#: How a check begins that could not be made here.
+FAULT_OF_OURS = "The machine or the grader is at fault, not your code"
+
 JOBS = (
     Job("doctor", lambda place: (place.spinbook, "doctor"), lambda place: place.course, diagnosis),
     Job(
@@ -173,6 +176,7 @@ def outcome(condition: Condition, job: Job, place: Place) -> str:
     if wrong is None:
         return "right"
     refused = ended.code not in (0, 1) and not (place.results / "grades.csv").exists()
+    refused |= FAULT_OF_OURS in ended.text  # a notebook's cell ends without an exit code
     return f"{'refused' if refused else 'WRONG'}: {wrong}"
 
 

@@ -35,7 +35,7 @@ def missing() -> str | None:
             f"ROS 2 is sourced from {ros}, whose own tools compile interfaces: "
             "run `colcon build` in the workspace, source its install/setup.bash, and start this again there."
         )
-    return " ".join(filter(None, (missing_compiler(), missing_headers()))) or None
+    return "; ".join(filter(None, (missing_compiler(), missing_headers()))) or None
 
 
 def debian_packages() -> list[str]:
