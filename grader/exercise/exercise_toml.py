@@ -246,9 +246,14 @@ def _parameter(table: TomlTable) -> Parameter:
         problem = f"default = {default!r}, but the parameter {name} is of type {kind}"
         table.fault("default", problem, "Write the default as that type, such as 1.0 for a double.")
     limits = table.entries.get("range")
-    if limits is not None and not (isinstance(limits, list) and len(limits) == 2 and limits == sorted(limits)):
+    if limits is not None and not _is_range(limits):
         table.fault("range", f"range = {limits!r}", "Give the lowest and the highest value: range = [0.0, 10.0].")
     return Parameter(name, kind, default, table.text("unit"), (limits[0], limits[1]) if limits else None)
+
+
+def _is_range(limits: Any) -> bool:
+    is_pair = isinstance(limits, list) and len(limits) == 2
+    return is_pair and all(isinstance(limit, (int, float)) for limit in limits) and limits[0] <= limits[1]
 
 
 def programs(entries: dict[str, Any], file: Path) -> tuple[ProgramFile, ...]:

@@ -196,6 +196,7 @@ def test_so_is_what_is_wrong_with_a_peer(tmp_path: Path, more: str, message: str
     ("old", "new", "message"),
     [
         ("range = [0.0, 10.0]", "range = [10.0, 0.0]", "Give the lowest and the highest value"),
+        ("range = [0.0, 10.0]", 'range = ["low", 10.0]', "Give the lowest and the highest value"),
         ('"/in"', '"/ín"', "in letters, digits and _"),
         (
             "[[parameter]]",
