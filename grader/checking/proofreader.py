@@ -33,6 +33,7 @@ from grader.submission import python_code
 from groundwork.child_process import run_program
 from groundwork.clean_environment import module_command, without_foreign
 from groundwork.problem import Problem
+from groundwork.words import counted
 
 #: The time limit (s) for importing an exercise's files.
 TIME_LIMIT_S = 60
@@ -89,10 +90,13 @@ def others_each_time(
     exercise: Exercise, scenarios: tuple[Scenario, ...], again: tuple[Scenario, ...]
 ) -> Iterator[ExerciseError]:
     """Yield scenarios that differ although their seed is the same: students would not get the same grade twice."""
+    fix = "Take random values from the seed: random.Random(seed)."
+    if len(scenarios) != len(again):
+        problem = f"{counted(len(scenarios), 'scenario')} the first time, {len(again)} the second, with the same seed"
+        yield ExerciseError(exercise.scenarios_file, problem, fix, None)
     for first, second in zip(scenarios, again, strict=False):
         if _content(first) != _content(second):
             problem = f"the scenario {first.name} is another one each time, with the same seed"
-            fix = "Take random values from the seed: random.Random(seed)."
             yield ExerciseError(exercise.scenarios_file, problem, fix, first.line or None)
 
 

@@ -54,3 +54,5 @@ def test_scenarios_must_be_the_same_for_one_seed() -> None:
     assert not list(others_each_time(EXERCISE, (first,), (replace(first),)))
     (error,) = others_each_time(EXERCISE, (first,), (second,))
     assert "the scenario first is another one each time" in error.problem.problem
+    (error,) = others_each_time(EXERCISE, (first,), (first, second))
+    assert "1 scenario the first time, 2 the second" in error.problem.problem
