@@ -170,9 +170,14 @@ def _prepared(packed: ExerciseFiles, options: Options) -> Iterator[PreparedGradi
     finally:
         with _lock:
             bench.users, bench.last_used = bench.users - 1, time.monotonic()
-            timer = threading.Timer(UNUSED_S, close_unused)
-            timer.daemon = True
-            timer.start()
+            if not bench.users:
+                _look_later()
+
+
+def _look_later() -> None:
+    timer = threading.Timer(UNUSED_S, close_unused)
+    timer.daemon = True
+    timer.start()
 
 
 def _prepare(packed: ExerciseFiles, options: Options) -> PreparedGrading:
