@@ -58,7 +58,8 @@ def main() -> int:
 
 def _machine() -> str:
     """Return what the figures are of: computer, Python and versions, and the size of the environment."""
-    model = next(line for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name"))
+    lines = Path("/proc/cpuinfo").read_text().splitlines()
+    model = next((line for line in lines if line.startswith("model name")), f": {platform.machine()}")
     commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True)
     size = sum(file.lstat().st_blocks * 512 for file in Path(sys.prefix).rglob("*"))
     rows = {

@@ -220,8 +220,11 @@ def find(package: str, executable: str, cwd: Path) -> Invocation:
 
 def _is_of_this_python(program: Path) -> bool:
     """Return whether a script starts with the Python of this environment, which its first lines name."""
-    with program.open("rb") as file:
-        first, second = (file.readline(5000).decode(errors="replace") for _ in range(2))
+    try:
+        with program.open("rb") as file:
+            first, second = (file.readline(5000).decode(errors="replace") for _ in range(2))
+    except OSError:  # a compiled program need not be readable to run
+        return False
     words = first.removeprefix("#!").split() if first.startswith("#!") else []
     if words == ["/bin/sh"] and second.startswith("'''exec' "):
         # What pip writes if the path is too long for a first line.
