@@ -30,7 +30,7 @@ SCHEDULER_S, WORKER_S = 10.0, 60.0
 #: Without a result for this time, the command looks at the cluster and says what it waits for (s).
 LOOK_S = 10.0
 
-#: A worker or scheduler that has been silent for so many looks is given up.
+#: After this many looks without a sign of life, a worker or the scheduler is given up.
 SILENT_LOOKS = 6
 
 

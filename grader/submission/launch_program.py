@@ -46,7 +46,7 @@ def launch_file_in(files: Mapping[str, bytes], exercise: Exercise) -> str:
     if not fitting:
         there = ", ".join(sorted(files)[:5])
         raise Unreadable(
-            f"There is no launch file among the files handed in: {there}. Name the launch file {exercise.file_name}."
+            f"None of the files that were handed in is a launch file: {there}. Name yours {exercise.file_name}."
         )
     if len({files[name] for name in fitting}) > 1:
         names = ", ".join(fitting)

@@ -45,7 +45,7 @@ def find(place: str) -> Executable | str:
             return _described(prefix, script)
     looked = ", ".join(map(str, prefixes)) or "nowhere: AMENT_PREFIX_PATH is not set"
     return (
-        f"{place}: there is no such file, and no installed package {package} with the executable {name} (looked in "
+        f"{place}: there is no such file, and no package {package} with an executable {name} is installed (looked in "
         f"{looked}). Build the package with colcon and source install/setup.sh first."
     )
 
