@@ -52,15 +52,15 @@ def draw(recording: PlotRecording, title: str = "") -> Figure:
         axis.margins(x=0.01)
         axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize="small")
     axes[-1].set_xlabel("time (s)")
-    figure.suptitle(title or ", ".join(dict.fromkeys(c.quantity.topic for c in recording.curves.values())), fontsize=11)
+    figure.suptitle(title or ", ".join(dict.fromkeys(c.quantity.topic for c in recording.in_order())), fontsize=11)
     return figure
 
 
 def panels(recording: PlotRecording) -> dict[tuple[str, str], list[PlotCurve]]:
-    """Return (kind, unit) -> the curves that share an axis, in the order in which they first appeared."""
+    """Return (kind, unit) -> the curves that share an axis, in the order of the paths."""
     panels: dict[tuple[str, str], list[PlotCurve]] = {}
-    for quantity, curve in recording.curves.items():
-        panels.setdefault((quantity.kind, quantity.unit), []).append(curve)
+    for curve in recording.in_order():
+        panels.setdefault((curve.quantity.kind, curve.quantity.unit), []).append(curve)
     return panels
 
 

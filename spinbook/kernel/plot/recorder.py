@@ -2,9 +2,9 @@
 
     python -m spinbook.kernel.plot.recorder PATH …
 
-Lines: ["looking"] once it takes part in ROS, ["waiting", [paths not found yet], [topics there are]], ["sample", topic,
-kind, unit, label, time (s), value], ["error", words]. A process rather than a thread: the kernel then needs no rclpy,
-and its Stop button can't break it.
+Lines: ["looking"] once it takes part in ROS, ["waiting", [paths not found yet], [topics there are]], ["topics", [those
+found, in the order of the paths]], ["sample", topic, kind, unit, label, time (s), value], ["error", words]. A process
+rather than a thread: the kernel then needs no rclpy, and its Stop button can't break it.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class PlotRecorder(Node):
         self, paths: Sequence[str], write: Callable[..., None] = write_line, context: Context | None = None
     ) -> None:
         super().__init__("spinbook_plot", context=context, start_parameter_services=False)
-        self._missing = list(paths)
+        self._paths: dict[str, TopicPath | None] = dict.fromkeys(paths)
         self._write = write
         write("looking")
         self._look()
@@ -46,26 +46,31 @@ class PlotRecorder(Node):
         published = {
             topic: types[0] for topic, types in self.get_topic_names_and_types() if self.count_publishers(topic)
         }
-        for path in list(self._missing):
-            found = resolve(path, published)
-            if found is not None:
-                self._missing.remove(path)
-                self._subscribe(found, published[found.topic])
-        if self._missing:
-            self._write(
-                "waiting", self._missing, sorted(t for t in published if t not in {"/rosout", "/parameter_events"})
-            )
+        new = {path: resolve(path, published) for path, known in self._paths.items() if known is None}
+        self._paths |= new
+        by_topic: dict[str, list[TopicPath]] = {}
+        for found in filter(None, new.values()):
+            by_topic.setdefault(found.topic, []).append(found)
+        for topic, paths in by_topic.items():
+            self._subscribe(topic, published[topic], paths)
+        if by_topic:
+            self._write("topics", list(dict.fromkeys(path.topic for path in self._paths.values() if path)))
+        if missing := [path for path, known in self._paths.items() if known is None]:
+            self._write("waiting", missing, sorted(t for t in published if t not in {"/rosout", "/parameter_events"}))
 
-    def _subscribe(self, path: TopicPath, full_type: str) -> None:
+    def _subscribe(self, topic: str, full_type: str, paths: Sequence[TopicPath]) -> None:
+        """Subscribe once for all paths into the messages of a topic, so that their values come in the paths' order."""
         short = full_type.replace("/msg/", "/")
         kind = message_class(full_type)
-        list(quantities(path, kind(), short))  # raises if the type has no such field, before any message arrives
-        self.create_subscription(kind, path.topic, partial(self._on_message, path, short), _HEARS_ALL)
+        for path in paths:
+            list(quantities(path, kind(), short))  # raises if the type has no such field, before any message arrives
+        self.create_subscription(kind, topic, partial(self._on_message, paths, short), _HEARS_ALL)
 
-    def _on_message(self, path: TopicPath, type_name: str, message: Any) -> None:
+    def _on_message(self, paths: Sequence[TopicPath], type_name: str, message: Any) -> None:
         now = stamp_of(message) or time.time()
-        for quantity, value in quantities(path, message, type_name):
-            self._write("sample", quantity.topic, quantity.kind, quantity.unit, quantity.label, now, value)
+        for path in paths:
+            for quantity, value in quantities(path, message, type_name):
+                self._write("sample", quantity.topic, quantity.kind, quantity.unit, quantity.label, now, value)
 
 
 def record_until_stopped(recorder: Callable[[], Node]) -> None:

@@ -21,11 +21,12 @@ class PlotCurve:
 
 @dataclass
 class PlotRecording:
-    """Curves in the order in which they first appeared, and the paths without a topic yet."""
+    """Curves, and the paths without a topic yet. `topics` are those found, in the order of the paths."""
 
     curves: dict[PlotQuantity, PlotCurve] = field(default_factory=dict)
     waiting: list[str] = field(default_factory=list)
     published: list[str] = field(default_factory=list)
+    topics: list[str] = field(default_factory=list)
     error: str | None = None
     is_looking: bool = False
     """Whether the recorder takes part in ROS yet."""
@@ -47,8 +48,17 @@ class PlotRecording:
             self.is_looking = True
         elif kind == "waiting":
             self.waiting, self.published = values
+        elif kind == "topics":
+            (self.topics,) = values
         elif kind == "error":
             self.error = values[0]
+
+    def in_order(self) -> list[PlotCurve]:
+        """Return the curves topic by topic in the order of the paths, whichever topic's message arrived first."""
+        known = self.topics
+        return sorted(
+            self.curves.values(), key=lambda one: known.index(one.quantity.topic) if one.quantity.topic in known else 0
+        )
 
     def why_empty(self, paths: Sequence[str]) -> str:
         """Return why nothing was recorded for these paths."""

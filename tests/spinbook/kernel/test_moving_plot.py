@@ -14,7 +14,7 @@ from browser import opened
 from playwright.sync_api import Browser
 
 from ros_in_python.animation import BEFORE_S
-from spinbook.kernel.plot.picture import MOST_CURVES, Scale, around, moving_plot
+from spinbook.kernel.plot.picture import MOST_CURVES, Scale, around, in_words, moving_plot
 from spinbook.kernel.plot.recording import PlotRecording, RecordingTime
 
 JOINTS = ["left_elbow", "right_elbow", "<b>&"]
@@ -95,6 +95,14 @@ def test_in_a_browser_the_window_grows_as_time_went_by(browser: Browser, tmp_pat
         shown.page.emulate_media(reduced_motion="reduce")
         assert shown.page.evaluate(_WINDOW, 0) == [1, 0]
         assert shown.faults == []
+
+
+def test_curves_have_the_order_of_the_paths_whichever_topic_came_first() -> None:
+    recording = PlotRecording()
+    recording.note("topics", ["/left", "/right"])
+    for topic in ("/right", "/left"):
+        recording.note("sample", topic, "tilt", "rad", topic, 5.0, 0.1)
+    assert [line.split(":")[0] for line in in_words(recording).splitlines()] == ["tilt /left", "tilt /right"]
 
 
 def test_the_seconds_count_from_the_first_sample_and_a_slow_start_is_no_silence() -> None:
