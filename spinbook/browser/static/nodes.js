@@ -5,9 +5,7 @@ import { files } from "./workspace.js";
 import { named, take } from "./processes.js";
 import { turtle } from "./turtle.js";
 
-const TURTLESIM =
-  "import sys\nfrom spinbook.browser.in_page import canvas\ncanvas.use()\n" +
-  "from ros_in_python.turtlesim.node import main\nsys.exit(main())\n";
+const TURTLESIM = "import sys\nfrom ros_in_python.turtlesim.node import main\nsys.exit(main())\n";
 const DEMOS = /^demo_nodes_(cpp|py)\/(talker|listener|add_two_ints_server|add_two_ints_client)$/;
 // How long `ros2 run` of a turtlesim_node shows output before the cell goes on (s).
 const SHOWN_S = 3;

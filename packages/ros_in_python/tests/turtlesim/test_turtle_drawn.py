@@ -49,6 +49,27 @@ def test_lines_from_beyond_the_canvas_are_cut_off_at_its_edge() -> None:
     assert painted(canvas) == {(column, row) for column in range(47) for row in range(89, 92)}
 
 
+PLACES = st.tuples(st.floats(-1, 12), st.floats(-1, 12))
+
+
+@given(PLACES, PLACES, st.integers(1, 20), st.lists(PLACES, min_size=5, max_size=30))
+def test_the_pixels_of_a_line_are_those_inside_its_caps_and_sides(
+    start: Point, end: Point, width: int, places: list[Point]
+) -> None:
+    canvas = Canvas()
+    canvas.line(start, end, Pen(0, 0, 0, width))
+    middle, half = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2), width / 2
+    length = 45 * math.dist(start, end)
+    angle = math.atan2(end[1] - start[1], end[0] - start[0])
+    for place in (*places, start, end, middle):
+        dx, dy = (math.floor(45 * part + 0.5) - 45 * from_ for part, from_ in zip(place, start, strict=True))
+        along, across = dx * math.cos(angle) + dy * math.sin(angle), dy * math.cos(angle) - dx * math.sin(angle)
+        inside = min(along + half, length + half - along, half - abs(across))
+        is_on_canvas = all(0 <= math.floor(45 * part + 0.5) < 500 for part in place)
+        if is_on_canvas and abs(inside) > 1e-6:
+            assert (canvas.color(place) != WHITE) == (inside > 0)
+
+
 def colors(world: TurtleWorld, ticks: range) -> list[tuple[int, int, int]]:
     reports = [event for n in ticks for event in world.tick(n * TICK_NS) if isinstance(event, ColorReport)]
     return [(each.r, each.g, each.b) for each in reports]
