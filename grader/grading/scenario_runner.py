@@ -120,6 +120,10 @@ MOST_BYTES, LEAST_BYTES = 24_000_000, 1_000_000
 #: gets of it; and more for each message of the scenario (CPU seconds). The course's solutions need 0.1 s a scenario.
 HUB_CPU_S, LEAST_HUB_CPU_S, HUB_CPU_S_PER_MESSAGE = 10.0, 1.0, 0.002
 
+#: The same for what the submission itself computes. The course's solutions need 0.1 s per scenario; the least is more
+#: than a program may take to start.
+CPU_S, LEAST_CPU_S, CPU_S_PER_MESSAGE = 100.0, 7.0, 0.001
+
 
 @dataclass(frozen=True)
 class ScenarioRunner:
@@ -176,6 +180,10 @@ class ScenarioRunner:
         """Return the same runner with a single scenario."""
         return replace(self, scenarios=tuple(s for s in self.scenarios if s.name == scenario))
 
+    def _share(self, together: float, least: float) -> float:
+        """Return one scenario's part of what all scenarios may take together."""
+        return max(least, together / len(self.scenarios))
+
     def job(self, submission: Submission, scenario: Scenario, number: int) -> RunJob:
         """Return the run of a program through one scenario; `number` chooses its core, in turn."""
         assert submission.program
@@ -191,18 +199,20 @@ class ScenarioRunner:
             for one in programs_of(self.exercise, scenario)
         }
         cores = sorted(os.sched_getaffinity(0))
+        limits, size = self.options.limits, scenario.size
+        cpu_s = self._share(CPU_S, LEAST_CPU_S) + CPU_S_PER_MESSAGE * size
         return RunJob(
             exercise=self.exercise,
             scenario=scenario,
             program=program,
             isolation=self.isolation,
-            limits=self.options.limits,
+            limits=replace(limits, cpu_s=min(limits.cpu_s, cpu_s)),
             source=submission.source,
             file_name=submission.file_name,
             core=cores[number % len(cores)] if self.options.core is None else self.options.core,
             pace=self.options.pace,
-            data_bytes=max(LEAST_BYTES, MOST_BYTES // len(self.scenarios)),
-            hub_cpu_s=max(LEAST_HUB_CPU_S, HUB_CPU_S / len(self.scenarios)) + HUB_CPU_S_PER_MESSAGE * scenario.size,
+            data_bytes=int(self._share(MOST_BYTES, LEAST_BYTES)),
+            hub_cpu_s=self._share(HUB_CPU_S, LEAST_HUB_CPU_S) + HUB_CPU_S_PER_MESSAGE * size,
             programs=programs,
             companions=tuple(_companion(companion) for companion in scenario.companions),
         )

@@ -18,6 +18,13 @@ LONGEST_LOOK_S = 0.025
 #: The limit for one step of a run, far above what any correct program needs.
 CPU_S, BLOCKED_S = 3.0, 3.0
 
+#: How long a program may be blocked in all steps of a run together (s).
+BLOCKED_IN_ALL_S = 10.0
+
+BLOCKED_IN_ALL = (
+    f"Your program did not go on for {BLOCKED_IN_ALL_S:g} s in all: again and again, it waits for something outside it."
+)
+
 
 class ProgramExited(Exception):
     """Raised if the student's program has ended by itself."""
@@ -45,6 +52,7 @@ class Budget:
         self._student, self._pids = student, pids
         self._began = self._looked = time.monotonic()
         self._seen = 0.0
+        self.blocked = self._blocked_before = 0.0
         self.begin(allowance)
 
     def begin(self, allowance: Allowance) -> None:
@@ -52,6 +60,7 @@ class Budget:
         self._allowance = allowance
         self._cpu_start: float | None = None
         self._times: ThreadTimes | None = None
+        self._blocked_before += self.blocked
         self.blocked = 0.0
 
     @property
@@ -90,6 +99,8 @@ class Budget:
         allowance = self._allowance
         if self.blocked >= allowance.blocked_s:
             raise CannotContinue("timed-out", allowance.blocked)
+        if self._blocked_before + self.blocked >= BLOCKED_IN_ALL_S:
+            raise CannotContinue("timed-out", BLOCKED_IN_ALL)
         # A program that has hit a limit of its sandbox is about to end, and its exit names the limit.
         if self._cpu >= allowance.cpu_s and not self._student.at_limit():
             raise CannotContinue("timed-out", allowance.busy)

@@ -29,7 +29,7 @@ LIMITS = {
 OTHER_CLASS = re.compile(r'__convert_from_py: Assertion .strncmp\("(?:\w+\.)+(?P<expected>\w+)"')
 
 #: What the same code prints before it aborts a program that gave it another type of value in a field.
-OTHER_VALUE = re.compile(r"__(?P<name>\w+?)__convert_from_py: Assertion .Py(?P<kind>Float|Long|Unicode|Bool)_Check")
+OTHER_VALUE = re.compile(r"\b(?P<name>\w+)__convert_from_py: Assertion .Py(?P<kind>Float|Long|Unicode|Bool)_Check")
 
 _VALUES = {
     "Float": "a float field of it needs a float: 2.0 instead of 2, or float(value)",

@@ -87,7 +87,10 @@ def grade_of(grading: Grading, name: str, source: str) -> Grade:
 
 
 #: They reach a limit of computing time, which takes longer.
-SLOW = {"never_confirmed", "wakes_each_nanosecond", "names_like_the_topic", "words_without_end"}
+SLOW = {
+    *("never_confirmed", "wakes_each_nanosecond", "names_like_the_topic", "words_without_end"),
+    *("sleeps_behind_the_clocks_back", "computes_just_as_long_as_it_may"),
+}
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from grader.runner.budget import Allowance, Budget
+from grader.runner.budget import BLOCKED_IN_ALL, Allowance, Budget
+from grader.runner.program import CannotContinue
 
 #: A program that sleeps, with a thread of liblockstep's name that always has something to do. With `idle` as its
 #: argument, that thread gets a CPU only while nothing else wants it. With `kernel` and a pipe it waits inside the
@@ -113,3 +114,22 @@ def test_a_program_whose_only_ready_thread_has_had_its_turn_is_blocked() -> None
             time.sleep(0.002)
             budget.look()
     assert budget.blocked >= 0.05
+
+
+def test_a_program_may_not_be_blocked_for_a_while_in_each_step_of_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [time.monotonic()]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    with subprocess.Popen(["sleep", "600"]) as sleeper:
+        budget = budget_of(sleeper.pid)
+
+        def steps() -> None:
+            for look in range(1_000):
+                if not look % 50:
+                    budget.begin(Allowance("busy", "blocked"))
+                now[0] += 0.02
+                budget.look()
+
+        with pytest.raises(CannotContinue) as stopped:
+            steps()
+        sleeper.kill()
+    assert (stopped.value.outcome, stopped.value.message) == ("timed-out", BLOCKED_IN_ALL)

@@ -344,6 +344,11 @@ def test_a_value_of_another_type_that_aborts_the_program_is_named() -> None:
     )
 
 
+def test_a_log_that_is_one_long_word_is_read_in_no_time() -> None:
+    text, _ = of_exit(ProcessExit(None, 9, None), "_" * 128 * 1024, {"turnstile.py": NODE})
+    assert text == "it was killed by signal 9."
+
+
 def test_the_first_exception_that_a_program_survives_is_said_with_its_type_line_and_source() -> None:
     log = "[ERROR] [turnstile]: Error raised in execute callback: \n" + raised(
         12, "ZeroDivisionError: division by zero"
