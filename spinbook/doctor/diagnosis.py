@@ -10,7 +10,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 
@@ -37,7 +37,7 @@ class State(str, Enum):
 
 @dataclass(frozen=True)
 class MachineFinding:
-    """The result of one check.
+    """The result of one check, whose name `examine` puts in.
 
     `found` says what is there, with versions and paths. `fix` says what to do if something is wrong.
     """
@@ -48,19 +48,19 @@ class MachineFinding:
     fix: str = ""
 
 
-def ok(name: str, found: str) -> MachineFinding:
+def ok(found: str) -> MachineFinding:
     """Return the finding that it works."""
-    return MachineFinding(name, State.OK, found)
+    return MachineFinding("", State.OK, found)
 
 
-def warning(name: str, found: str, fix: str) -> MachineFinding:
+def warning(found: str, fix: str) -> MachineFinding:
     """Return the finding that it works, but not as well as it could."""
-    return MachineFinding(name, State.WARNING, found, fix)
+    return MachineFinding("", State.WARNING, found, fix)
 
 
-def missing(name: str, found: str, fix: str) -> MachineFinding:
+def missing(found: str, fix: str) -> MachineFinding:
     """Return the finding that something needed does not work."""
-    return MachineFinding(name, State.MISSING, found, fix)
+    return MachineFinding("", State.MISSING, found, fix)
 
 
 def in_handout() -> bool:
@@ -124,7 +124,7 @@ def _with_tilde(text: str) -> str:
 class MachineCheck:
     """A check of this machine.
 
-    `function` runs it, as `module:name`; it is called with `name`. `seconds` is the time limit. `needs` are the words
+    `function` runs it, as `module:name`. `seconds` is the time limit. `needs` are the words
     of earlier checks: if one of them fails, this one is not run, so that each cause is reported once.
     """
 
@@ -177,12 +177,9 @@ def diagnose(checks: Sequence[MachineCheck], done: Callable[[MachineFinding], No
     started: dict[str, Future[MachineFinding]] = {}
 
     def run(check: MachineCheck, needed: list[Future[MachineFinding]]) -> MachineFinding:
-        failed = [need.result().name for need in needed if need.result().state is State.MISSING]
-        finding = (
-            missing(check.name, f"not checked, because this failed: {', '.join(failed)}", "")
-            if failed
-            else examine(check)
-        )
+        failed = ", ".join(need.result().name for need in needed if need.result().state is State.MISSING)
+        why = f"not checked, because this failed: {failed}"
+        finding = MachineFinding(check.name, State.MISSING, why) if failed else examine(check)
         done(finding)
         return finding
 
@@ -195,7 +192,11 @@ def diagnose(checks: Sequence[MachineCheck], done: Callable[[MachineFinding], No
 
 def examine(check: MachineCheck) -> MachineFinding:
     """Run one check in a process of its own; a crash or a timeout is a finding, too."""
-    argv = module_command("spinbook.doctor.diagnosis", check.function, check.name)
+    return replace(_examined(check), name=check.name)
+
+
+def _examined(check: MachineCheck) -> MachineFinding:
+    argv = module_command("spinbook.doctor.diagnosis", check.function)
     try:
         done = run_program(argv, check.seconds, env=_of_terminal() if check.word in OF_TERMINAL else None)
         if ignored() and not _reported(done.stdout):
@@ -203,20 +204,19 @@ def examine(check: MachineCheck) -> MachineFinding:
             done = run_program(argv, check.seconds)
     except subprocess.TimeoutExpired:
         return missing(
-            check.name,
             f"the check did not finish within {check.seconds:g} s",
             f"Run it alone, when the machine is less busy: spinbook doctor {check.word}",
         )
     more = "README.md" if in_handout() else "docs/installing.md"
     return _reported(done.stdout) or missing(
-        check.name, _how_it_ended(done.returncode, done.stderr), f"See the message, and {more}."
+        _how_it_ended(done.returncode, done.stderr), f"See the message, and {more}."
     )
 
 
 def _reported(output: str) -> MachineFinding | None:
     try:
         fields = json.loads(output.splitlines()[-1])
-        return MachineFinding(fields["name"], State(fields["state"]), fields["found"], fields["fix"])
+        return MachineFinding("", State(fields["state"]), fields["found"], fields["fix"])
     except (ValueError, KeyError, TypeError, IndexError):
         return None
 
@@ -240,15 +240,14 @@ def _how_it_ended(code: int, err: str) -> str:
 
 
 def main() -> None:
-    """Run a check, given as `module:name`, and its name.
+    """Run a check, given as `module:name`.
 
     Its finding goes to stdout; what libraries print goes to stderr.
     """
-    function, name = sys.argv[1:]
     original_stdout = os.dup(1)
     os.dup2(2, 1)
-    module, _, attribute = function.partition(":")
-    finding = getattr(importlib.import_module(module), attribute)(name)
+    module, _, attribute = sys.argv[1].partition(":")
+    finding = getattr(importlib.import_module(module), attribute)()
     with os.fdopen(original_stdout, "w") as out:
         json.dump(dataclasses.asdict(finding), out)
 

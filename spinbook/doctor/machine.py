@@ -22,14 +22,14 @@ from spinbook.doctor.diagnosis import MachineFinding, in_handout, missing, ok, s
 OLDEST, NEWEST = (3, 10), (3, 14)
 
 
-def examine_python(name: str) -> MachineFinding:
+def examine_python() -> MachineFinding:
     """Check the version of this Python, and how it was compiled."""
     found = f"{platform.python_implementation()} {platform.python_version()}, {sys.executable}"
     if not (OLDEST <= sys.version_info[:2] <= NEWEST and platform.python_implementation() == "CPython"):
-        return missing(name, found, f"Spinbook needs CPython 3.10 to 3.14. Choose one. {set_up_again('python3.12')}")
+        return missing(found, f"Spinbook needs CPython 3.10 to 3.14. Choose one. {set_up_again('python3.12')}")
     if python_build.is_optimized() or in_handout():
-        return ok(name, found)
-    return warning(name, f"{found}, compiled without optimizations", _faster_build())
+        return ok(found)
+    return warning(f"{found}, compiled without optimizations", _faster_build())
 
 
 def _faster_build() -> str:
@@ -42,35 +42,34 @@ def _faster_build() -> str:
     return f"Everything works, but grading takes 10 to 20 % longer than with an optimized Python.\n{advice}"
 
 
-def examine_folder(name: str) -> MachineFinding:
+def examine_folder() -> MachineFinding:
     """Check the paths for characters that break colcon's shell scripts or the search paths."""
     folders = (Path.cwd(), Path(sys.prefix))
     for folder in folders:
         if any(character.isspace() or character == ":" for character in str(folder)):
             return missing(
-                name,
                 f"'{folder}' has a space or a colon in it",
                 "colcon's scripts and ROS's search paths fail there. "
                 "Move it to a path without one, and run make again.",
             )
-    return ok(name, f"{folders[0]} (environment: {folders[1]})")
+    return ok(f"{folders[0]} (environment: {folders[1]})")
 
 
 _WITHOUT = "Needed only where interfaces are defined or changed, and to compile the grader's middleware in a checkout."
 
 
-def examine_compiler(name: str) -> MachineFinding:
+def examine_compiler() -> MachineFinding:
     """Look for a C compiler and Python's headers, and for the packages that `make setup` compiles with them."""
     if ros := toolchain.sourced_ros():
-        return ok(name, f"colcon compiles interfaces, with the ROS 2 in {ros}")
+        return ok(f"colcon compiles interfaces, with the ROS 2 in {ros}")
     lacking = list(filter(None, (toolchain.missing_compiler(), toolchain.missing_headers())))
     if lacking:
-        return warning(name, _absent(), "\n".join([*lacking, _WITHOUT]))
+        return warning(_absent(), "\n".join([*lacking, _WITHOUT]))
     installed = prefixes.packages(prefixes.installed())
     absent = [package for package in shipped.standard() if package not in installed]
     if absent:
-        return warning(name, f"{' and '.join(absent)} not compiled yet", "make setup compiles them")
-    return ok(name, f"{shutil.which('gcc')}, {shutil.which('g++')}, {toolchain.headers() / 'Python.h'}")
+        return warning(f"{' and '.join(absent)} not compiled yet", "make setup compiles them")
+    return ok(f"{shutil.which('gcc')}, {shutil.which('g++')}, {toolchain.headers() / 'Python.h'}")
 
 
 def _absent() -> str:
@@ -100,12 +99,12 @@ _TOO_NEW = 80
 _BUILD = ("--log-base", "log", "build", "--symlink-install", "--event-handlers", "console_direct-")
 
 
-def examine_colcon(name: str) -> MachineFinding:
+def examine_colcon() -> MachineFinding:
     """Build a package of one module with `--symlink-install`."""
     try:
         colcon, setuptools = version("colcon-core"), version("setuptools")
     except PackageNotFoundError as error:
-        return missing(name, f"{error.name} is not installed for {sys.executable}", set_up_again())
+        return missing(f"{error.name} is not installed for {sys.executable}", set_up_again())
     found = f"colcon-core {colcon}, setuptools {setuptools}"
     with tempfile.TemporaryDirectory(prefix="spinbook-doctor-") as folder:
         workspace = Path(folder)
@@ -116,15 +115,14 @@ def examine_colcon(name: str) -> MachineFinding:
         built = _build(workspace)
         if built.returncode:
             lines = [line for line in built.stderr.splitlines() if line.strip()] or [f"exit code {built.returncode}"]
-            return missing(name, f"{found}; a build fails: {lines[-1]}", set_up_again())
+            return missing(f"{found}; a build fails: {lines[-1]}", set_up_again())
         linked = not any((workspace / "install").glob(f"{_NAME}/lib/python*/site-packages/{_NAME}/trial.py"))
     if not linked or int(setuptools.split(".")[0]) >= _TOO_NEW:
         return warning(
-            name,
             f"{found}; `--symlink-install` copies, silently",
             "With setuptools 80 or newer, an edit of a node has no effect. Fix: pip install 'setuptools<80'",
         )
-    return ok(name, f"{found}; built a package with --symlink-install")
+    return ok(f"{found}; built a package with --symlink-install")
 
 
 def _build(workspace: Path) -> subprocess.CompletedProcess[str]:
@@ -149,11 +147,11 @@ _PAGE = "data:text/html,<title>spinbook</title>"
 _DEADLINE_S = 30.0
 
 
-def examine_browser(name: str) -> MachineFinding:
+def examine_browser() -> MachineFinding:
     """Open a page in a headless Chromium."""
     path = next(filter(None, map(shutil.which, _NAMES)), None)
     if path is None:
-        return warning(name, "no Chromium found", _ONLY_TESTS)
+        return warning("no Chromium found", _ONLY_TESTS)
     with tempfile.TemporaryDirectory(prefix="spinbook-doctor-") as profile:
         argv = [path, "--headless", "--disable-gpu", f"--user-data-dir={profile}", "--dump-dom", _PAGE]
         if os.geteuid() == 0:
@@ -161,14 +159,14 @@ def examine_browser(name: str) -> MachineFinding:
         try:
             trial = run_program(argv, _DEADLINE_S)
         except subprocess.TimeoutExpired:
-            return warning(name, f"{path} does not respond within {_DEADLINE_S:g} s", _ONLY_TESTS)
+            return warning(f"{path} does not respond within {_DEADLINE_S:g} s", _ONLY_TESTS)
     if "spinbook" not in trial.stdout:
         lines = trial.stderr.strip().splitlines() or [f"exit code {trial.returncode}"]
-        return warning(name, f"{path} does not show a page: {lines[-1]}", _ONLY_TESTS)
-    return ok(name, path)
+        return warning(f"{path} does not show a page: {lines[-1]}", _ONLY_TESTS)
+    return ok(path)
 
 
-def examine_ros2_command(name: str) -> MachineFinding:
+def examine_ros2_command() -> MachineFinding:
     """Look for the ros2 command and turtlesim. Chapters run without them, so their absence is no problem."""
     ros2 = real_ros2([], os.environ)
     prefix = prefixes.prefix_of("turtlesim", prefixes.installed())
@@ -177,25 +175,24 @@ def examine_ros2_command(name: str) -> MachineFinding:
         f"ros2 at {ros2[0]}" if ros2 else "no ros2 of ROS: Spinbook's own runs (ros2, spinbook ros2)",
         f"turtlesim in {turtlesim}" if turtlesim else "turtlesim's nodes: Spinbook's own",
     ]
-    return ok(name, "; ".join(parts))
+    return ok("; ".join(parts))
 
 
 _KERNEL_DEADLINE_S = 45.0
 _CELL = "%load_ext spinbook\nimport sys; print(sys.prefix)"
 
 
-def examine_kernel(name: str) -> MachineFinding:
+def examine_kernel() -> MachineFinding:
     """Start the kernel that the notebooks use, and run a cell in it."""
     try:
         from jupyter_client.manager import start_new_kernel
     except ImportError as error:
-        return missing(name, str(error), set_up_again())
+        return missing(str(error), set_up_again())
     start = time.monotonic()
     try:
         manager, client = start_new_kernel(kernel_name="python3", startup_timeout=_KERNEL_DEADLINE_S)
     except (OSError, RuntimeError) as error:
         return missing(
-            name,
             f"does not start: {error}",
             "To see why, run: python -m ipykernel\nJupyter stores files below HOME: can you write there?",
         )
@@ -206,10 +203,10 @@ def examine_kernel(name: str) -> MachineFinding:
         manager.shutdown_kernel(now=True)
     took = time.monotonic() - start
     if fault:
-        return missing(name, f"a cell fails: {fault}", set_up_again())
+        return missing(f"a cell fails: {fault}", set_up_again())
     if printed.strip().splitlines()[-1:] != [sys.prefix]:
-        return missing(name, f"the kernel runs another Python: {printed.strip()}", "jupyter kernelspec remove python3")
-    return ok(name, f"started and ran a cell in {took:.1f} s")
+        return missing(f"the kernel runs another Python: {printed.strip()}", "jupyter kernelspec remove python3")
+    return ok(f"started and ran a cell in {took:.1f} s")
 
 
 def _run(client: Any) -> tuple[str, str]:

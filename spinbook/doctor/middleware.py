@@ -22,7 +22,7 @@ NOT_LOADED = 102
 _PRINT_MIDDLEWARE = "from rclpy.utilities import get_rmw_implementation_identifier as name; print(name())"
 
 
-def examine_middleware(name: str) -> MachineFinding:
+def examine_middleware() -> MachineFinding:
     """Load the middleware in a process of its own, which rclpy ends if the middleware is missing."""
     chosen = os.environ.get("RMW_IMPLEMENTATION", "")
     absent = missing_middleware(os.environ)
@@ -30,42 +30,36 @@ def examine_middleware(name: str) -> MachineFinding:
     if trial.returncode == 0:
         loaded = trial.stdout.strip()
         if loaded.startswith("rmw_fastrtps"):
-            return ok(name, f"{loaded}{' (RMW_IMPLEMENTATION)' if chosen else ''}")
+            return ok(f"{loaded}{' (RMW_IMPLEMENTATION)' if chosen else ''}")
         return warning(
-            name,
             f"{loaded} (RMW_IMPLEMENTATION)",
             "Spinbook's loopback profile is for Fast DDS; for other middlewares it only sets LOCALHOST. "
             "For the default: unset RMW_IMPLEMENTATION",
         )
     if absent or trial.returncode == NOT_LOADED:
         return missing(
-            name,
             f"RMW_IMPLEMENTATION is '{chosen}', which is not installed here",
             "Nodes would exit with code 102 and no message. Fix: unset RMW_IMPLEMENTATION",
         )
     lines = trial.stderr.strip().splitlines() or [f"exit code {trial.returncode}"]
-    return missing(name, f"does not load: {lines[-1]}", set_up_again())
+    return missing(f"does not load: {lines[-1]}", set_up_again())
 
 
 _NEEDED = "Without it nothing can be graded or checked."
 _PRINT_LOCKSTEP = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
 
 
-def examine_lockstep(name: str) -> MachineFinding:
+def examine_lockstep() -> MachineFinding:
     """Let rclpy load the grader's middleware in a process of its own."""
     found = library()
     if not isinstance(found, Library):
-        return warning(name, f"not available: {found.reason}", f"{_NEEDED} {found.remedy}")
+        return warning(f"not available: {found.reason}", f"{_NEEDED} {found.remedy}")
     trial = _trial(found)
     loaded = trial.stdout.strip()
     if loaded == IDENTIFIER:
-        return ok(name, f"{loaded}, {found.folder}")
+        return ok(f"{loaded}, {found.folder}")
     lines = trial.stderr.strip().splitlines() or [f"rclpy has loaded {loaded or 'nothing'}"]
-    return warning(
-        name,
-        f"it is compiled, but does not load: {lines[-1]}",
-        f"{_NEEDED} {_again(found)}",
-    )
+    return warning(f"it is compiled, but does not load: {lines[-1]}", f"{_NEEDED} {_again(found)}")
 
 
 def _again(found: Library) -> str:
@@ -87,42 +81,39 @@ _ENOUGH = 32 * 2**20
 _NOT_NEEDED = "Notebooks and the grader don't need it; nodes in your terminals print warnings without it."
 
 
-def examine_shared_memory(name: str) -> MachineFinding:
+def examine_shared_memory() -> MachineFinding:
     """Write to shared memory, and check how much is free."""
     folder = Path("/dev/shm")
     try:
         with tempfile.TemporaryFile(dir=folder) as file:
             file.write(b"spinbook")
     except OSError as error:
-        return warning(name, f"{folder} can't be written: {error.strerror}", _NOT_NEEDED)
+        return warning(f"{folder} can't be written: {error.strerror}", _NOT_NEEDED)
     free = shutil.disk_usage(folder).free
     left = sum(1 for _ in folder.glob("fastrtps_*"))
     found = f"{folder}, {free // 2**20} MB free" + (f", {left} files of Fast DDS" if left else "")
     if free < _ENOUGH:
         return warning(
-            name,
             found,
             f"{_NOT_NEEDED}\nRemove the files of killed nodes: fastdds shm clean. In a container, use --shm-size 256m.",
         )
-    return ok(name, found)
+    return ok(found)
 
 
-def examine_log_folder(name: str) -> MachineFinding:
+def examine_log_folder() -> MachineFinding:
     """Write a file where ROS 2 would: to ROS_LOG_DIR, otherwise ROS_HOME/log, otherwise ~/.ros/log."""
     chosen, variable = _log_folder()
     if chosen is None:
-        return _fallback(name, "HOME is not set")
+        return _fallback("HOME is not set")
     existing = next(folder for folder in (chosen, *chosen.parents) if folder.exists())
     try:
         with tempfile.TemporaryFile(dir=existing):
-            return ok(name, f"{chosen} ({variable})")
+            return ok(f"{chosen} ({variable})")
     except OSError as error:
         reason = f"{chosen} ({variable}) can't be written: {error.strerror}"
     if variable != "HOME":
-        return missing(
-            name, reason, f"rclpy.init would fail. Set {variable} to a folder that you can write, or unset it."
-        )
-    return _fallback(name, reason)
+        return missing(reason, f"rclpy.init would fail. Set {variable} to a folder that you can write, or unset it.")
+    return _fallback(reason)
 
 
 def _log_folder() -> tuple[Path | None, str]:
@@ -135,17 +126,14 @@ def _log_folder() -> tuple[Path | None, str]:
     return None, "HOME"
 
 
-def _fallback(name: str, reason: str) -> MachineFinding:
+def _fallback(reason: str) -> MachineFinding:
     """Check the temporary folder, where notebooks and `spinbook ros2` then write their logs."""
     try:
         with tempfile.TemporaryFile():
             pass
     except OSError as error:
-        return missing(
-            name, f"{reason}; neither can {tempfile.gettempdir()}: {error.strerror}", "Make one of them writable."
-        )
+        return missing(f"{reason}; neither can {tempfile.gettempdir()}: {error.strerror}", "Make one of them writable.")
     return warning(
-        name,
         f"{reason}; Spinbook uses {tempfile.gettempdir()} instead",
         "Your own nodes in a terminal fail at rclpy.init. Fix: export ROS_LOG_DIR=/tmp/ros-log",
     )
@@ -154,7 +142,7 @@ def _fallback(name: str, reason: str) -> MachineFinding:
 _ARRIVES_WITHIN_S = 30.0
 
 
-def examine_message(name: str) -> MachineFinding:
+def examine_message() -> MachineFinding:
     """Start a publisher and a subscriber as processes, in a ROS domain of their own, on this machine's loopback."""
     inherited = dict(os.environ)
     if missing_middleware(inherited):
@@ -165,23 +153,19 @@ def examine_message(name: str) -> MachineFinding:
         took = _send_one(environment)
     except subprocess.TimeoutExpired:
         return missing(
-            name,
             f"none arrived within {_ARRIVES_WITHIN_S:g} s (domain {claimed.number}, 127.0.0.1)",
             "Is the loopback interface up (ip link show lo)? Does a firewall drop UDP on 127.0.0.1?",
         )
     except subprocess.CalledProcessError as error:
         lines = (error.stderr or "").strip().splitlines() or [f"exit code {error.returncode}"]
         return missing(
-            name,
-            f"the listener failed: {lines[-1]}",
-            "To see its output: python -m spinbook.doctor.middleware listen",
+            f"the listener failed: {lines[-1]}", "To see its output: python -m spinbook.doctor.middleware listen"
         )
     finally:
         claimed.release()
     return ok(
-        name,
         f"arrived from another process in {took['travel_s'] * 1e3:.1f} ms; discovery took "
-        f" {took['discovery_s'] * 1e3:.0f} ms",
+        f" {took['discovery_s'] * 1e3:.0f} ms"
     )
 
 

@@ -18,7 +18,7 @@ from spinbook.kernel.environment import HIGHEST, LOOPBACK_PROFILE
 MESSAGES = ("builtin_interfaces", "geometry_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs")
 
 
-def examine_ros_library(name: str) -> MachineFinding:
+def examine_ros_library() -> MachineFinding:
     """Import rclpy with its compiled part and a type support, and compare with what else is installed."""
     # A missing middleware would end this process. middleware.py checks that.
     os.environ.pop("RMW_IMPLEMENTATION", None)
@@ -27,18 +27,17 @@ def examine_ros_library(name: str) -> MachineFinding:
         package = Path(importlib.import_module("rclpy").__path__[0])
         _load_messages()
     except NoRos as error:
-        return missing(name, *str(error).split("\n", 1))
+        return missing(*str(error).split("\n", 1))
     except ImportError as error:
-        return missing(name, str(error).splitlines()[0], _fix_of(error))
+        return missing(str(error).splitlines()[0], _fix_of(error))
     wheels = wheels_installed()
     version = distribution_version("ros-rclpy") if wheels and not sourced else _version_of(package)
     if sourced and wheels:
         return missing(
-            name,
             f"two installations: rclpy {version} from {package.parent}, and PyPI's wheels in {sys.prefix}",
             f"It would be random which libraries are loaded. {set_up_again()}",
         )
-    return ok(name, f"rclpy {version}, {'PyPI wheels' if wheels else 'sourced'}, {package.parent}")
+    return ok(f"rclpy {version}, {'PyPI wheels' if wheels else 'sourced'}, {package.parent}")
 
 
 def wheels_installed() -> bool:
@@ -85,13 +84,13 @@ _WATCHED = (
 )
 
 
-def examine_ros_settings(name: str) -> MachineFinding:
+def examine_ros_settings() -> MachineFinding:
     """Check the variables that decide which nodes discover each other."""
     surprises = [*_about_other_installations(), *_about_domain(), *_about_profiles(), *_about_discovery()]
     if surprises:
-        return warning(name, "; ".join(found for found, _ in surprises), "\n".join(fix for _, fix in surprises))
+        return warning("; ".join(found for found, _ in surprises), "\n".join(fix for _, fix in surprises))
     is_set = [f"{variable}={os.environ[variable]}" for variable in _WATCHED if os.environ.get(variable)]
-    return ok(name, ", ".join(is_set) or "none set: domain 0, notebooks in domains of their own")
+    return ok(", ".join(is_set) or "none set: domain 0, notebooks in domains of their own")
 
 
 def _about_other_installations() -> list[tuple[str, str]]:
@@ -159,25 +158,23 @@ def _about_discovery() -> list[tuple[str, str]]:
 # guard is inherited without the path, or from another environment, Python is not restarted.
 
 
-def examine_library_path(name: str) -> MachineFinding:
+def examine_library_path() -> MachineFinding:
     """Check that LD_LIBRARY_PATH leads to this environment's libraries and to no others."""
     entries = [Path(entry) for entry in os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep) if entry]
     with_ros = list(dict.fromkeys(entry for entry in entries if (entry / "librcl.so").exists()))
     own = Path(sys.prefix, "lib")
     if not wheels_installed():
-        return ok(name, ", ".join(map(str, with_ros)) or "no ROS libraries on it")
+        return ok(", ".join(map(str, with_ros)) or "no ROS libraries on it")
     if own not in entries:
         return missing(
-            name,
             f"{GUARD} is set, but LD_LIBRARY_PATH does not name {own}",
             f"LD_LIBRARY_PATH was lost, but the guard was not. Remove both: unset {GUARD} LD_LIBRARY_PATH",
         )
     others = [str(entry) for entry in with_ros if entry != own]
     if others:
         return warning(
-            name,
             f"{own}, and also {', '.join(others)}",
             "Libraries of another ROS may be loaded. Use a terminal in which neither another environment is active nor "
             f"a ROS setup file is sourced, or: unset {GUARD} LD_LIBRARY_PATH",
         )
-    return ok(name, f"{own}, set by the wheels themselves")
+    return ok(f"{own}, set by the wheels themselves")

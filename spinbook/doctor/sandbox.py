@@ -15,40 +15,39 @@ _ALLOW = (
 )
 
 
-def examine_sandbox(name: str) -> MachineFinding:
+def examine_sandbox() -> MachineFinding:
     """Let the grader run a program in each of its sandboxes."""
     try:
         from grader.sandbox.isolation import available, refuse_what_students_can_not_read
         from grader.sandbox.program import Isolation, SandboxUnavailable
     except ImportError as error:
-        return missing(name, f"the grader does not load: {error}", set_up_again())
+        return missing(f"the grader does not load: {error}", set_up_again())
     try:
         refuse_what_students_can_not_read()
     except SandboxUnavailable as error:
-        return missing(name, "students' programs can't read all modules", str(error))
+        return missing("students' programs can't read all modules", str(error))
     levels = available()
     strong = [level for level in (Isolation.BUBBLEWRAP, Isolation.NAMESPACES) if levels[level] is None]
     reasons = "; ".join(f"{level}: {reason}" for level, reason in levels.items() if reason)
     works = ", ".join(str(level) for level in levels if levels[level] is None and level is not Isolation.NONE)
     if strong:
-        return ok(name, works + (f" ({reasons})" if reasons else ""))
+        return ok(works + (f" ({reasons})" if reasons else ""))
     if levels[Isolation.LANDLOCK] is None:
         return warning(
-            name,
             f"landlock only ({reasons})",
             f"It denies students' code files and all sockets, but shows it the command lines of processes. {_ALLOW}",
         )
-    return missing(name, f"none ({reasons})", f"Spinbook does not run students' code without a sandbox. {_ALLOW}")
+    return missing(f"none ({reasons})", f"Spinbook does not run students' code without a sandbox. {_ALLOW}")
 
 
 _ALSO_WITHOUT = "The grader makes the same namespaces without it, if this user may (see the sandbox finding)."
 
 
-def examine_bubblewrap(name: str) -> MachineFinding:
+def examine_bubblewrap() -> MachineFinding:
     """Run `true` in bubblewrap."""
     path = shutil.which("bwrap")
     if path is None:
-        return warning(name, "not installed", f"{_ALSO_WITHOUT}\nsudo apt-get install bubblewrap")
+        return warning("not installed", f"{_ALSO_WITHOUT}\nsudo apt-get install bubblewrap")
     version = subprocess.run([path, "--version"], capture_output=True, text=True, check=False).stdout.split()[-1:]
     trial = subprocess.run(
         [path, "--ro-bind", "/", "/", "--unshare-pid", "true"], capture_output=True, text=True, check=False
@@ -56,8 +55,8 @@ def examine_bubblewrap(name: str) -> MachineFinding:
     found = f"{' '.join(version) or 'of unknown version'}, {path}"
     if trial.returncode:
         lines = trial.stderr.strip().splitlines() or [f"exit code {trial.returncode}"]
-        return warning(name, f"{found}: {lines[-1]}", _ALSO_WITHOUT)
-    return ok(name, found)
+        return warning(f"{found}: {lines[-1]}", _ALSO_WITHOUT)
+    return ok(found)
 
 
 _KNOBS = (
@@ -71,11 +70,11 @@ _KNOBS = (
 )
 
 
-def examine_namespaces(name: str) -> MachineFinding:
+def examine_namespaces() -> MachineFinding:
     """Make a user, a network, a mount, an IPC and a process namespace, with util-linux' `unshare`."""
     if shutil.which("unshare") is None:
         return warning(
-            name, "not checked: `unshare` is not installed", "See the sandbox finding, which tries them without it."
+            "not checked: `unshare` is not installed", "See the sandbox finding, which tries them without it."
         )
     kinds = {
         "user": "--user --map-root-user",
@@ -92,9 +91,8 @@ def examine_namespaces(name: str) -> MachineFinding:
         if reason:
             failed[kind] = reason
     if not failed:
-        return ok(name, ", ".join(kinds))
+        return ok(", ".join(kinds))
     return warning(
-        name,
         "; ".join(f"{kind}: {reason}" for kind, reason in failed.items()),
         "The grader falls back to weaker sandboxes (see the sandbox finding).\n" + _fix(),
     )

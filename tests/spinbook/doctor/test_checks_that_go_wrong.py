@@ -11,7 +11,7 @@ from process_tree import runs
 from spinbook.doctor.diagnosis import MachineCheck, MachineFinding, State, diagnose, examine
 
 _HEAD = "import os, pathlib, signal, subprocess, sys, time\nfrom spinbook.doctor.diagnosis import missing, ok\n"
-_EXAMINE = "def examine(name):\n    {}\n"
+_EXAMINE = "def examine():\n    {}\n"
 
 
 @pytest.fixture
@@ -54,15 +54,15 @@ def test_a_check_that_hangs_is_ended_with_all_that_it_started(folder: Path) -> N
 
 
 def test_what_libraries_print_is_not_taken_for_the_finding(folder: Path) -> None:
-    does = "print('Welcome to ROS!'); os.system('echo from C'); return ok(name, 'works')"
+    does = "print('Welcome to ROS!'); os.system('echo from C'); return ok('works')"
     assert examine(check(folder, "chatty", does)) == MachineFinding("Chatty", State.OK, "works")
 
 
 def test_the_others_are_reported_in_their_order(folder: Path) -> None:
     checks = [
-        check(folder, "slow", "time.sleep(0.5); return ok(name, 'works')"),
+        check(folder, "slow", "time.sleep(0.5); return ok('works')"),
         check(folder, "broken", "os.abort()"),
-        check(folder, "good", "return ok(name, 'works')"),
+        check(folder, "good", "return ok('works')"),
     ]
     seen: list[str] = []
     findings = diagnose(checks, lambda finding: seen.append(finding.name))
@@ -76,7 +76,7 @@ def test_the_others_are_reported_in_their_order(folder: Path) -> None:
 
 def test_what_can_only_fail_is_not_tried_so_a_cause_is_reported_once(folder: Path) -> None:
     checks = [
-        check(folder, "cause", "return missing(name, 'is gone', 'get it')"),
+        check(folder, "cause", "return missing('is gone', 'get it')"),
         check(folder, "effect", f"open({os.fspath(folder / 'tried')!r}, 'w')", needs=("cause",)),
     ]
     _, effect = diagnose(checks, lambda finding: None)
@@ -85,5 +85,5 @@ def test_what_can_only_fail_is_not_tried_so_a_cause_is_reported_once(folder: Pat
 
 
 def test_alone_it_is_tried_without_what_it_needs(folder: Path) -> None:
-    (finding,) = diagnose([check(folder, "effect", "return ok(name, 'works')", needs=("cause",))], lambda _: None)
+    (finding,) = diagnose([check(folder, "effect", "return ok('works')", needs=("cause",))], lambda _: None)
     assert finding.state is State.OK

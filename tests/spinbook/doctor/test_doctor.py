@@ -11,7 +11,7 @@ from pathlib import Path
 from rich.console import Console
 from running import doctor, finding_of
 
-from spinbook.doctor.diagnosis import CHECKS, MachineFinding, is_able, missing, ok, show, warning
+from spinbook.doctor.diagnosis import CHECKS, MachineFinding, State, is_able, show
 
 
 def test_here_everything_that_is_needed_works() -> None:
@@ -70,13 +70,19 @@ def shown(*findings: MachineFinding) -> str:
 
 
 def test_what_is_missing_makes_it_unable_and_a_warning_does_not() -> None:
-    assert is_able([ok("One", "works"), warning("Two", "is odd", "do this")])
-    assert not is_able([ok("One", "works"), missing("Two", "is not there", "do that")])
+    assert is_able(
+        [MachineFinding("One", State.OK, "works"), MachineFinding("Two", State.WARNING, "is odd", "do this")]
+    )
+    assert not is_able(
+        [MachineFinding("One", State.OK, "works"), MachineFinding("Two", State.MISSING, "is not there", "do that")]
+    )
 
 
 def test_the_fixes_follow_the_list_each_with_its_name() -> None:
     text = shown(
-        ok("One", "works"), warning("Two", "is odd", "do this\nand that"), missing("Three", "is gone", "get it")
+        MachineFinding("One", State.OK, "works"),
+        MachineFinding("Two", State.WARNING, "is odd", "do this\nand that"),
+        MachineFinding("Three", State.MISSING, "is gone", "get it"),
     )
     assert [line.rstrip() for line in text.splitlines()] == [
         "✓  One    works",
@@ -95,4 +101,4 @@ def test_the_fixes_follow_the_list_each_with_its_name() -> None:
 
 
 def test_square_brackets_in_what_was_found_are_no_markup() -> None:
-    assert "[red]/opt[/red]" in shown(ok("One", "[red]/opt[/red]"))
+    assert "[red]/opt[/red]" in shown(MachineFinding("One", State.OK, "[red]/opt[/red]"))

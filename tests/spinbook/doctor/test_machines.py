@@ -173,7 +173,7 @@ def test_the_strongest_sandbox_that_works_decides(
 ) -> None:
     levels = {level: None if level.value in working else "not allowed" for level in isolation.Isolation}
     monkeypatch.setattr(isolation, "available", lambda: levels)
-    finding = sandbox.examine_sandbox("Sandbox")
+    finding = sandbox.examine_sandbox()
     assert finding.state.value == state
     assert bool(finding.fix) is (state != "ok")
 
@@ -181,7 +181,7 @@ def test_the_strongest_sandbox_that_works_decides(
 @pytest.mark.parametrize("version", [(3, 9, 2), (3, 15, 0)])
 def test_a_python_that_is_not_supported_is_a_fault(monkeypatch: pytest.MonkeyPatch, version: tuple[int, ...]) -> None:
     monkeypatch.setattr(sys, "version_info", version)
-    assert machine.examine_python("Python").state.value == "missing"
+    assert machine.examine_python().state.value == "missing"
 
 
 def test_a_python_without_optimizations_is_a_warning_that_names_a_faster_build(
@@ -191,7 +191,7 @@ def test_a_python_without_optimizations_is_a_warning_that_names_a_faster_build(
     build = python_build.PythonBuild("/usr/bin/python", version, optimized=True, complete=True)
     monkeypatch.setattr(python_build, "is_optimized", lambda: False)
     monkeypatch.setenv("PATH", program(tmp_path, f"python{version}", f"echo '{json.dumps(asdict(build))}'"))
-    finding = machine.examine_python("Python")
+    finding = machine.examine_python()
     assert finding.state is State.WARNING
     assert finding.found.endswith("compiled without optimizations")
     assert "make PYTHON=/usr/bin/python setup" in finding.fix
@@ -200,9 +200,9 @@ def test_a_python_without_optimizations_is_a_warning_that_names_a_faster_build(
 def test_without_a_faster_build_the_warning_says_how_to_make_one(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(python_build, "is_optimized", lambda: False)
     monkeypatch.setenv("PATH", "")
-    assert "--enable-optimizations" in machine.examine_python("Python").fix
+    assert "--enable-optimizations" in machine.examine_python().fix
 
 
 def test_a_python_with_optimizations_is_fine(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(python_build, "is_optimized", lambda: True)
-    assert machine.examine_python("Python").state is State.OK
+    assert machine.examine_python().state is State.OK
