@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -39,7 +39,7 @@ def numbers(
         at = START + round(t * SECOND)
         fields: Fields = dict(others)
         if stamped:
-            fields = _set(fields, "header.stamp", {"sec": at // SECOND, "nanosec": at % SECOND})
+            fields = with_stamp(fields, at)
         stream.append(Message(at, topic, type, _set(fields, field, value)))
     return tuple(stream)
 
@@ -63,7 +63,7 @@ def placed(stream: Stream, number: int, value: float, field: str = "data") -> St
     if not _has(stream[number].fields, field):
         found = f"message {number} on {stream[number].topic} has no number in its field {field!r}."
         raise ValueError(f"{found} Name the field as in numbers(), such as placed(…, field='range').")
-    return _changed(stream, [number], lambda message: replace(message, fields=_set(message.fields, field, value)))
+    return changed(stream, [number], lambda message: replace(message, fields=_set(message.fields, field, value)))
 
 
 def lost(stream: Stream, one_in: int, seed: int) -> Stream:
@@ -87,12 +87,12 @@ def twice(stream: Stream, number: int) -> Stream:
 def paused(stream: Stream, before: int, seconds: float) -> Stream:
     """Publish nothing for `seconds` before message `before`; stamps, if any, move along."""
     wait = round(seconds * SECOND)
-    return _changed(stream, range(before, len(stream)), lambda message: _later(message, wait))
+    return changed(stream, range(before, len(stream)), lambda message: _later(message, wait))
 
 
 def restarted(stream: Stream, after: int) -> Stream:
     """Replace the publisher after message `after` by another one."""
-    return _changed(stream, range(after + 1, len(stream)), lambda message: replace(message, publisher=2))
+    return changed(stream, range(after + 1, len(stream)), lambda message: replace(message, publisher=2))
 
 
 def together(*streams: Stream) -> Stream:
@@ -100,16 +100,26 @@ def together(*streams: Stream) -> Stream:
     return tuple(sorted((message for stream in streams for message in stream), key=lambda message: message.at))
 
 
-def _changed(stream: Stream, which: Sequence[int], change: Any) -> Stream:
-    return tuple(change(message) if i in which else message for i, message in enumerate(stream))
+def changed(stream: Stream, numbers: Iterable[int], change: Callable[[Message], Message]) -> Stream:
+    """Return `stream` with `change` applied to the messages with these `numbers`, counted from 0."""
+    chosen = set(numbers)
+    return tuple(change(message) if i in chosen else message for i, message in enumerate(stream))
+
+
+def with_stamp(fields: Fields, at: int) -> Fields:
+    """Return a copy of `fields` with this stamp (ns) in the header."""
+    return _set(fields, "header.stamp", {"sec": at // SECOND, "nanosec": at % SECOND})
+
+
+def stamp_of(message: Message) -> int:
+    """Return the stamp (ns) in a message's header."""
+    stamp = message.fields["header"]["stamp"]
+    return int(stamp["sec"]) * SECOND + int(stamp["nanosec"])
 
 
 def _later(message: Message, wait: int) -> Message:
-    fields = message.fields
-    if "header" in fields:
-        stamp = fields["header"]["stamp"]
-        moved = stamp["sec"] * SECOND + stamp["nanosec"] + wait
-        fields = _set(_set(fields, "header.stamp.sec", moved // SECOND), "header.stamp.nanosec", moved % SECOND)
+    stamped = "header" in message.fields
+    fields = with_stamp(message.fields, stamp_of(message) + wait) if stamped else message.fields
     return replace(message, at=message.at + wait, fields=fields)
 
 
