@@ -320,12 +320,8 @@ def _flat(content: Any) -> Iterator[Any]:
         yield content
 
 
-#: Fields that were there from the beginning are always part of a digest.
-_FROM_THE_BEGINNING = ("name", "title", "messages", "interrupt")
-
-
 def _digestible(value: Any) -> Any:
-    """Return plain data of everything that matters. Defaults are left out, so new fields change no old digest."""
+    """Return plain data of everything that matters, which is all but the lines where authors wrote it."""
     if isinstance(value, (list, tuple)):
         return [_digestible(one) for one in value]
     if isinstance(value, dict):
@@ -336,14 +332,5 @@ def _digestible(value: Any) -> Any:
         return value
     if isinstance(value, AuthorCode):
         value = value.without_folder()
-    # Names of classes matter only where several are possible; they were never part of the digest of messages.
-    found = {} if isinstance(value, (Scenario, Message)) else {"is": type(value).__name__}
-    for one in fields(value):
-        content = getattr(value, one.name)
-        if one.name != "line" and (not isinstance(value, Scenario) or _matters(one.name, content)):
-            found[one.name] = _digestible(content)
-    return found
-
-
-def _matters(name: str, content: Any) -> bool:
-    return name in _FROM_THE_BEGINNING or (content != "apart" if name == "computer_time" else bool(content))
+    found = {one.name: _digestible(getattr(value, one.name)) for one in fields(value) if one.name != "line"}
+    return {"is": type(value).__name__, **found}

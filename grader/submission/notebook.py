@@ -25,7 +25,7 @@ class NotebookCell:
     """One code cell. `number` counts code cells from 1; `exercise` is the exercise that the cell is for, or "".
 
     `ran` is the execution count of its outputs. `checked` has the digests of the code that `%check` judged in this
-    cell, by exercise; the digest is empty if an older Spinbook saved the check.
+    cell, by exercise.
     """
 
     number: int
@@ -190,17 +190,10 @@ def _exercise(metadata: Any) -> str:
     return name if isinstance(name, str) else ""
 
 
-_SAID = re.compile(r"^Checked: the cell %%node (?P<stem>\w+) as you ran it at ", re.MULTILINE)
-
-
 def _checked(outputs: Any) -> Iterator[tuple[str, str]]:
-    """Yield what the cell's `%check` judged: (exercise, digest), or (module, "") from an older Spinbook."""
+    """Yield what the cell's `%check` judged: (exercise, digest)."""
     for output in outputs if isinstance(outputs, list) else ():
-        if not isinstance(output, dict):
-            continue
-        if match := _SAID.search(_text(output.get("text"))):
-            yield match["stem"], ""
-        metadata = output.get("metadata")
+        metadata = output.get("metadata") if isinstance(output, dict) else None
         record = metadata.get(RECORD) if isinstance(metadata, dict) else None
         if isinstance(record, dict) and all(isinstance(record.get(key), str) for key in ("exercise", "code")):
             yield record["exercise"], record["code"]

@@ -101,7 +101,7 @@ def _decided(
     """Return the cell that counts, with its program, and the reason."""
     if _are_equal(programs):
         return programs[-1], ""
-    if checked := _checked(programs, notebook, exercise, target):
+    if checked := _checked(programs, notebook, exercise):
         return checked, "it is the one that %check judged last"
     rules: tuple[tuple[str, Callable[[NotebookCell, AssembledProgram], bool]], ...] = (
         ("the others are still the starter", lambda cell, program: digest_of(program.code) not in starters),
@@ -135,33 +135,12 @@ def _is_inside(cell: NotebookCell, programs: Sequence[tuple[NotebookCell, Assemb
 
 
 def _checked(
-    programs: Sequence[tuple[NotebookCell, AssembledProgram]],
-    notebook: Notebook,
-    exercise: Exercise,
-    target: ProgramFile,
+    programs: Sequence[tuple[NotebookCell, AssembledProgram]], notebook: Notebook, exercise: Exercise
 ) -> tuple[NotebookCell, AssembledProgram] | None:
     """Return the program that `%check` judged last, from the record in its saved output; None if unknown."""
-    stem = target.file.removesuffix(".py")
-    checks = [cell for cell in notebook.cells if cell.checked and {exercise.name, stem} & cell.checked.keys()]
-    if not checks:
-        return None
-    last = max(checks, key=lambda cell: (cell.ran or 0, cell.number))
-    records = last.checked or {}
-    if digest := records.get(exercise.name) or records.get(stem):
-        return next((program for program in reversed(programs) if digest_of(program[1].code) == digest), None)
-    return _run_before(last, [program for program in programs if program[0].name == stem])
-
-
-def _run_before(
-    check: NotebookCell, programs: Sequence[tuple[NotebookCell, AssembledProgram]]
-) -> tuple[NotebookCell, AssembledProgram] | None:
-    """Return the program whose cell was the last to run before a check: an older Spinbook, which saved no record,
-    judged that one.
-    """
-    if _are_equal(programs):
-        return programs[-1]
-    earlier = [program for program in programs if check.ran and 0 < (program[0].ran or 0) < check.ran]
-    return max(earlier, key=lambda program: program[0].ran or 0) if earlier else None
+    checks = [(cell.ran or 0, cell.number, (cell.checked or {}).get(exercise.name)) for cell in notebook.cells]
+    digest = max((check for check in checks if check[2]), default=(0, 0, None))[2]
+    return next((program for program in reversed(programs) if digest_of(program[1].code) == digest), None)
 
 
 def _others(

@@ -88,17 +88,6 @@ def test_of_two_versions_the_one_counts_that_check_judged_last(order: tuple[str,
     assert is_program(code_in(notebook(check_cell(second, ran=7), *order, check_cell(first, ran=3)), exercise))
 
 
-def test_a_check_of_an_older_spinbook_judged_the_cell_that_ran_before_it(exercise: Exercise) -> None:
-    said = {
-        "output_type": "stream",
-        "name": "stdout",
-        "text": ["Checked: the cell %%node heartbeat as you ran it at 18:19:07, without any change.\n"],
-    }
-    check = cell("%check heartbeat", ran=4, outputs=[said])
-    code = code_in(notebook(cell(NODE, ran=3), cell(OLD, ran=2), check), exercise)
-    assert is_program(code)
-
-
 def test_the_starter_does_not_count_beside_the_students_work(exercise: Exercise) -> None:
     code = code_in(notebook(NODE, handed_out(exercise)), exercise)
     assert is_program(code)
