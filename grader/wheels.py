@@ -51,20 +51,6 @@ def middleware_wheel() -> tuple[str, bytes]:
     return wheel_file(PREBUILT.replace("_", "-"), version, _SUMMARY, "py3-none", content, {})
 
 
-def only_middleware() -> tuple[str, bytes]:
-    """Return the file name and content of a wheel that replaces Fast DDS where programs are only graded.
-
-    PyPI's rclpy is linked to Fast DDS by name, and looks for libraries in each folder `ros_*.libs` of site-packages.
-    Next to the real Fast DDS, chance would decide which of them is loaded. Raises as `middleware_wheel` does.
-    """
-    require_middleware()
-    found = library()
-    assert isinstance(found, Library)
-    files = [found.preload, *_files(found.folder / "wheels")]
-    content = {f"ros_rmw_lockstep.libs/{file.name}": file.read_bytes() for file in files}
-    return wheel_file("rmw-lockstep-only", f"{_VERSION}+{sources_digest()[:16]}", _SUMMARY, "py3-none", content, {})
-
-
 def _files(folder: Path) -> list[Path]:
     return sorted(file for file in folder.rglob("*") if file.is_file() and file.suffix not in (".py", ".pyc"))
 

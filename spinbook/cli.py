@@ -88,6 +88,7 @@ EXTRAS = {
     "distributed": "cluster",
     "rosbags": "bag",
     "rclpy": "ros",
+    "Fast DDS": "ros",
     **dict.fromkeys(("IPython", "ipykernel", "jupytext", "nbclient", "nbformat"), "notebooks"),
     **dict.fromkeys(("sphinx", "myst_nb", "myst_parser", "latex2mathml", "livereload", "sphinx_book_theme"), "site"),
 }
@@ -121,10 +122,10 @@ class Verbs(click.Group):
         return name, command, rest
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run a verb. Raises UsageError if a module of an extra is missing."""
+        """Run a verb. Raises UsageError if a module of an extra is missing, or Fast DDS."""
         try:
             return super().invoke(ctx)
-        except ModuleNotFoundError as missing:
+        except ImportError as missing:
             package = _package(missing)
             if package not in EXTRAS:
                 raise
@@ -156,7 +157,7 @@ def _load(name: str, verb: Verb) -> click.Command:
     module, _, attribute = verb.command.partition(":")
     try:
         command = getattr(importlib.import_module(module), attribute)
-    except ModuleNotFoundError as missing:
+    except ImportError as missing:
         package = _package(missing)
         if package not in EXTRAS:
             raise
@@ -165,8 +166,9 @@ def _load(name: str, verb: Verb) -> click.Command:
     return command
 
 
-def _package(missing: ModuleNotFoundError) -> str:
-    return (missing.name or "").partition(".")[0]
+def _package(missing: ImportError) -> str:
+    of_fast_dds = "librmw_fastrtps_cpp" in str(missing)
+    return "Fast DDS" if of_fast_dds else (missing.name or "").partition(".")[0]
 
 
 def _missing(verb: str, package: str) -> click.UsageError:

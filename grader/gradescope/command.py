@@ -19,7 +19,7 @@ from grader.gradescope.pins import NAME, hashed_pins, pins
 from grader.grading.reference import solution_file
 from grader.sandbox.middleware import MiddlewareUnavailable
 from grader.sandbox.program import Isolation
-from grader.wheels import compiled_wheels, only_middleware
+from grader.wheels import compiled_wheels
 from interface_compiler.wheel_file import record, zipped
 
 #: The root of this software's source: the folder with pyproject.toml.
@@ -93,7 +93,7 @@ def _installed() -> dict[str, bytes]:
 def _compiled() -> dict[str, bytes]:
     """Return the wheels of what is compiled: they fit every container that PyPI's ROS 2 fits."""
     try:
-        return {f"wheels/{name}": content for name, content in [*compiled_wheels().items(), only_middleware()]}
+        return {f"wheels/{name}": content for name, content in compiled_wheels().items()}
     except MiddlewareUnavailable as error:
         raise NoSource(str(error)) from None
 

@@ -17,7 +17,7 @@ fi
 
 # A checkout's pins have hashes, and nothing is built but the checkout itself, with the pinned setuptools. An installed
 # wheel only knows the versions that it ran with. The other wheels are what would have to be compiled: the grader's
-# middleware, also in place of Fast DDS, the course's interfaces, and those that PyPI lacks. Python compiles what it runs.
+# middleware, the course's interfaces, and those that PyPI lacks. Python compiles what it runs.
 python3 -m venv "$here/venv"
 pip() { "$here/venv/bin/python" -m pip --quiet --disable-pip-version-check "$@"; }
 pins=$here/course/pins.txt

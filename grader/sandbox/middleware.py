@@ -55,6 +55,15 @@ def variables(of: Mapping[str, str]) -> dict[str, str]:
     return built.environment(of)
 
 
+def in_place_of_fast_dds(of: Mapping[str, str]) -> dict[str, str]:
+    """Return the variables that let a process import PyPI's rclpy where Fast DDS, which it is linked to, is missing.
+
+    Raises as `variables` does.
+    """
+    ros = installed_ros()
+    return {"LD_LIBRARY_PATH": variables(of)["LD_LIBRARY_PATH"]} if ros and ros.lacks_middleware else {}
+
+
 def choosable() -> bool:
     """Return whether `RMW_IMPLEMENTATION` chooses the middleware. PyPI's wheels load theirs by a fixed file name.
 

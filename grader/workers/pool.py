@@ -17,7 +17,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from grader.sandbox.environment import for_trusted
-from grader.sandbox.middleware import require_middleware
+from grader.sandbox.middleware import in_place_of_fast_dds, require_middleware
 from grader.workers.shared import SharedObjects
 from groundwork.clean_environment import module_command
 
@@ -159,12 +159,14 @@ class WorkerPool:
 
     def _start(self) -> None:
         self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        environment = for_trusted()
+        environment |= in_place_of_fast_dds(environment) | WORKER_ENVIRONMENT | {"TMPDIR": str(self._temporary)}
         self._worker = subprocess.Popen(
             module_command("grader.workers.worker", str(theirs.fileno()), *map(str, self._folders)),
             pass_fds=[theirs.fileno()],
             stdin=subprocess.DEVNULL,
             start_new_session=True,
-            env={**for_trusted(), **WORKER_ENVIRONMENT, "TMPDIR": str(self._temporary)},
+            env=environment,
         )
         theirs.close()
         for content in self._sent:

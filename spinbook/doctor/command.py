@@ -14,6 +14,7 @@ from ros_in_python.ros2.cli import CONTEXT, CommandError
 from ros_in_python.ros2.hello import hello
 from spinbook.doctor.diagnosis import (
     CHECKS,
+    OF_GRADING,
     OF_STUDENTS,
     MachineCheck,
     MachineFinding,
@@ -21,6 +22,7 @@ from spinbook.doctor.diagnosis import (
     diagnose,
     in_handout,
     is_able,
+    only_grades,
     show,
 )
 
@@ -33,7 +35,7 @@ def doctor(checks: tuple[str, ...], as_json: bool) -> None:
 
     Each CHECK really tries it: a message goes from one process to another, a kernel starts, colcon builds a package, a
     program runs in each sandbox. Nothing is changed. Without CHECK, all checks run, in a few seconds; in a handout's
-    folder, those that notebooks and self-checks need:
+    folder, those that notebooks and self-checks need; with the extra `grade`, those that grading needs:
 
     \b
       python       folder       libraries    ros
@@ -49,7 +51,7 @@ def doctor(checks: tuple[str, ...], as_json: bool) -> None:
 
     Exit code: 0 everything needed works (there may be warnings), 1 something needed does not work.
     """
-    words = checks or (OF_STUDENTS if in_handout() else ())
+    words = checks or (OF_GRADING if only_grades() else OF_STUDENTS if in_handout() else ())
     chosen = [check for check in CHECKS if not words or check.word in words]
     findings = _with_progress(chosen)
     if as_json:

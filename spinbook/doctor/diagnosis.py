@@ -21,6 +21,7 @@ from rich.text import Text
 from groundwork.child_process import run_program
 from groundwork.clean_environment import GUARD, ignored, module_command
 from groundwork.words import counted
+from rmw_lockstep.ros import installed_ros
 from spinbook.update.handout import BASE
 
 
@@ -68,6 +69,12 @@ def in_handout() -> bool:
     return Path(BASE).is_dir()
 
 
+def only_grades() -> bool:
+    """Return whether programs can only be graded here: with the extra `grade`, without Fast DDS."""
+    ros = installed_ros()
+    return ros is not None and ros.lacks_middleware
+
+
 def set_up_again(python: str = "python3") -> str:
     """Return how the environment is set up again, here, with this Python."""
     if in_handout():
@@ -107,6 +114,8 @@ def is_able(findings: Sequence[MachineFinding]) -> bool:
 def _summary(findings: Sequence[MachineFinding]) -> str:
     does = "run notebooks and checks" if in_handout() else "build or grade a course"
     works = "Notebooks and checks work here" if in_handout() else "Courses can be built and graded here"
+    if only_grades():
+        does, works = "grade", "Programs can be graded here, and nothing else: nodes need Fast DDS (the extra ros)"
     missing_count = sum(finding.state is State.MISSING for finding in findings)
     warnings = sum(finding.state is State.WARNING for finding in findings)
     also = f" ({counted(warnings, 'warning')})" if warnings else ""
@@ -140,6 +149,8 @@ OF_STUDENTS = (
     *("python", "folder", "libraries", "ros", "middleware", "logs", "message", "environment", "memory"),
     *("kernel", "colcon", "lockstep", "ros2"),
 )
+#: The checks of what grading needs, without Fast DDS.
+OF_GRADING = ("python", "folder", "libraries", "compiler", "namespaces", "sandbox", "bubblewrap", "lockstep")
 #: The checks of what programs find that are not Spinbook's, with the terminal's own variables.
 OF_TERMINAL = ("libraries", "ros", "colcon")
 #: The checks that every node depends on.

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
+from rmw_lockstep.library import Library, library
 from spinbook.doctor.diagnosis import MachineFinding, missing, ok, set_up_again, warning
 
 _ALLOW = (
@@ -22,6 +23,8 @@ def examine_sandbox() -> MachineFinding:
         from grader.sandbox.program import Isolation, SandboxUnavailable
     except ImportError as error:
         return missing(f"the grader does not load: {error}", set_up_again())
+    if not isinstance(library(), Library):
+        return missing("not checked, because the grader's middleware is missing: Lockstep", "")
     try:
         refuse_what_students_can_not_read()
     except SandboxUnavailable as error:

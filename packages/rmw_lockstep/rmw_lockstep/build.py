@@ -71,7 +71,7 @@ def build(announce: Callable[[], None] = lambda: None) -> Library | UnavailableL
     """
     found = library()
     ros = installed_ros()
-    if isinstance(found, Library) or ros is None or not sources() or compiler() is None:
+    if isinstance(found, Library) or ros is None or ros.lacks_middleware or not sources() or compiler() is None:
         return found
     root = next((root for root in library_folders() if _writable(root)), None)
     if root is None:

@@ -89,6 +89,9 @@ def library() -> Library | UnavailableLibrary:
     built_by_colcon = _built_by_colcon() if ros.chooses_at_run_time else None
     if built_by_colcon:
         return Library(built_by_colcon, ros.prefix)
+    if ros.lacks_middleware:
+        reason = "its wheel is not installed, and without Fast DDS it can't be compiled"
+        return UnavailableLibrary(reason, f"Install the wheel {PREBUILT} of the release: docs/installing.md.")
     if compiler() is None:
         reason = "neither a wheel of it that fits is installed, nor g++ to compile it"
         return UnavailableLibrary(reason, f"Install one of them: the wheel {PREBUILT}, or sudo apt-get install g++")

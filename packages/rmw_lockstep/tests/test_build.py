@@ -233,3 +233,17 @@ def test_rclpy_loads_the_real_one_and_nothing_of_fast_dds() -> None:
         r"/(libfastrtps\.so|librmw_fastrtps_shared|librmw_dds_common|libtinyxml2-)[^/]*$", loaded, re.M
     )
     assert finding.library() == found
+
+
+def test_without_fast_dds_it_is_not_compiled_but_its_wheel_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "include/rmw/rmw").mkdir(parents=True)
+    (tmp_path / "include/rmw/rmw/rmw.h").touch()
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    monkeypatch.setattr(finding, "library_folders", lambda: iter([tmp_path]))
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    missing = build()
+    assert isinstance(missing, UnavailableLibrary)
+    assert PREBUILT in missing.remedy
+    assert "Fast DDS" in missing.reason
