@@ -100,16 +100,23 @@ class ClassifiedFence:
 
     @property
     def keeps(self) -> bool:
-        """Whether the code is only saved, for a command to start: it reads command-line arguments."""
-        return self.kind is CellKind.NODE and self.code is not None and (self.waits or self.code.words_read > 0)
+        """Whether the code is only saved, for a command to start: it reads command-line arguments, or nothing calls
+        its method that spins.
+        """
+        if self.kind is not CellKind.NODE or self.code is None:
+            return False
+        return self.waits or self.code.words_read > 0 or bool(self.spin_classes and self.code.uncalled)
 
     @property
     def spin_classes(self) -> tuple[str, ...]:
-        """The classes that the runtime must run with `rclpy.spin`, if the code only defines them."""
+        """The classes that the runtime must run with `rclpy.spin`, if the code only defines them: `Class`, or
+        `Class.method` for one whose method spins.
+        """
         code = self.code
         if self.kind is not CellKind.NODE or code is None or code.is_complete or code.calls_main or self.has_main_above:
             return ()
-        return code.alone
+        method = code.called or code.uncalled
+        return (method,) if method else code.alone
 
     @property
     def whole(self) -> str:

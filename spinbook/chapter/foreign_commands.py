@@ -48,7 +48,8 @@ def foreign_program(package: str, executable: str, course_package: str, own: Col
         lacks = bool(needed) and needed not in ros_packages()
         return lacking(needed) if lacks else None
     if there:
-        fix = f"It has these: {', '.join(sorted(there))}."
+        meant = "".join(f"Did you mean `{name}`? " for name in similar(executable, there))
+        fix = f"{meant}It has these: {', '.join(sorted(there))}."
         return Reason(f"`{package}` has no program `{executable}` here", fix, f"programs of {package}")
     close = difflib.get_close_matches(package, [course_package, *executables.BUILT_IN, *own], n=1, cutoff=0.85)
     if package in own:
@@ -60,6 +61,11 @@ def foreign_program(package: str, executable: str, course_package: str, own: Col
     show = f"Show its program in a fence of the chapter, or {IN_ROS}."
     fix = f"Did you mean `{close[0]}`?" if close else show
     return Reason(f"there is no package `{package}` here", fix, package)
+
+
+def similar(name: str, there: Collection[str], cutoff: float = 0.7) -> list[str]:
+    """Return the name that was probably meant, in a list; an empty one if none is spelled alike."""
+    return difflib.get_close_matches(name, there, n=1, cutoff=cutoff)
 
 
 def missing_type(command: Command, own_interfaces: Collection[str]) -> Reason | None:

@@ -36,6 +36,18 @@ class FieldType:
 
 
 @dataclass(frozen=True)
+class WrongField:
+    """A field that does not exist, a value of another type, or a callback without its answer.
+
+    `line` counts from 1 within the program.
+    """
+
+    line: int
+    problem: str
+    fix: str
+
+
+@dataclass(frozen=True)
 class InterfaceFields:
     """The fields of a message, or of one part of a service or action. `name` is such as `Trigger.Response`."""
 

@@ -6,6 +6,7 @@ They are recognised by their titles. A launch file starts its nodes, as `ros2 ru
 from __future__ import annotations
 
 import ast
+import contextlib
 import json
 import re
 import shlex
@@ -38,6 +39,12 @@ class NotSupportedError(Exception):
 #: Arguments of a node that change nothing that a notebook shows.
 _WITHOUT_EFFECT = frozenset({"output", "emulate_tty", "sigterm_timeout", "sigkill_timeout"})
 _NODES = frozenset({"Node", "LifecycleNode"})
+#: A node of a launch file in XML, `pkg="robot" exec="talker"`, or in YAML.
+_IN_MARKUP = re.compile(r"""\bpkg\s*[=:]\s*["']?(?P<package>\w+)["']?\s+exec\s*[=:]\s*["']?(?P<executable>[\w.]+)""")
+#: What lets a launch file start a node or not.
+_DECIDES = re.compile(
+    r"Condition|OpaqueFunction|LaunchConfigurationEquals|^\s*(if|for)\b.*:$|\b(if|unless)\s*[=:]", re.MULTILINE
+)
 #: What a launch file may call besides: nothing of it starts or changes a process.
 _HARMLESS = frozenset({"LaunchDescription", "DeclareLaunchArgument", "LaunchConfiguration", "add_action", "LogInfo"})
 
@@ -64,6 +71,21 @@ def launched_nodes(code: str, arguments: Mapping[str, str] | None = None) -> lis
     if not nodes:
         raise NotSupportedError("it starts no node")
     return nodes
+
+
+def named_nodes(code: str) -> list[LaunchedNode]:
+    """Return the nodes that a launch file in Python, XML or YAML starts in any case, by packages and executables that
+    are texts in it.
+    """
+    if _DECIDES.search(code):
+        return []
+    pairs = [(match["package"], match["executable"]) for match in _IN_MARKUP.finditer(code)]
+    with contextlib.suppress(SyntaxError):
+        calls = [item for item in descendants(syntax_tree(code)) if isinstance(item, ast.Call)]
+        for call in (call for call in calls if last_name(call.func) in _NODES):
+            texts = {k.arg: k.value.value for k in call.keywords if isinstance(k.value, ast.Constant)}
+            pairs.append((texts.get("package"), texts.get("executable")))
+    return [LaunchedNode(str(package), str(executable), ()) for package, executable in pairs if package and executable]
 
 
 def _assigned(tree: ast.Module) -> dict[str, ast.expr]:

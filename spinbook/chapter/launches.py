@@ -8,7 +8,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from spinbook.chapter.classify import CellKind, ClassifiedFence
-from spinbook.chapter.launch_files import LaunchedNode, NotSupportedError, launched_nodes, unsupported_in_launch_file
+from spinbook.chapter.launch_files import (
+    LaunchedNode,
+    NotSupportedError,
+    launched_nodes,
+    named_nodes,
+    unsupported_in_launch_file,
+)
 from spinbook.chapter.terminal import Command, CommandKind
 
 
@@ -25,6 +31,8 @@ class Launches:
     files: set[str] = field(default_factory=set)
     titles: set[str] = field(default_factory=set)
     """Those of fences that are only shown."""
+    are_built: bool = False
+    """Whether `colcon build` has installed the package since."""
     _codes: dict[str, str] = field(default_factory=dict)
 
     def add(self, number: int, item: ClassifiedFence) -> None:
@@ -39,7 +47,10 @@ class Launches:
 
     def started(self, command: Command) -> list[Command]:
         """Replace `ros2 launch` of a launch file above by a comment and the commands that start all its nodes."""
-        if command.kind is not CommandKind.ROS2 or command.words[1:2] != ("launch",) or self.runs_whole(command):
+        self.are_built |= command.words[:2] == ("colcon", "build")
+        if command.kind is not CommandKind.ROS2 or command.words[1:2] != ("launch",):
+            return [command]
+        if self.is_of_package(command) and self.are_built:
             return [command]
         try:
             nodes = self.nodes(command)
@@ -48,7 +59,7 @@ class Launches:
         note = Command(CommandKind.NOTE, f"# {command.text} starts:", (), command.line)
         return [note, *(node.command(command.line) for node in nodes)] if nodes else [command]
 
-    def runs_whole(self, command: Command) -> bool:
+    def is_of_package(self, command: Command) -> bool:
         """Return whether a cell above has put the launch file into the course's package."""
         names = launch_words(command)
         is_ours = len(names) < 2 or names[0] == self.package
@@ -63,6 +74,11 @@ class Launches:
         pairs = [word.partition(":=") for word in command.words]
         return launched_nodes(code, {name: value for name, mark, value in pairs if mark}) if code else []
 
+    def named_nodes(self, command: Command) -> list[LaunchedNode]:
+        """Return the nodes of the launch file above that a command names, as far as it surely starts them."""
+        files = [word.rpartition("/")[2] for word in launch_words(command)]
+        return [node for file in files for node in named_nodes(self._codes.get(file, ""))]
+
     def could_run_whole(self, command: Command) -> str:
         """Return the launch file that would run as a whole if its title made a file of it; "" if it would not.
 
@@ -75,7 +91,7 @@ class Launches:
     def _meant(self, command: Command) -> tuple[str, str]:
         """Return the name and the code of the Python launch file that a command names; no code if none is above."""
         file = next((word.rpartition("/")[2] for word in launch_words(command) if word.endswith(".py")), "")
-        unnamed = [name for name in self._codes if not name.endswith(".py")]
+        unnamed = [name for name in self._codes if name.startswith("launch file ")]
         return file, self._codes.get(file) or (self._codes[unnamed[-1]] if file and len(unnamed) == 1 else "")
 
     def close(self, file: str) -> str:
@@ -89,5 +105,5 @@ def launch_words(command: Command) -> list[str]:
 
 
 def _is_launch_file(item: ClassifiedFence) -> bool:
-    is_file = item.kind is CellKind.FILE and (item.name or "").endswith(".py")
+    is_file = item.kind is CellKind.FILE and (item.name or "").startswith("launch/")
     return is_file or (item.code is not None and "def generate_launch_description" in item.fence.code)

@@ -94,8 +94,19 @@ def can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], everything: 
 def needs_arguments(own: ast.ClassDef) -> bool:
     """Return whether a class can't be created without arguments."""
     init = next((i for i in own.body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
-    if init is None:
-        return False
+    return init is not None and takes_arguments(init)
+
+
+def serves(own: ast.ClassDef) -> bool:
+    """Return whether a class does something while it only spins: it has timers, subscriptions or servers."""
+    return any(isinstance(item, ast.Call) and last_name(item.func) in _SERVING for item in descendants(own))
+
+
+_SERVING = frozenset({"create_timer", "create_subscription", "create_service", "ActionServer", "TransformListener"})
+
+
+def takes_arguments(init: ast.FunctionDef) -> bool:
+    """Return whether a method can't be called without arguments."""
     positional = len(init.args.args) - 1 - len(init.args.defaults)
     required = [a for a, d in zip(init.args.kwonlyargs, init.args.kw_defaults, strict=True) if d is None]
     return positional > 0 or bool(required)

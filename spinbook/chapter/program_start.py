@@ -134,6 +134,25 @@ def spins(tree: ast.Module) -> bool:
     return False
 
 
+def spinning_methods(own: ast.ClassDef) -> list[ast.FunctionDef]:
+    """Return the public methods of a class that spin or loop without end, also in others that they call, and that the
+    class itself does not use.
+    """
+    methods = {item.name: item for item in own.body if isinstance(item, ast.FunctionDef)}
+    uses = {
+        name: {i.attr for i in descendants(method) if isinstance(i, ast.Attribute)} for name, method in methods.items()
+    }
+    spin = {name for name, method in methods.items() if _calls_spin(method) or _loops_inside(method)}
+    for _ in methods:
+        spin |= {name for name in methods if uses[name] & spin}
+    used = set().union(*uses.values())
+    return [method for name, method in methods.items() if name in spin - used and not name.startswith("_")]
+
+
+def _loops_inside(method: ast.FunctionDef) -> bool:
+    return any(isinstance(item, ast.While) and loops_forever(item) for item in descendants(method))
+
+
 def _calls_spin(statement: ast.stmt) -> bool:
     calls = (item for item in descendants(statement) if isinstance(item, ast.Call))
     return any(last_name(call.func) in _SPINS for call in calls)

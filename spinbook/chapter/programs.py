@@ -241,6 +241,8 @@ def _why_fragment(item: ClassifiedFence, code: PythonCode, joined: CompleteProgr
     is_piece = not code.alone or (bool(code.nameless) and not joined.amends)
     if (is_piece and not _is_file(item)) or _needs_arguments(joined):
         return "nothing makes a node of its class"
+    if code.uncalled and not _is_file(item):
+        return f"nothing calls `{code.uncalled}`, which spins"
     return ""
 
 

@@ -19,6 +19,8 @@ from spinbook.chapter.node_classes import (
     gives_no_name,
     never_initialized,
     ros_name,
+    serves,
+    takes_arguments,
     used_by_init,
 )
 from spinbook.chapter.program_start import (
@@ -29,6 +31,7 @@ from spinbook.chapter.program_start import (
     loops_forever,
     only_defines,
     programs_started,
+    spinning_methods,
     spins,
     starts_ros,
     wants_ros,
@@ -101,6 +104,10 @@ class PythonCode:
     """The line on which it waits for keyboard input; 0 if it does not."""
     alone: tuple[str, ...] = ()
     """The Node classes that nothing in the code makes or derives from, and that need no arguments."""
+    called: str = ""
+    """`Class.method` of a lone class whose method spins, needs no arguments, and is called by nothing."""
+    uncalled: str = ""
+    """The same of a method that needs arguments, or of several; the class by itself does nothing."""
     nameless: tuple[str, ...] = ()
     """Those of `alone` that can't be created: without an `__init__` they give the node no name."""
     lacking: Mapping[str, int] = field(default_factory=dict)
@@ -229,6 +236,7 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
     node_classes = _node_classes(everything)
     lacking = attributes_lacking(everything, node_classes, classes)
     alone = tuple(name for name in node_classes if can_stand_alone(name, classes, everything))
+    method, uncalled = _methods_to_call(alone, classes)
     return PythonCode(
         **imported(everything),
         node_classes=tuple(node_classes),
@@ -253,11 +261,23 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         leaves=leaves(tree),
         asks=next((call.lineno for call in calls if isinstance(call.func, ast.Name) and call.func.id == "input"), 0),
         alone=alone,
+        called=method,
+        uncalled=uncalled,
         nameless=tuple(name for name in alone if gives_no_name(classes[name])),
         lacking=lacking,
         fails_at_once=used_by_init(lacking, node_classes, classes),
         never_initialized=never_initialized(node_classes, classes),
     )
+
+
+def _methods_to_call(alone: Sequence[str], classes: Mapping[str, ast.ClassDef]) -> tuple[str, str]:
+    """Return (`called`, `uncalled`) of code with these classes."""
+    name = alone[0] if len(alone) == 1 else ""
+    spinning = spinning_methods(classes[name]) if name else []
+    free = [method for method in spinning if not takes_arguments(method)]
+    if len(free) == 1:
+        return f"{name}.{free[0].name}", ""
+    return "", f"{name}.{spinning[0].name}" if spinning and not serves(classes[name]) else ""
 
 
 def _node_classes(everything: Sequence[ast.AST]) -> list[str]:

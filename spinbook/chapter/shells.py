@@ -14,7 +14,7 @@ from groundwork.problem import Problem, Severity
 from ros_in_python.ros2 import executables
 from spinbook.chapter.chapter import ChapterCell
 from spinbook.chapter.classify import CellKind, ClassifiedFence
-from spinbook.chapter.foreign_commands import READ_KEYS, TO_FILL_IN, Reason, foreign_program, missing_type
+from spinbook.chapter.foreign_commands import READ_KEYS, TO_FILL_IN, Reason, foreign_program, missing_type, similar
 from spinbook.chapter.imports import IN_ROS, ros_packages
 from spinbook.chapter.launch_files import NotSupportedError
 from spinbook.chapter.launches import Launches, launch_words
@@ -83,6 +83,8 @@ class Shells:
     _said: _CodeSoFar = field(default_factory=_CodeSoFar)
     _nodes: dict[str, int] = field(default_factory=dict)
     """The chapter's nodes so far -> their number among the fences."""
+    _by_file: set[int] = field(default_factory=set)
+    """Those of them that a command starts by the name of their file."""
 
     def __post_init__(self) -> None:
         self._launches = Launches(self.package, self.named_files)
@@ -107,6 +109,8 @@ class Shells:
     def _fence(self, item: ClassifiedFence, out: list[ClassifiedFence]) -> ClassifiedFence:
         self._line = item.fence.line
         commands = [self._compiled_here(command) for command in item.commands]
+        launches = {command.line: command.text for command in commands if command.words[1:2] == ("launch",)}
+        built = self._launches.are_built
         item = replace(item, commands=tuple(part for command in commands for part in self._launches.started(command)))
         if all(command.kind is CommandKind.NOTE for command in item.commands):
             return replace(item, kind=CellKind.STATIC, why="it makes a package of interfaces, which is compiled here")
@@ -115,12 +119,15 @@ class Shells:
         for command in item.commands:
             line = item.fence.first_code_line + command.line - 1
             reason = self._refused(command, out, line)
+            if reason and command.runs and command.line in launches:
+                reason = _of_launch_file(reason, *command.runs)
             if reason is None:
                 self._said.add(command.text if "pub" in command.words or "run" in command.words else "")
                 continue
-            problem = f"{reason.why} (`{command.text}`)."
+            problem = f"{reason.why} (`{launches.get(command.line, command.text)}`)."
             self.problems.append(Problem(self.file, line, problem, reason.fix, Severity.NOT_RUN, group=reason.group))
             self.borrowed.pop(self._line, None)
+            self._launches.are_built = built
             return replace(item, kind=CellKind.STATIC, why=reason.why, sign=f"{reason.why}.")
         return item
 
@@ -150,7 +157,11 @@ class Shells:
         if command.runs is not None:
             return self._run(command, out, line) or self._lacks_words(command, out)
         if command.words[1:2] == ("launch",):
-            return self._launch(command)
+            return (
+                self._whole_launch(command, out, line)
+                if self._launches.is_of_package(command)
+                else self._launch(command)
+            )
         if command.words[1:3] == ("pkg", "create"):
             return self._create(command)
         self._check_values(command, line)
@@ -159,6 +170,9 @@ class Shells:
     def _run(self, command: Command, out: list[ClassifiedFence], line: int) -> Reason | None:
         package, executable = command.runs or ("", "")
         if package == self.package and executable in self._nodes:
+            self._by_file.add(self._nodes[executable])
+            if out[self._nodes[executable]].executables:
+                self._start(self._nodes[executable], command, out)
             return None
         if not self._is_elsewhere(package):
             names = ProgramNames({number: out[number] for number in self._nodes.values()}, self.own)
@@ -168,6 +182,7 @@ class Shells:
             if number is None and (number := names.similar(package, executable)) is not None:
                 self._say_which(package, executable, out[number].name or "", line)
             if number is not None:
+                self._check_package(package, line)
                 self._start(number, command, out)
                 return None
             if (package, executable) in self._hello:
@@ -180,7 +195,8 @@ class Shells:
             return None
         if package == self.package:
             problem = f"the course's package `{package}` has no executable `{executable}`"
-            fix = f"Its node cells make these: {', '.join(sorted(self.modules)) or 'none'}."
+            close = "".join(f"Did you mean `{name}`? " for name in similar(executable, self.modules))
+            fix = f"{close}Its node cells make these: {', '.join(sorted(self.modules)) or 'none'}."
             return Reason(problem, fix, "")
         return foreign_program(package, executable, self.package, self.own.names)
 
@@ -198,7 +214,8 @@ class Shells:
     def _start(self, number: int, command: Command, out: list[ClassifiedFence]) -> None:
         """Give a node the name by which a command starts it. One that counts its arguments waits for a command's."""
         item = out[number]
-        known = dict.fromkeys([*item.executables, command.runs or ("", "")])
+        own = [(self.package, item.name or "")] if number in self._by_file else []
+        known = dict.fromkeys([*own, *item.executables, command.runs or ("", "")])
         waits = item.waits or bool(item.code and item.code.counts_words and _arguments(command))
         out[number] = replace(item, executables=tuple(known), waits=waits)
 
@@ -206,6 +223,12 @@ class Shells:
         problem = f"no fence above says which program `{executable}` of `{package}` is: `{node}` is started."
         fix = f"Did you mean `{node}`? Otherwise show the program, or the line of setup.py that names it."
         self.problems.append(Problem(self.file, line, problem, fix, Severity.WARNING, group="the name of a program"))
+
+    def _check_package(self, package: str, line: int) -> None:
+        """Report a package whose name is nearly the course's own."""
+        if package != self.package and package not in self.own.names and similar(package, [self.package], 0.85):
+            problem = f"the course's package is `{self.package}`, not `{package}`."
+            self.problems.append(Problem(self.file, line, problem, f"Did you mean `{self.package}`?", Severity.WARNING))
 
     def _is_elsewhere(self, package: str) -> bool:
         """Return whether a package is part of ROS or Spinbook, so that it is not a program of the chapter."""
@@ -224,10 +247,20 @@ class Shells:
                 return Reason(why, "Add them to the command, as a reader would.", "")
         return None
 
+    def _whole_launch(self, command: Command, out: list[ClassifiedFence], line: int) -> Reason | None:
+        """Return a reason if a launch file of the package can't run: it is not built, or lacks a program."""
+        if not self._launches.are_built:
+            why = f"no cell above has put `{launch_words(command)[-1]}` into `{self.package}` with `colcon build`"
+            return Reason(why, "Put a shell fence with `colcon build` above it.", "")
+        for node in self._launches.named_nodes(command):
+            started = node.command(command.line)
+            if reason := self._run(started, out, line):
+                return _of_launch_file(reason, node.package, node.executable)
+            self._said.add(started.text)
+        return None
+
     def _launch(self, command: Command) -> Reason | None:
         names = launch_words(command)
-        if self._launches.runs_whole(command):
-            return None
         try:
             self._launches.nodes(command)
         except NotSupportedError as error:
@@ -322,6 +355,11 @@ class Shells:
         for wrong in wrong_values(command):
             problem = f"{wrong.problem[:-1]} (`{command.text}`)."
             self.problems.append(Problem(self.file, line, problem, wrong.fix, Severity.WARNING))
+
+
+def _of_launch_file(reason: Reason, package: str, executable: str) -> Reason:
+    """Return a reason with the program that a launch file starts, which its command does not name."""
+    return replace(reason, why=f"its launch file starts `{executable}` of `{package}`, but {reason.why}")
 
 
 def _arguments(command: Command) -> list[str]:

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 
 import yaml
 
-from spinbook.chapter.interface_fields import InterfaceFields, fields_of
+from spinbook.chapter.interface_fields import InterfaceFields, WrongField, fields_of
 from spinbook.chapter.terminal import Command
-from spinbook.chapter.wrong_fields import WrongField, missing_field, wrong_literal
+from spinbook.chapter.wrong_fields import missing_field, wrong_literal
 
 #: (noun, verb) of a command that sends values -> the part of the interface that it sends.
 _SENDING = {("topic", "pub"): "", ("service", "call"): "Request", ("action", "send_goal"): "Goal"}

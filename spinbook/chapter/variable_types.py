@@ -184,7 +184,7 @@ class ProgramTypes:
                     if isinstance(callback, ast.Call) and last_name(callback.func) == "partial" and callback.args:
                         types = [*([None] * (len(callback.args) - 1)), *types]
                         callback = callback.args[0]
-                    target = self._function_of(callback, function)
+                    target = self.function_of(callback, function)
                     if target is not None:
                         types_of.setdefault(id(target), []).append(types)
         for function in self.functions:
@@ -206,7 +206,7 @@ class ProgramTypes:
         """Return whether the program calls a callback itself: maybe with something else."""
         return getattr(function.node, "name", "") in self._called
 
-    def _function_of(self, callback: ast.expr, function: Function) -> Function | None:
+    def function_of(self, callback: ast.expr, function: Function) -> Function | None:
         """Return the function that an expression names: `self.on_message`, `on_message`, or a lambda."""
         for item in self.functions:
             if item.node is callback:
@@ -259,8 +259,7 @@ def _registered(
     if place is None or interface is None:
         return
     of = type_of(interface)
-    callback = named.get("callback", named.get("execute_callback"))
-    callback = callback or (call.args[place + 2] if len(call.args) > place + 2 else None)
+    callback = callback_argument(call)
     if of is None or of.role != "class":
         # A callback of this and of a known type gets neither.
         yield from [(callback, [])] if callback is not None else []
@@ -275,6 +274,14 @@ def _registered(
     for name, kind in {**others, "handle_accepted_callback": handle}.items():
         if place and name in named:
             yield named[name], [kind]
+
+
+def callback_argument(call: ast.Call) -> ast.expr | None:
+    """Return the callback that a call registers for messages, requests or goals; None if it names none."""
+    named = {keyword.arg: keyword.value for keyword in call.keywords}
+    place = _PLACES[last_name(call.func)] + 2
+    callback = named.get("callback", named.get("execute_callback"))
+    return callback or (call.args[place] if len(call.args) > place else None)
 
 
 def interface_argument(call: ast.Call) -> ast.expr | None:

@@ -1,4 +1,5 @@
-"""Finds fields that messages do not have, and values that fields can't hold, without running a program.
+"""Finds fields that messages do not have, values that fields can't hold, and callbacks without their answer, without
+running a program.
 
 It only judges what it is sure of: variables that always hold the same type, parameters with annotations, and parameters
 of callbacks.
@@ -9,9 +10,9 @@ from __future__ import annotations
 import ast
 import difflib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
-from spinbook.chapter.interface_fields import FieldType, InterfaceFields
+from spinbook.chapter.callback_answers import missing_answers
+from spinbook.chapter.interface_fields import FieldType, InterfaceFields, WrongField
 from spinbook.chapter.syntax import descendants, syntax_tree
 from spinbook.chapter.variable_types import Function, ProgramTypes, TypedValue
 
@@ -23,17 +24,8 @@ _MANY = 20
 _WHOLE = ("int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64")
 
 
-@dataclass(frozen=True)
-class WrongField:
-    """A field that does not exist, or a value of another type. `line` counts from 1 within the program."""
-
-    line: int
-    problem: str
-    fix: str
-
-
 def wrong_fields(program: str) -> list[WrongField]:
-    """Return what is wrong with the messages that a program makes and reads; none if it is not Python."""
+    """Return what is wrong with the messages that a program makes, reads and answers; none if it is not Python."""
     try:
         tree = syntax_tree(program)
     except (SyntaxError, ValueError, RecursionError):
@@ -54,6 +46,7 @@ def _in_function(function: Function, types: ProgramTypes) -> Iterator[WrongField
             yield from _constant(item, types.class_of(item.value, function))
         elif isinstance(item, ast.Call):
             yield from _constructor(item, types.class_of(item.func, function))
+            yield from missing_answers(item, function, types)
         elif isinstance(item, ast.Assign):
             for target in (target for target in item.targets if isinstance(target, ast.Attribute)):
                 yield from _assignment(target, item.value, types.value_of(target.value, function))

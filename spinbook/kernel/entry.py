@@ -1,7 +1,8 @@
 """Starts code that does not start itself: `python -m spinbook.kernel.entry FILE HOW [-- ARGS]`.
 
 HOW is `--main` or `--class A [--class B …]`. `--main` calls the file's `main`, as the executable of an installed
-package does. `--class` spins Node classes that come without a main, all in one process.
+package does. `--class` spins Node classes that come without a main, all in one process; `--class A.run` calls a method
+first, and spins then if there is something to wait for.
 
 This file imports nothing of ROS before the code has run: code that forgets an import must fail here, too.
 """
@@ -29,7 +30,8 @@ def start(module: Mapping[str, Any], own: Sequence[str]) -> None:
     """Start a module's `main` or its classes; `own` are the arguments HOW."""
     if "--main" in own:
         sys.exit(_call(module["main"]))
-    _spin([module[name] for name in own if name != "--class"])
+    names = [name.partition(".") for name in own if name != "--class"]
+    _spin([(module[name], method) for name, _, method in names])
 
 
 def _call(start: Any) -> Any:
@@ -42,22 +44,32 @@ def _call(start: Any) -> Any:
     return start(*[None] * len(required))
 
 
-def _spin(classes: Sequence[Any]) -> None:
-    """Make a node of each class and spin them until Ctrl-C."""
+def _spin(classes: Sequence[tuple[Any, str]]) -> None:
+    """Make a node of each class, call its method if there is one, and spin them until Ctrl-C."""
     import rclpy
 
     rclpy.init()
-    nodes = [make() for make in classes]
+    nodes = [make() for make, _ in classes]
 
     from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 
     together = SingleThreadedExecutor()
     with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
-        if all(together.add_node(node) for node in nodes):
+        waits = [_waits(node, method) for node, (_, method) in zip(nodes, classes, strict=True)]
+        if any(waits) and all(together.add_node(node) for node in nodes):
             together.spin()
     for node in nodes:
         node.destroy_node()
     rclpy.try_shutdown()
+
+
+def _waits(node: Any, method: str) -> bool:
+    """Call a node's method, print what it returns, and return whether the node has something to wait for then."""
+    if not method:
+        return True
+    if (value := getattr(node, method)()) is not None:
+        print(f"{method}() returned {value!r}", flush=True)
+    return bool(node.context.ok()) and any(map(list, (node.timers, node.subscriptions)))
 
 
 if __name__ == "__main__":

@@ -43,7 +43,7 @@ def load(shell: Any) -> None:
     session = Session(domain.shared_domain(int(asked_for)) if asked_for.isdigit() else domain.claim_domain())
     shell.spinbook_session = session
     magics.register(shell, session)
-    shell.events.register("pre_run_cell", lambda info: report_errors(session))
+    shell.events.register("pre_run_cell", lambda info: _begin_cell(session))
     shell.events.register("post_run_cell", lambda result: report_errors(session))
     shell.set_custom_exc((Exception,), _show_own_frames)
     session.threads.watch(shell)
@@ -62,6 +62,11 @@ def _leave_other_installations() -> None:
         del os.environ[name]
     for name in removed.keys() & {"PYTHONPATH", "AMENT_PREFIX_PATH"}:
         print(f"Nodes and checks of this notebook do not use {name}={removed[name]}, which is of another installation.")
+
+
+def _begin_cell(session: Session) -> None:
+    session.run_here.clear()
+    report_errors(session)
 
 
 def report_errors(session: Session) -> None:

@@ -119,7 +119,11 @@ class SpinbookMagics(Magics):
         reader.add_argument("--seconds", type=float, default=NODE_SECONDS, help="how long its log is shown")
         reader.add_argument("--until", help="stop showing the log once it contains this text")
         reader.add_argument(
-            "--class", dest="classes", action="append", default=[], help="run this Node class with rclpy.spin"
+            "--class",
+            dest="classes",
+            action="append",
+            default=[],
+            help="run this Node class with rclpy.spin, or call CLASS.METHOD",
         )
         reader.add_argument("--main", action="store_true", help="call main(), because the code does not call it")
         reader.add_argument(

@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 import signal
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from spinbook.kernel.long_lines import shortened
 from spinbook.kernel.reader_frames import ReaderFrames, is_log_line, line_of_cell
+from spinbook.kernel.remedies import remedy, silent_callback
 
 #: The key of an error in the metadata of a cell's output.
 ERROR = "spinbook_error"
@@ -30,6 +32,8 @@ _COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 _TRACEBACK = re.compile(r"(?<!Group )Traceback \(most recent call last\):\s*$")
 _FRAME = re.compile(r'\s*File "([^"]+)", line (\d+)(, in <module>)?')
 _RAISED = re.compile(r"[A-Za-z_][\w.<>]*(Error|Exception|Interrupt|Exit|Warning|Iteration)?(: .*)?$")
+#: What C prints, before it ends the program, of a value that is no message where one belongs: its class.
+_NO_MESSAGE = re.compile(r"__convert_from_py: Assertion `strncmp\(\"(?P<name>[\w.]+)\"")
 _CHAINED = ("During handling of the above exception", "The above exception was the direct cause")
 #: How programs end, and what they say then, when they are interrupted: Ctrl-C itself shuts rclpy's context down, below
 #: callbacks that still run in other threads. If the program shuts it down, too, chance decides who is first, and so
@@ -58,6 +62,8 @@ class NodeError:
     line: int = 0
     output: str = ""
     meant: bool = False
+    advice: str = ""
+    """What to do about it, if it says little by itself."""
 
     @property
     def in_words(self) -> str:
@@ -66,12 +72,13 @@ class NodeError:
         if self.meant:
             return f"{AS_EXPECTED}{self.node}: {where}{self.what} —"
         quoted = (f"    | {line}" for line in self.output.splitlines())
-        return "\n".join([f"✗ {self.node}: {where}{self.what}", *quoted])
+        return "\n".join([f"✗ {self.node}: {where}{self.what} {self.advice}".rstrip(), *quoted])
 
     @property
     def plain(self) -> dict[str, Any]:
         """The error as JSON, for `spinbook build`."""
-        return {"node": self.node, "what": self.what, "file": self.file, "line": self.line, "meant": self.meant}
+        what = f"{self.what} {self.advice}".rstrip()
+        return {"node": self.node, "what": what, "file": self.file, "line": self.line, "meant": self.meant}
 
 
 @dataclass(frozen=True)
@@ -86,6 +93,7 @@ class _LoggedException:
     is_uncaught: bool = False
     quoted: str = field(default="", compare=False)
     """The output's last lines up to it."""
+    traceback: str = field(default="", compare=False)
 
 
 @dataclass
@@ -103,6 +111,7 @@ class NodeLog:
     _part: str = ""
     _chain: list[_LoggedException] = field(default_factory=list)
     _frames: list[tuple[str, int]] | None = None
+    _traceback: list[str] = field(default_factory=list)
     _uncaught: bool = False
     _ignored: bool = False
     _is_chained: bool = False
@@ -133,6 +142,7 @@ class NodeLog:
             if not self._is_chained:
                 self._end_chain(stopping)
             self._frames, self._uncaught, self._is_chained = [], False, False
+            self._traceback = [line[line.index("Traceback (") :]]
         elif self._frames is not None and not is_log_line(line):
             self._in_traceback(line, self._frames)
         elif self._frames is not None:
@@ -158,11 +168,13 @@ class NodeLog:
         return ended or bool(_ON_CTRL_C.match(text))
 
     def _in_traceback(self, line: str, frames: list[tuple[str, int]]) -> None:
+        self._traceback.append(line)
         if frame := _FRAME.match(line):
             frames.append((frame[1], int(frame[2])))
             self._uncaught = self._uncaught or bool(frame[3])
         elif _RAISED.match(line):
-            self._chain.append(_LoggedException(line.strip(), tuple(frames), self._uncaught, "\n".join(self.last)))
+            text, quoted, traceback = line.strip(), "\n".join(self.last), "\n".join(self._traceback)
+            self._chain.append(_LoggedException(text, tuple(frames), self._uncaught, quoted, traceback))
             self._frames = None
 
     def _end_chain(self, stopping: bool) -> None:
@@ -210,17 +222,27 @@ def ended_badly(code: int | None, *, stopped: bool, interrupted: bool = False) -
     return not (stopped and (code in _FROM_US or interrupted))
 
 
-def describe(node: str, log: NodeLog, ended: str, *, meant: bool = False) -> NodeError | None:
-    """Return what is new in a node's log as one report; `ended` says how it ended, "" if it did not end badly."""
+def describe(
+    node: str, log: NodeLog, ended: str, *, files: Sequence[str] = (), meant: bool = False
+) -> NodeError | None:
+    """Return what is new in a node's log as one report; `ended` says how it ended, "" if it did not end badly. `files`
+    are its programs.
+    """
     logged, raised = log.take()
-    causes = [*(item.text for item in raised), *logged]
+    no_message = [match["name"].split(".")[-1] for line in log.last if ended and (match := _NO_MESSAGE.search(line))]
+    refused = [f"something else was sent where a `{name}` belongs" for name in no_message]
+    causes = [*(item.text for item in raised), *logged, *refused]
     if not causes and not ended:
         return None
+    traceback = raised[0].traceback if raised else "\n".join(log.last) if refused else ""
+    silent = silent_callback(traceback, files)
     first = shortened(causes[0]).rstrip(".") if causes else ""
+    first = f"{silent[0]} ({first})" if silent else first
     more = f" (and {len(causes) - 1} more)" if len(causes) > 1 else ""
     message = f"{first}{more}. It {ended}" if causes and ended else f"It {ended}" if ended else f"{first}{more}."
     frames = [frame for item in raised[:1] for frame in item.frames]
     places = [(Path(file).name, shown) for file, line in frames if (shown := line_of_cell(file, line))]
-    file, line = places[-1] if places else ("", 0)
+    file, line = silent[1:] if silent else places[-1] if places else ("", 0)
     output = next((item.quoted for item in raised), "\n".join(log.last))
-    return NodeError(node, message, file, line, output, meant)
+    advice = remedy(traceback, [*files, *(file for file, _ in frames)]) if raised and not meant else ""
+    return NodeError(node, message, file, line, output, meant, advice)

@@ -21,6 +21,8 @@ class RunningNode:
     name: str
     process: KeptProcess
     expects_error: bool = False
+    files: tuple[str, ...] = ()
+    """Its programs, if they are in Python."""
     log: NodeLog = field(default_factory=NodeLog)
     read_to: int = 0
     end_is_reported: bool = False
@@ -36,11 +38,7 @@ class RunningNode:
         bad = ended_badly(status.exit, stopped=stopped, interrupted=self.log.was_interrupted)
         ended = how_it_ended(status.exit or 0) if bad and not self.end_is_reported else ""
         self.end_is_reported = self.end_is_reported or not status.running
-        return describe(self.name, self.log, ended, meant=self.expects_error)
-
-    def forget_errors(self) -> None:
-        """Count everything up to now as reported."""
-        self.errors()
+        return describe(self.name, self.log, ended, files=self.files, meant=self.expects_error)
 
     def _new_output(self) -> str:
         data, _, self.read_to = self.process.read_from(self.read_to)
@@ -84,7 +82,8 @@ class NodeRegistry:
         its errors are meant."""
         if name in self._nodes:
             self.stop(name)
-        node = RunningNode(name, KeptProcess(argv, {**os.environ, **settings}, cwd), expects_error)
+        files = tuple(word for word in argv if word.endswith(".py"))
+        node = RunningNode(name, KeptProcess(argv, {**os.environ, **settings}, cwd), expects_error, files)
         self._nodes[name] = node
         return node
 

@@ -43,7 +43,7 @@ COMMAND_GRACE = (3.0, 1.0)
 
 @dataclass(frozen=True)
 class NodeStart:
-    """How a node's code is started: by itself, by its `main`, or by spinning these classes.
+    """How a node's code is started: by itself, by its `main`, or by spinning these classes, or calling `Class.method`.
 
     `known_as` are the names `PACKAGE/EXECUTABLE` by which `ros2 run` finds it.
     """
@@ -85,6 +85,8 @@ class Session:
     """How many lines the current cell has above its code: that of its magic, and empty ones."""
     expects_error: bool = False
     """Whether a command of the current cell says that errors of nodes are meant."""
+    run_here: list[str] = field(default_factory=list)
+    """The names under which `ros2 run` has started nodes in the current cell."""
     timeline: TimelineProcess | None = None
     """The recorder for `%timeline`, if one is running."""
 
@@ -140,6 +142,9 @@ class Session:
         """Write a node's code as a module of its package, for `ros2 run` to start with arguments."""
         known_as = start.known_as or (f"{self.package.name}/{name}",)
         self._saved(name, code, replace(start, known_as=known_as), after)
+        if start.classes:
+            print(f"— saved, not started: nothing here calls {start.classes[0]}, which spins —")
+            return
         package, _, executable = known_as[0].partition("/")
         print("— saved, not started: it reads command-line arguments. Start it with them:")
         print(f"  %ros2 run {package} {executable} …")
@@ -161,6 +166,12 @@ class Session:
         file = add_module(self.workspace, package, module)
         self.starts[name] = (file, start)
         return file
+
+    def instance(self, name: str) -> str:
+        """Return the name of a node that `ros2 run` starts: a second instance in one cell has a name of its own."""
+        self.run_here.append(name)
+        count = self.run_here.count(name)
+        return f"{name}_{count}" if count > 1 else name
 
     def new_errors(self) -> list[NodeError]:
         """Return what has newly gone wrong in nodes and threads; meant if the cell's commands expected it."""
@@ -229,7 +240,7 @@ class Session:
             # What `colcon build` has installed is run by the real command.
             own = () if is_built else (f"{self.package.name}/{name}",)
             if f"{package}/{executable}" in (*start.known_as, *own):
-                instance = name if known_as == executable else known_as
+                instance = self.instance(name if known_as == executable else known_as)
                 self.run_background(instance, start.argv(file, words), self._import_path(file), Path.cwd(), bound)
                 return True
         return False
@@ -263,8 +274,9 @@ class Session:
         elif status.exit == 0:
             print(f"— {node.name} has ended (exit code 0) —")
         elif not node.expects_error:
-            node.forget_errors()
-            raise CellFailed(f"{node.name} {how_it_ended(status.exit)} Its last output is above.")
+            error = node.errors()
+            advice = f" {error.advice}" if error and error.advice else ""
+            raise CellFailed(f"{node.name} {how_it_ended(status.exit)} Its last output is above.{advice}")
 
     def run_command(
         self,

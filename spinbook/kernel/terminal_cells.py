@@ -109,7 +109,7 @@ def _run_executable(session: Session, words: list[str], bound: DisplayLimit) -> 
         return
     argv = [sys.executable, "-m", "ros_in_python.ros2", "run", *words]
     cwd = session.workspace if session.workspace.is_dir() else Path.cwd()
-    session.run_background(name, argv, {}, cwd, bound)
+    session.run_background(session.instance(name), argv, {}, cwd, bound)
 
 
 def _renamed(words: list[str]) -> str:

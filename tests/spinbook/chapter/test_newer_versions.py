@@ -96,10 +96,31 @@ SPINS_INSIDE = (
 )
 
 
-def test_a_class_that_spins_in_a_method_is_made_and_spun(tmp_path: Path) -> None:
-    (node,) = cells(read(tmp_path, IMPORTS + SPINS_INSIDE.replace("self.client.call_async(1)", "None")))
+@pytest.mark.parametrize(
+    ("method", "starts"),
+    [
+        ("def ask(self):\n        rclpy.spin_once(self)", "Talker.ask"),
+        ("def ask(self, a=1):\n        self._wait()\n\n    def _wait(self):\n        rclpy.spin(self)", "Talker.ask"),
+        ("def run(self):\n        while rclpy.ok():\n            print(1)", "Talker.run"),
+        (
+            "def make(self):\n        self.create_timer(1, print)\n\n    def ask(self, a):\n        rclpy.spin(self)",
+            "Talker",
+        ),
+    ],
+)
+def test_a_lone_class_is_spun_or_its_method_that_spins_is_called(tmp_path: Path, method: str, starts: str) -> None:
+    (node,) = cells(read(tmp_path, f"{IMPORTS}{TALKER}\n    {method}\n"))
 
-    assert node.spin_classes == ("Talker",)
+    assert (node.kind, node.spin_classes, node.keeps) == (CellKind.NODE, (starts,), False)
+
+
+def test_a_class_is_only_shown_if_nothing_calls_its_method_that_spins_and_takes_arguments(tmp_path: Path) -> None:
+    code = f"{IMPORTS}{TALKER}\n    def ask(self, a):\n        rclpy.spin_once(self)\n"
+    shown = read(tmp_path, code)
+    (named,) = cells(read(tmp_path, titled("talker", code)))
+
+    assert shown.static_fences[0].why == "it is a fragment: nothing calls `Talker.ask`, which spins"
+    assert (named.spin_classes, named.keeps) == (("Talker.ask",), True)
 
 
 def test_a_program_that_uses_a_class_that_spins_runs_as_it_is(tmp_path: Path) -> None:

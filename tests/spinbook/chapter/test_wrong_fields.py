@@ -43,12 +43,45 @@ def node(setup: str, method: str) -> str:
         ),
         (
             SRV
-            + node("self.create_service(AddTwoInts, 'x', self.on)", "def on(self, q, a):\n        a.sum = q.a + q.c"),
+            + node(
+                "self.create_service(AddTwoInts, 'x', self.on)",
+                "def on(self, q, a):\n        a.sum = q.a + q.c\n        return a",
+            ),
             "`AddTwoInts.Request` has no field `c`.",
             "Its fields: `a`, `b`.",
         ),
+        *(
+            (
+                SRV
+                + node(
+                    "self.create_service(AddTwoInts, 'x', callback=self.on)", f"def on(self, q, a):\n        {body}"
+                ),
+                *said,
+            )
+            for body, *said in (
+                (
+                    "a.sum = 1",
+                    "`on` can end without returning the service's response.",
+                    "End each way through it with `return a`",
+                ),
+                ("if q.a:\n            return a", "`on` can end without returning the service's response.", "End each"),
+                (
+                    "return q",
+                    "`on` returns `q`, which is not the service's response.",
+                    "End each way through it with `return a`",
+                ),
+            )
+        ),
         (
-            ACTION + node("ActionServer(self, Fibonacci, 'x', self.go)", "def go(self, h):\n        h.request.ordr"),
+            ACTION + node("ActionServer(self, Fibonacci, 'x', self.go)", "async def go(self, h):\n        h.succeed()"),
+            "`go` can end without returning the action's result.",
+            "End each way through it with `return Fibonacci.Result()`",
+        ),
+        (
+            ACTION
+            + node(
+                "ActionServer(self, Fibonacci, 'x', self.go)", "def go(self, h):\n        h.request.ordr\n        raise"
+            ),
             "`Fibonacci.Goal` has no field `ordr`.",
             "Did you mean `order`?",
         ),
