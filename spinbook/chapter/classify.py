@@ -24,7 +24,7 @@ from spinbook.chapter.terminal import (
     looks_like_shell,
     read_commands,
 )
-from spinbook.chapter.transcripts import split_session, split_transcript, without_gaps
+from spinbook.chapter.transcripts import is_session, split_session, split_transcript, without_gaps
 
 #: Programs that a chapter never runs here, wherever they are named, because they change the machine or download
 #: something.
@@ -42,6 +42,7 @@ NEVER_RUN = frozenset(
 _ANY = frozenset({"", "text", "plaintext", "powershell", "ps1", "pwsh", "cmd", "bat", "batch"})
 #: Languages of what Python shows in a terminal.
 _SESSIONS = frozenset({"pycon", "doctest", "python-repl", "python-console", "", "text", "console"})
+_SESSIONS |= {"ipython", "ipython3", "ipy"}
 
 
 class CellKind(str, Enum):
@@ -182,7 +183,7 @@ def _package_file(fence: Fence) -> ClassifiedFence | None:
 
 def with_language(fence: Fence) -> Fence:
     """Return the fence; one without a language gets the one that its content clearly is."""
-    if fence.language in _SESSIONS and fence.code.lstrip().startswith(">>> "):
+    if fence.language in _SESSIONS and is_session(fence.code):
         return replace(fence, language="python")
     if fence.language not in _ANY or fence.attributes:
         return fence
@@ -314,6 +315,8 @@ def _is_file(fence: Fence) -> bool:
 def _why_static(fence: Fence, code: PythonCode) -> str:
     if not fence.code.strip():
         return "it is empty"
+    if all(line.lstrip().startswith("#") for line in fence.code.split("\n") if line.strip()):
+        return "it holds only comments"
     if is_setup_excerpt(fence.code):
         return "it is a setup.py"
     if code.fragment:

@@ -40,8 +40,8 @@ from spinbook.chapter.program_start import (
 )
 from spinbook.chapter.syntax import descendants, last_name, syntax_tree
 
-#: A line of IPython's own syntax: `%plot …`, `!ls`, `%%time`.
-_MAGIC = re.compile(r"^(\s*)([%!].*)$")
+#: A line of IPython's own syntax: `%plot …`, `!ls`, `%%time`, `files = !ls`, `Node?`.
+_MAGIC = re.compile(r"^(?P<indent>\s*)(?P<names>[\w, ]+= *)?(?P<command>[%!].*|\?{1,2}[\w.]+|[\w.]+\?{1,2})$")
 #: What setup.py writes under console_scripts.
 _ENTRY_POINT = re.compile(r"[\w.-]+\s*=\s*[\w.]+:\w+")
 _ALWAYS_THERE = frozenset(dir(builtins)) | {
@@ -162,8 +162,15 @@ class PythonCode:
 
 
 def blank_magics(code: str) -> str:
-    """Return the code with IPython's magic lines replaced by `pass`, each on its own line still."""
-    return "\n".join(_MAGIC.sub(r"\1pass", line) for line in code.split("\n"))
+    """Return the code with IPython's magic lines replaced by `pass` or None, each on its own line still."""
+    return "\n".join(_MAGIC.sub(_blank, line) for line in code.split("\n"))
+
+
+def _blank(magic: re.Match[str]) -> str:
+    names = magic["names"]
+    return (
+        f"{magic['indent']}{names}{', '.join(['None'] * (names.count(',') + 1))}" if names else f"{magic['indent']}pass"
+    )
 
 
 def has_magics(code: str) -> bool:
@@ -176,7 +183,7 @@ def programs_in_magics(code: str) -> dict[str, int]:
     programs: dict[str, int] = {}
     for number, line in enumerate(code.split("\n"), start=1):
         if match := _MAGIC.match(line):
-            for word in re.split(r"[\s;&|!%]+", match.group(2)):
+            for word in re.split(r"[\s;&|!%]+", match["command"]):
                 programs.setdefault(word.rsplit("/", 1)[-1], number)
     return programs
 

@@ -34,6 +34,10 @@ _ASKING = {
 }
 
 
+#: What stands for a name: `/topic_name`, `/your_node`.
+_NAME_PLACEHOLDER = re.compile(r"/?(your_\w+|(the_|a_)?(topic|node|service|action|param(eter)?)(_?name)?)")
+
+
 class _CodeSoFar:
     """The text of all code above: a name that a program creates is somewhere in it."""
 
@@ -187,6 +191,8 @@ class Shells:
                 return None
             if (package, executable) in self._hello:
                 return None
+            if reason := self._shown_only(package, executable, out):
+                return reason
             if package in self.own.names and (close := names.close(executable)):
                 fix = f"Did you mean `{close}`? Otherwise show its program in a fence above."
                 why = f"no fence above shows `{executable}` of `{package}`"
@@ -199,6 +205,20 @@ class Shells:
             fix = f"{close}Its node cells make these: {', '.join(sorted(self.modules)) or 'none'}."
             return Reason(problem, fix, "")
         return foreign_program(package, executable, self.package, self.own.names)
+
+    def _shown_only(self, package: str, executable: str, out: Sequence[ClassifiedFence]) -> Reason | None:
+        """Return a reason if a fence above shows the program, and is not run itself."""
+        shown = {
+            number: replace(item, name=_file_name(title).removesuffix(".py"))
+            for number, item in enumerate(out)
+            if item.kind is CellKind.STATIC and item.code and item.fence.line < self._line
+            if (title := item.fence.title or self.named_files.get(item.fence.line, "")) or item.code.node_classes
+        }
+        number = ProgramNames(shown, self.own).started(package, executable)
+        if number is None:
+            return None
+        why = f"the program in line {out[number].fence.line} is not run itself: {out[number].why}"
+        return Reason(why, "Once that program runs, the command does, too.", "")
 
     def _borrow(self, package: str, executable: str) -> bool:
         """Let a command run a program that an earlier chapter shows. Return whether there is one."""
@@ -347,6 +367,8 @@ class Shells:
         typed = command.words[1:3] == ("topic", "echo") and len(words) > 1
         if not name or typed or name in {"rosout", "parameter_events"} or name in self._said:
             return None
+        if _NAME_PLACEHOLDER.fullmatch(words[0]):
+            return TO_FILL_IN
         fix = "Show what makes it in a fence above."
         return Reason(f"nothing above makes `{words[0]}`", fix, "names that nothing makes")
 

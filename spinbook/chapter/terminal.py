@@ -35,7 +35,10 @@ _QUOTING = re.compile(r"[\"'\\]")
 _ZSH = r"(?:(?:[\w.~/-]+\s)?\S*❯|➜\s+\S+(?:\s+git:\(\S+\))?(?:\s+✗)?)"
 #: `PS C:\ws>` and `C:\ws>` of Windows; `>` and `%`, which only the command after them makes prompts.
 _OTHER = r"|(?:PS\s)?[A-Z]:\\[^>\n]*>|[>%](?=\s+(?:ros2|colcon)\s)"
-_WHO = _ZSH + _OTHER + r"|(?:\([\w.-]+\)\s*)?(?:\[?[\w.-]+@[\w.-]+[:\s]?[^\s$#%]*\]?\s?[$#%]|[\w.~/-]*\$)"
+_WHO = (
+    _ZSH + _OTHER + r"|(?:\([\w.-]+\)\s*)?(?:\[?[\w.-]+@[\w.-]+[:\s]?[^\s$#%]*\]?\s?[$#%]|[\w.~/-]*\$|[~/][\w./-]* [$%]"
+)
+_WHO += r"|[\w.-]+@[\w.-]+ [~/][\w./-]*>|(?:ba|z)?sh-[\d.]+[$#])"
 #: A prompt that is certainly one: `$`, `~/ros2_ws$`, `user@host:~$`, `[user@host ws]$`, `(venv) $`, `❯`, `➜ ~`.
 SHOWN_PROMPT = re.compile(rf"^\s*(?:{_WHO})\s+(?=\S)")
 _PROMPT = re.compile(rf"^\s*(?:{_WHO}|[#>])\s+(?=\S)")

@@ -80,18 +80,28 @@ def split_transcript(code: str) -> tuple[str, str]:
 
 
 def split_session(code: str) -> tuple[str, str]:
-    """Return (the statements, the printed lines) of what Python shows in a terminal, with `>>>` before a statement.
+    """Return (the statements, the printed lines) of what Python or IPython shows in a terminal, with `>>>` or `In [1]:`
+    before a statement.
 
     >>> split_session(">>> for i in range(1):\\n...     print(i)\\n...\\n0\\n")
     ('for i in range(1):\\n    print(i)\\n\\n', '0')
     """
-    if not code.lstrip().startswith(">>> "):
+    if not is_session(code):
         return code, ""
     lines = [line.strip("\r") for line in code.rstrip("\n").split("\n")]
-    is_statement = [line.startswith((">>>", "...")) for line in lines]
-    statements = [line[4:] for line, says in zip(lines, is_statement, strict=True) if says]
-    printed = [line for line, says in zip(lines, is_statement, strict=True) if not says]
+    matches = [_STATEMENT.match(line) for line in lines]
+    statements = [line[match.end() :] for line, match in zip(lines, matches, strict=True) if match]
+    printed = [line for line, match in zip(lines, matches, strict=True) if not match]
     return "".join(f"{line}\n" for line in statements), "\n".join(printed).strip("\n")
+
+
+def is_session(code: str) -> bool:
+    """Return whether a text is what Python or IPython shows in a terminal."""
+    return bool(_SESSION.match(code))
+
+
+_SESSION = re.compile(r"\s*(>>>|In ?\[\d*\]:) ")
+_STATEMENT = re.compile(r"(?:>>>|\.\.\.|In ?\[\d*\]:| +\.\.\.:)(?: |$)")
 
 
 def without_gaps(commands: str, output: str) -> str:

@@ -19,6 +19,8 @@ from spinbook.chapter.variable_types import Function, ProgramTypes, TypedValue
 #: What every message has besides its fields.
 _ALWAYS = frozenset(dir(object)) | {"get_fields_and_field_types", "SLOT_TYPES"}
 _IN_WORDS = {bool: "a bool", int: "an integer", float: "a float", str: "a string", bytes: "bytes"}
+_IN_WORDS |= {list: "a list", tuple: "a tuple"}
+_LISTS = frozenset({list, tuple})
 #: No message lists more names than this.
 _MANY = 20
 _WHOLE = ("int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64")
@@ -116,14 +118,29 @@ def _value(name: str, kind: FieldType, value: ast.expr, owner: str, line: int) -
 
 def wrong_literal(name: str, kind: FieldType, value: object, owner: str, line: int) -> Iterator[WrongField]:
     """Yield that a field can't hold a value, if so."""
-    if kind.is_list or kind.is_message or value is None or type(value) in _allowed(kind.base):
-        return
     if type(value) not in _IN_WORDS:
+        return
+    if kind.is_list or kind.is_message:
+        yield from _whole(name, kind, value, owner, line)
+        return
+    if type(value) in _allowed(kind.base):
         return
     problem = f"`{name}` of `{owner}` is {_article(kind.base)}, and this is {_IN_WORDS[type(value)]}, `{value!r}`."
     is_whole = type(value) is int and kind.base.startswith("float")
     fix = f"Write `{value}.0`: a whole number arrives as another one." if is_whole else f"Write {_article(kind.base)}."
     yield WrongField(line, problem, fix)
+
+
+def _whole(name: str, kind: FieldType, value: object, owner: str, line: int) -> Iterator[WrongField]:
+    """Yield that a list or a message field can't hold a value, if so."""
+    is_list = type(value) in _LISTS
+    if kind.is_list and (is_list or type(value) is bytes):
+        return
+    class_name = kind.base.rpartition("/")[2]
+    what = "a list" if kind.is_list else f"a {class_name}"
+    shown = _IN_WORDS[type(value)]
+    fix = f"Write `[{value!r}]`." if kind.is_list else f"Write `{class_name}(…)`, with the values in its fields."
+    yield WrongField(line, f"`{name}` of `{owner}` is {what}, and this is {shown}, `{value!r}`.", fix)
 
 
 def _allowed(base: str) -> tuple[type, ...]:

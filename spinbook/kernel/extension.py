@@ -46,7 +46,7 @@ def load(shell: Any) -> None:
     shell.events.register("pre_run_cell", lambda info: _begin_cell(session))
     shell.events.register("post_run_cell", lambda result: report_errors(session))
     shell.set_custom_exc((Exception,), _show_own_frames)
-    session.threads.watch(shell)
+    session.silent.watch(shell)
     shell.events.register("pre_run_cell", SpinInCell(session.ran).before_cell)
     _find_scripts()
     atexit.register(farewell, session)

@@ -23,7 +23,7 @@ from spinbook.kernel.node_errors import AS_EXPECTED, NodeError, how_it_ended
 from spinbook.kernel.node_registry import NodeRegistry, RunningNode, StopResult
 from spinbook.kernel.process import CellFailed, KeptProcess, Status
 from spinbook.kernel.reader_frames import magic_comment, readable
-from spinbook.kernel.thread_errors import ThreadErrors
+from spinbook.kernel.silent_errors import SilentErrors
 from spinbook.kernel.timeline_cell import TimelineProcess
 from spinbook.package.files import Module
 from spinbook.package.workspace import add_file, add_module
@@ -68,7 +68,7 @@ class Session:
     domain: Domain
     package: Package = field(default_factory=lambda: Package(name="notebook_nodes", workspace="notebook_ws"))
     nodes: NodeRegistry = field(default_factory=NodeRegistry)
-    threads: ThreadErrors = field(default_factory=ThreadErrors)
+    silent: SilentErrors = field(default_factory=SilentErrors)
     ran: dict[str, str] = field(default_factory=dict)
     """The code of each node's cell as it last ran, by the node's name."""
     ran_at: dict[str, float] = field(default_factory=dict)
@@ -174,9 +174,9 @@ class Session:
         return f"{name}_{count}" if count > 1 else name
 
     def new_errors(self) -> list[NodeError]:
-        """Return what has newly gone wrong in nodes and threads; meant if the cell's commands expected it."""
+        """Return what has newly gone wrong in nodes, or silently in cells; meant if its commands expected it."""
         expected, self.expects_error = self.expects_error, False
-        errors = [*self.nodes.new_errors(), *self.threads.taken()]
+        errors = [*self.nodes.new_errors(), *self.silent.taken()]
         return [replace(error, meant=error.meant or expected) for error in errors]
 
     def write_file(self, path: str, text: str) -> None:

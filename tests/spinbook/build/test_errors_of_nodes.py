@@ -99,6 +99,7 @@ CHAPTERS = {
 }
 SNIPPET = "def work():\n    raise LookupError(4)\n\nthread = threading.Thread(target=work)\n"
 CHAPTERS["snippet"] = f"# One\n\n```python\nimport threading\n\n{SNIPPET}thread.start()\nthread.join()\n```\n"
+CHAPTERS["snippet"] += "```python\n!exit 3\n%cd no_such_folder\nlines = !exit 4\n```\n"
 CHAPTERS["launched"] = CHAPTERS["launched"].replace('.py" static', '.py" until="call 1"')
 
 
@@ -129,6 +130,8 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> BuiltCourse:
         ("swallowed", "import os", "drain went wrong: it logged FATAL: *."),
         ("thread", "threading.Thread(", "tank went wrong: KeyError: 1."),
         ("snippet", "raise LookupError", "thread work went wrong: LookupError: 4."),
+        ("snippet", "!exit 3", "!exit 3 went wrong: It ended with exit code 3."),
+        ("snippet", "!exit 3", "%cd no_such_folder went wrong: No such file or directory: 'no_such_folder'."),
         ("closing", "raise OSError", "lid went wrong: OSError: 5. It ended with exit code 1."),
         ("run", "raise KeyError", "motor went wrong: KeyError: 9. It ended with exit code 1."),
         ("launched", "raise RuntimeError", "line went wrong: RuntimeError: 3"),

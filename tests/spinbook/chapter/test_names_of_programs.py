@@ -230,3 +230,63 @@ def test_a_launch_file_with_more_than_nodes_comes_with_the_title_that_runs_all_o
     assert (
         problem.fix == 'To run all of it, write title="launch/later.launch.py", and ros2 launch robot later.launch.py'
     )
+
+
+WHOLE = launch(f"    return LaunchDescription([{LAMP}])\n").replace(
+    "```python", '```python title="launch/lamp.launch.py"'
+)
+BUILD_AND_LAUNCH = shell("colcon build\nros2 launch robot lamp.launch.py")
+
+
+@pytest.mark.parametrize(
+    ("file", "package", "program", "fix"),
+    [
+        (
+            launch(f"    return LaunchDescription([{LAMP}])\n"),
+            "robot",
+            "lmap",
+            "Did you mean `lamp`? Its node cells make",
+        ),
+        (WHOLE, "robot", "lmap", "Did you mean `lamp`? Its node cells make"),
+        (WHOLE, "turtlesim", "turtlesim_nod", "Did you mean `turtlesim_node`? It has these"),
+        (WHOLE, "not_here", "bell", "Show its program in a fence of the chapter"),
+        (
+            '```xml title="launch/lamp.launch.xml"\n<launch>\n<node pkg="bench" exec="lamp"/>\n</launch>\n```\n',
+            "robot",
+            "lmap",
+            "Did you mean `lamp`? Its node cells make",
+        ),
+    ],
+)
+def test_a_program_that_a_launch_file_lacks_is_named_with_the_one_that_was_meant(
+    tmp_path: Path, file: str, package: str, program: str, fix: str
+) -> None:
+    file = file.replace("bench", package).replace("'lamp'", f"'{program}'").replace('"lamp"', f'"{program}"')
+    run = BUILD_AND_LAUNCH.replace(".py", ".xml" if "<launch>" in file else ".py")
+
+    (problem,) = reading(tmp_path, named("lamp.py", node("lamp")), file, run).problems
+
+    assert problem.problem.startswith(f"its launch file starts `{program}` of `{package}`, but ")
+    assert "(`ros2 launch robot lamp.launch." in problem.problem
+    assert problem.fix.startswith(fix)
+
+
+def test_a_launch_file_starts_node_by_node_until_colcon_has_built_its_package(tmp_path: Path) -> None:
+    whole = WHOLE.replace("bench", "robot")
+    commands = shell("ros2 launch robot lamp.launch.py")
+
+    *_, unbuilt, _, built = cells(
+        read(tmp_path, named("lamp.py", node("lamp")), whole, commands, "# B\n", BUILD_AND_LAUNCH)
+    )
+    markup = '```xml title="launch/l.launch.xml"\n<launch/>\n```\n'
+    (problem,) = reading(tmp_path, markup, shell("ros2 launch robot l.launch.xml")).problems
+
+    assert unbuilt.commands[-1].text == "ros2 run robot lamp"
+    assert built.commands[-1].text == "ros2 launch robot lamp.launch.py"
+    assert problem.fix == "Put a shell fence with `colcon build` above it."
+
+
+def test_a_launch_file_that_decides_what_it_starts_is_not_judged(tmp_path: Path) -> None:
+    chosen = WHOLE.replace("bench", "rviz2").replace("output='screen'", "condition=IfCondition('false')")
+
+    assert reading(tmp_path, named("lamp.py", node("lamp")), chosen, BUILD_AND_LAUNCH).problems == ()

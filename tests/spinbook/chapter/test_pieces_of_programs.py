@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fences import GUARD, IMPORTS, MAIN, TALKER, cells, read
+from fences import GUARD, IMPORTS, MAIN, TALKER, cells, read, reading
 
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.python_code import inspect
@@ -214,6 +214,14 @@ def test_a_demo_node_is_not_the_chapters_own_node_of_that_name(tmp_path: Path) -
     assert demo.kind is CellKind.SHELL
 
 
+def test_a_command_whose_program_is_shown_and_not_run_says_why_that_is(tmp_path: Path) -> None:
+    lacks = IMPORTS.replace("import rclpy\n", "import rclpy\nimport not_here\n", 1) + TALKER + MAIN + GUARD
+
+    *_, problem = reading(tmp_path, lacks, "```bash\nros2 run arm talker\n```\n").problems
+
+    assert "is not run itself: it needs `not_here`, which is not installed" in problem.problem
+
+
 @pytest.mark.parametrize(
     ("command", "why"),
     [
@@ -228,6 +236,7 @@ def test_a_demo_node_is_not_the_chapters_own_node_of_that_name(tmp_path: Path) -
         ("ros2 topic pub /a nav2_msgs/msg/Route {}", "needs `nav2_msgs`"),
         ("ros2 topic echo /scan", "nothing above makes `/scan`"),
         ("ros2 topic echo ...", "holds placeholders"),
+        ("ros2 topic info /topic_name", "holds placeholders"),
         ("ros2 run arm hand --ros-args --params-file p.yaml", "reads a parameter file"),
     ],
 )

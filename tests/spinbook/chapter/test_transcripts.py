@@ -28,6 +28,9 @@ def printed(cells: tuple[ChapterCell, ...]) -> str:
     [
         "$ ",
         "~/ros2_ws$ ",
+        "~/ros2_ws $ ",
+        "eva@desk ~/ws> ",
+        "bash-5.2# ",
         "ros2_ws$ ",
         "eva@desk:~$ ",
         "(venv) eva@desk:~/ws$ ",
@@ -167,15 +170,17 @@ def test_a_terminal_of_windows_runs_ros_commands(tmp_path: Path, language: str) 
     assert printed(chapter.cells) == "/arm"
 
 
-@pytest.mark.parametrize("language", ["python", "pycon", "text", ""])
-def test_a_session_of_python_runs_as_a_snippet(tmp_path: Path, language: str) -> None:
-    text = ">>> for i in range(2):\n...     print(i)\n...\n0\n1\n>>> i + 1\n2\n"
+@pytest.mark.parametrize("language", ["python", "pycon", "text", "", "ipython"])
+@pytest.mark.parametrize("prompts", [(">>>", "...", ""), ("In [12]:", "    ...:", "Out[12]: ")])
+def test_a_session_of_python_runs_as_a_snippet(tmp_path: Path, language: str, prompts: tuple[str, str, str]) -> None:
+    first, more, out = prompts
+    text = f"{first} for i in range(2):\n{more}     print(i)\n{more}\n0\n1\n{first} i + 1\n{out}2\n"
 
     chapter = read(tmp_path, f"```{language}\n{text}```\n")
 
     (snippet,) = cells(chapter)
     assert (snippet.kind, " ".join(snippet.source.split())) == (CellKind.SNIPPET, "for i in range(2): print(i) i + 1")
-    assert printed(chapter.cells) == "0\n1\n2"
+    assert printed(chapter.cells) == f"0\n1\n{out}2"
 
 
 def test_a_cell_that_jupyter_runs_in_a_shell_is_one_for_the_terminal(tmp_path: Path) -> None:

@@ -27,6 +27,12 @@ def node(setup: str, method: str) -> str:
         (f"{MSGS}Float64('a')", "`Float64` takes its fields by name only.", "Name the field: Float64(data='a')"),
         (f"{MSGS}Float64(data=-2)", "`data` of `Float64` is a float64, and this is an integer, `-2`.", "Write `-2.0`"),
         (f"{MSGS}m = String()\nm.data = 5", "`data` of `String` is a string, and this is an integer, `5`.", "Write a"),
+        (
+            f"{MSGS}m = Twist()\nm.linear = [1.0]",
+            "`linear` of `Twist` is a Vector3, and this is a list, `[1.0]`.",
+            "Write `Vec",
+        ),
+        (f"{MSGS}PoseArray(poses=3)", "`poses` of `PoseArray` is a list, and this is an integer, `3`.", "Write `[3]`."),
         (f"{MSGS}m = Twist()\nm.linear.X = 1.0", "`Vector3` has no field `X`.", "Did you mean `x`?"),
         (f"{MSGS}m = PoseArray()\nm.poses[0].position.w", "`Point` has no field `w`.", "Its fields: `x`, `y`, `z`."),
         (f"{MSGS}def f(m: String):\n    return m.text", "`String` has no field `text`.", "Did you mean `data`?"),
@@ -174,6 +180,15 @@ def test_a_wrong_field_is_found_with_the_right_one(code: str, problem: str, fix:
         + node(
             "self.create_subscription(String, 'x', self.on, 10); self.create_subscription(Other, 'y', self.on, 10)",
             "def on(self, m):\n        m.text",
+        ),
+        *(
+            SRV + node("self.create_service(AddTwoInts, 'x', self.on)", f"def on(self, q, a):\n        {body}")
+            for body in (
+                "while True:\n            if q.a:\n                return a",
+                "try:\n            return a\n        except ValueError:\n            raise",
+                "with lock:\n            return a if q.a else AddTwoInts.Response()",
+                "if q.a:\n            return a\n        else:\n            return self.other(q)",
+            )
         ),
         MSGS + node("self.last = None", "def on(self, m):\n        self.last = String()\n        self.last.text"),
     ],

@@ -132,3 +132,47 @@ def test_exit_codes() -> None:
     assert not ended_badly(-2, stopped=True)
     assert not ended_badly(1, stopped=True, interrupted=True)
     assert not ended_badly(0, stopped=False)
+
+
+SERVICE = """# %%node arm
+
+
+def main():
+    node.create_service(AddTwoInts, "add", add)
+    rclpy.spin(node)
+
+
+def add(request, response):
+    response.sum = 2
+"""
+REFUSED = """Traceback (most recent call last):
+  File "FILE", line 6, in main
+    rclpy.spin(node)
+  File "/lib/rclpy/executors.py", line 450, in _execute_service
+    srv.send_response(response, header)
+  File "/lib/rclpy/service.py", line 75, in send_response
+    raise TypeError()
+TypeError
+"""
+
+
+def test_a_callback_that_returns_nothing_is_named_with_its_line_and_what_to_do(tmp_path: Path) -> None:
+    file = tmp_path / "arm.py"
+    file.write_text(SERVICE)
+    log = NodeLog()
+    log.add(REFUSED.replace("FILE", str(file)))
+
+    error = describe("arm", log, "ended with exit code 1.", files=[str(file)])
+
+    assert error is not None
+    assert (error.file, error.line) == ("arm.py", 9)
+    assert error.what.startswith("`add` can end without returning the service's response (TypeError). It ended")
+    assert error.advice.endswith("end each way through it with `return response`.")
+
+
+def test_a_value_that_is_no_message_is_named_with_what_was_expected() -> None:
+    text = 'python: twist.c:9: twist__convert_from_py: Assertion `strncmp("m.msg._twist.Twist", 3)\' failed.\n'
+    error = report(text, ended="was ended by signal 6 (SIGABRT).")
+
+    assert error is not None
+    assert error.what.startswith("something else was sent where a `Twist` belongs. It was ended")

@@ -134,4 +134,19 @@ def test_a_program_of_an_earlier_chapter_is_saved_for_ros2_run(kernel: Kernel) -
 def test_a_node_of_the_course_s_package_runs_by_name_before_it_is_built(kernel: Kernel) -> None:
     kernel.run("%%node greeting\nprint('hello')\n")
 
-    assert "hello" in kernel.run("%ros2 run robot greeting").text
+    twice = kernel.run("%ros2 run robot greeting\n%ros2 run robot greeting").text
+
+    assert "hello" in twice
+    assert "greeting_2 has ended (exit code 0)" in twice
+
+
+def test_the_method_of_a_class_that_spins_is_called_and_its_answer_printed(kernel: Kernel) -> None:
+    method = "    def ask(self):\n        rclpy.spin_once(self, timeout_sec=0.1)\n        return 'enough'\n"
+    code = CLASS.replace("NAME", "'here'") + method
+
+    shown = kernel.run(f"%%node asker --seconds 60 --class Talker.ask --usual-imports\n{code}")
+    kept = kernel.run(f"%%node kept --keep --class Talker.ask --usual-imports\n{code}")
+
+    assert "ask() returned 'enough'\n" in shown.text
+    assert "asker has ended (exit code 0)" in shown.text
+    assert kept.text == "— saved, not started: nothing here calls Talker.ask, which spins —\n"

@@ -37,6 +37,10 @@ if __name__ == "__main__":
 ```
 
 ```bash
+colcon build
+```
+
+```bash
 ros2 launch robot robot.launch.py
 ros2 run robot hello --ros-args --params-file src/robot/config/hello.yaml
 ros2 param load /hello src/robot/config/hello.yaml

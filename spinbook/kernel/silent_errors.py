@@ -1,4 +1,6 @@
-"""What ends a thread of the notebook's own process: Python prints it, and the cell ends as if nothing were wrong."""
+"""What goes wrong in a cell that ends as if nothing were wrong: an exception in a thread, the exit code of `!…`, a
+`%cd` into a folder that is not there.
+"""
 
 from __future__ import annotations
 
@@ -7,20 +9,39 @@ import threading
 import traceback
 from typing import Any
 
-from spinbook.kernel.node_errors import NodeError
+from IPython.utils.capture import capture_output
+
+from spinbook.kernel.node_errors import NodeError, how_it_ended
 
 #: Python's name of a thread without one of its own has a number that changes from run to run: `Thread-5 (work)`.
 _NUMBERED = re.compile(r"Thread-\d+(?: \((.+)\))?$")
 
 
-class ThreadErrors:
-    """Keeps the exceptions that end threads until they are reported."""
+class SilentErrors:
+    """Keeps these errors until they are reported."""
 
     def __init__(self) -> None:
         self._errors: list[NodeError] = []
 
     def watch(self, shell: Any) -> None:
-        """From now on, keep what ends a thread; `shell` is IPython's."""
+        """From now on, keep what goes wrong; `shell` is IPython's."""
+        system, change_folder = shell.system, shell.find_line_magic("cd")
+
+        def run(command: str) -> None:
+            system(command)
+            if code := shell.user_ns.get("_exit_code", 0):
+                self._errors.append(NodeError(f"!{command.strip()}", f"It {how_it_ended(code)}"))
+
+        def go(folder: str) -> Any:
+            with capture_output() as said:
+                result = change_folder(folder)
+            said.show()
+            if said.stdout.startswith("[Errno"):
+                self._errors.append(NodeError(f"%cd {folder}", said.stdout.splitlines()[0].partition("] ")[2] + "."))
+            return result
+
+        shell.system = run
+        shell.register_magic_function(go, magic_name="cd")
 
         def keep(ended: threading.ExceptHookArgs) -> None:
             if ended.exc_value is not None and not isinstance(ended.exc_value, SystemExit):
