@@ -186,13 +186,14 @@ Core::Idle Core::idle() {
   flags_ = 0;
   const unsigned count = threads_.count();
   others_ = count > known.size() ? count - static_cast<unsigned>(known.size()) : 0;
-  if (!others_) return Idle::yes;
-  switch (threads_.look(known, !children_.empty())) {
+  switch (others_ ? threads_.look(known, !children_.empty()) : Threads::Look::asleep) {
     case Threads::Look::busy: return Idle::look_again;
     case Threads::Look::timed: flags_ = 2; return Idle::look_again;
     case Threads::Look::asleep: break;
   }
-  return entering_ || contenders.count() != contending ? Idle::look_again : Idle::yes;
+  // A thread may have posted a semaphore since, and ended before it was listed. Who waits for it may not have run yet.
+  const bool waiting = std::none_of(sleepers_.begin(), sleepers_.end(), [](Sleeper * one) { return one->satisfied(); });
+  return entering_ || contenders.count() != contending || !waiting ? Idle::look_again : Idle::yes;
 }
 
 void Core::step() {

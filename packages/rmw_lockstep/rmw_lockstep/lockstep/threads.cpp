@@ -140,6 +140,9 @@ Threads::Look Threads::look(const std::vector<pid_t> & known, bool children) {
       if (!state) links_ = 0;  // it has ended; another may have begun, which the number of links does not show
       if (state != 'S') return Look::busy;
     }
+  // All sleep now. A thread that was begun after they were listed, and has not run yet, may be what they wait for.
+  const size_t listed = threads_.size();
+  if (count() != listed || !complete_) return Look::busy;
   bool timed = false;
   for (auto & [number, thread] : threads_) {
     if (skipped(number)) continue;
