@@ -20,13 +20,13 @@ def must_count(run: Run) -> None:
     A joint waits from its message until its request was answered, or for 5 s after it.
     """
     begins = [message.at_ns for message in run.sent]
-    ends = [min(call.answered or call.at + GIVE_UP, call.at + GIVE_UP) for call in run.calls(by="node")]
+    ends = [min(call.answered_ns or call.at_ns + GIVE_UP, call.at_ns + GIVE_UP) for call in run.calls(by="node")]
 
     def waiting(at: int) -> int:
         return max(0, sum(begin <= at for begin in begins) - sum(end <= at for end in ends))
 
     def judge(message: ReceivedMessage) -> None:
-        first, last = message.at - TOLERANCE, message.at + TOLERANCE
+        first, last = message.at_ns - TOLERANCE, message.at_ns + TOLERANCE
         right = {waiting(at) for at in (first, last, *(at for at in begins + ends if first <= at <= last))}
         if message.fields["data"] not in right:
             got, words = message.fields["data"], " or ".join(map(str, sorted(right)))
@@ -68,7 +68,7 @@ def test_publishes_the_offset(one: Run) -> None:
     one.must_have_interface(OFFSETS)
     one.must_match_series("position", OFFSETS)
     for call, message in zip(one.calls(by="node"), one.messages_on(OFFSETS), strict=False):
-        late = (message.at - (call.answered or message.at)) / 1_000_000_000
+        late = round(message.at - (call.answered or message.at), 6)
         if abs(late) > 0.15:
             text = f"it was expected when the answer came, got it {late:.2f} s later."
             one.wrong_at(message.at, text, "", "with the answer", f"{late:.2f} s later")

@@ -58,9 +58,8 @@ def test_turns_the_shorter_way(short_way: Run) -> None:
         far = (
             at for (at, _), so_far in zip(headings[1:], itertools.accumulate(turns), strict=True) if so_far > math.pi
         )
-        when = next((round((100 + at) * 1_000_000_000) for at in far), None)
         text = f"the goal is 0.83 rad to the left, but the turtle turned by {turned:.2f} rad."
-        short_way.wrong_at(when, text, "", "at most half a turn", f"{turned:.2f} rad")
+        short_way.wrong_at(next(far, None), text, "", "at most half a turn", f"{turned:.2f} rad")
 
 
 @check(
@@ -129,7 +128,7 @@ def test_takes_a_new_goal_on_its_way(new_goal: Run) -> None:
     for at, distance in ways:
         if distance < ways[0][1] / 2:
             text = f"there is another goal since 2 s, but the turtle drove on to the old one, up to {distance:.2f} m."
-            new_goal.wrong_at(round((100 + at) * 1_000_000_000), text, "", "the new goal", "the old one")
+            new_goal.wrong_at(at, text, "", "the new goal", "the old one")
 
 
 @check(

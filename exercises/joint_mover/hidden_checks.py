@@ -170,9 +170,7 @@ def test_rejected_goal_changes_nothing(rejected_meanwhile: Run) -> None:
     rejected = rejected_meanwhile.goal(2).at
     last = max((feedback.at for feedback in goal.feedback), default=None)
     ends = [
-        state.at
-        for state in goal.states
-        if state.state in ("aborted", "canceled") and state.at < rejected + 300_000_000
+        state.at for state in goal.states if state.state in ("aborted", "canceled") and state.at < rejected + 0.2999
     ]
     if ends or (last is not None and last < rejected):
         text = "the running goal was expected to continue, got its end."

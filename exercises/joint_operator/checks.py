@@ -29,7 +29,7 @@ def must_report_every_end(run: Run) -> None:
             run.wrong_at(at, f"expected {outcome} on {OUTCOMES}, got nothing.", f"goal {number}", outcome, "nothing")
         message = published[number - 1]
         run.compare_at(at, f"goal {number}", "data", message.fields, {"data": outcome}, 0.0, OUTCOMES, pairs)
-        late = (message.at - at) / 1_000_000_000
+        late = round(message.at - at, 6)
         if abs(late) > 0.3:
             text = f"the outcome was expected when the goal had ended, got it {abs(late):.2f} s "
             text += "later." if late > 0 else "too early."
@@ -125,8 +125,8 @@ def test_one_goal_at_a_time(several: Run) -> None:
         )
     for before, goal in itertools.pairwise(goals):
         last = before.states[-1] if before.states else None
-        end = last.at if last and last.state in ENDS else goal.at + 1
-        wait = (goal.at - end) / 1_000_000_000
+        end = last.at if last and last.state in ENDS else goal.at + 1.0
+        wait = round(goal.at - end, 6)
         if not 0.0 <= wait <= 0.25:
             text = f"goal {goal.number} was expected when goal {before.number} had ended, "
             text += "got it before that." if wait < 0 else f"got it {wait:.2f} s later."

@@ -19,7 +19,7 @@ def must_publish_the_changes(run: Run) -> None:
 
     def judge(change: ReceivedMessage) -> None:
         value = change.fields["data"]
-        soon = [m for m in published if abs(m.at - change.at) <= 60_000_001]
+        soon = [m for m in published if abs(m.at - change.at) <= 0.060001]
         if not any(message.fields["data"] == value for message in soon):
             got = str(soon[0].fields["data"]).lower() if soon else "nothing"
             word = str(value).lower()

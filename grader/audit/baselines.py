@@ -58,9 +58,9 @@ def _named(endpoints: tuple[ServiceOrAction, ...]) -> list[tuple[str, str]]:
 
 def _period(reference: Recording, topic: str) -> float | None:
     """Return the period (s) at which the solution publishes on `topic`; None if it is not regular, or only answers."""
-    times = [message.at for message in reference.received if message.topic == topic and not message.subscriber]
+    times = [message.at_ns for message in reference.received if message.topic == topic and not message.subscriber]
     gaps = Counter(round((b - a) / SECOND, 3) for a, b in itertools.pairwise(times))
-    answered = {message.at for message in reference.sent} & set(times)
+    answered = {message.at_ns for message in reference.sent} & set(times)
     if len(times) < _OFTEN or len(answered) > len(times) / 2:
         return None
     period, often = gaps.most_common(1)[0]

@@ -65,7 +65,7 @@ def _messages(mine: tuple[ReceivedMessage, ...], its: tuple[ReceivedMessage, ...
         return [f"{len(mine)} messages, the solution's {len(its)}"]
     fields: Counter[str] = Counter()
     for message, other in zip(mine, its, strict=True):
-        if (message.at, message.after, message.topic) != (other.at, other.after, other.topic):
+        if (message.at_ns, message.after, message.topic) != (other.at_ns, other.after, other.topic):
             fields["when they came"] += 1
         fields.update(name for name in other.fields if _text(message.fields.get(name)) != _text(other.fields[name]))
     return [f"{count} of {len(its)} messages differ in {name}" for name, count in sorted(fields.items())]

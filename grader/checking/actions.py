@@ -17,7 +17,6 @@ from grader.checking.hint_texts import hints
 from grader.checking.partial import each
 from grader.checking.recorded_run import RecordedRun
 from grader.recording.events import By, Cancel, Feedback, Goal
-from grader.scenario.times import SECOND
 
 #: rclpy's log line for a goal whose execute callback returned without a state.
 _NO_STATE = "Goal state not set, assuming aborted"
@@ -121,7 +120,7 @@ def must_end(run: RecordedRun, status: str, goal: int = 1, within: float | None 
             got,
             _why(run, student, status),
         )
-    late = ((_ended_at(student) or student.at) - student.at) / SECOND
+    late = (_ended_at(student) or student.at) - student.at
     if within is not None and late > within + 1e-9:
         text = f"it was expected to end within {within:g} s, got {late:.2f} s."
         run.wrong_at(_ended_at(student), text, _part(student), f"{within:g} s", f"{late:.2f} s")
@@ -143,7 +142,7 @@ def must_cancel(run: RecordedRun, goal: int = 1, within: float = 1.0) -> None:
         text = f"after the request to cancel it was expected to end as canceled, got {got}."
         run.wrong_at(cancel.at, text, _part(student), "canceled", got, _why(run, student, "canceled"))
     ended = _ended_at(student) or cancel.at
-    late = (ended - cancel.at) / SECOND
+    late = ended - cancel.at
     if late > within + 1e-9:
         text = f"it was expected to end within {within:g} s of the request to cancel, got {late:.2f} s."
         run.wrong_at(cancel.at, text, _part(student), f"{within:g} s", f"{late:.2f} s")
@@ -322,6 +321,6 @@ def _ended_as(goal: Goal) -> str:
     return last if last in ("succeeded", "canceled", "aborted") else goal.status or f"no end{last and f', but {last}'}"
 
 
-def _ended_at(goal: Goal) -> int | None:
+def _ended_at(goal: Goal) -> float | None:
     ends = [state.at for state in goal.states if state.state in ("succeeded", "canceled", "aborted")]
     return ends[0] if ends else goal.finished

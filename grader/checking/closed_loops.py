@@ -9,9 +9,8 @@ from collections.abc import Sequence
 from grader.checking.cause import UNKNOWN, Cause
 from grader.checking.hint_texts import hints
 from grader.checking.patterns import common
-from grader.checking.recorded_run import RecordedRun, seconds
+from grader.checking.recorded_run import RecordedRun
 from grader.recording.recording import ReceivedMessage, SentMessage
-from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import field_of
 
 Place = dict[str, float]
@@ -43,13 +42,13 @@ def trajectory(run: RecordedRun, topic: str, *fields: str) -> Way:
     """
     if topic == TRUTH:
         truth = run.recording.truth
-        return [(seconds(one.at), tuple(float(field_of(one.values, name)) for name in fields)) for one in truth]
+        return [(one.at, tuple(float(field_of(one.values, name)) for name in fields)) for one in truth]
     messages: list[SentMessage | ReceivedMessage] = [*run.recording.sent]
     messages += [message for message in run.recording.received if not message.subscriber]
-    on_topic = sorted((message for message in messages if message.topic == topic), key=lambda message: message.at)
+    on_topic = sorted((message for message in messages if message.topic == topic), key=lambda message: message.at_ns)
     if not on_topic:
         raise ValueError(f"there is no message on {topic} in the scenario {run.scenario}.")
-    return [(seconds(m.at), tuple(float(field_of(m.fields, name)) for name in fields)) for m in on_topic]
+    return [(m.at, tuple(float(field_of(m.fields, name)) for name in fields)) for m in on_topic]
 
 
 def must_reach(
@@ -82,7 +81,7 @@ def must_reach(
     left = next((at for at, p in way if at > max(reached, start + within) and math.dist(p, goal) > tolerance), None)
     if stay and left is not None:
         text = f"it reached {words} at {reached:.2f} s, but did not stay there."
-        run.wrong_at(_ns(left), text, "", f"to stay within {_measure(tolerance, unit)}", f"left at {left:.2f} s")
+        run.wrong_at(left, text, "", f"to stay within {_measure(tolerance, unit)}", f"left at {left:.2f} s")
 
 
 def must_stay_between(
@@ -98,7 +97,7 @@ def must_stay_between(
         if at >= start - 1e-9 and not lowest - 1e-9 <= value <= highest + 1e-9:
             expected, got = f"{lowest:g} to {_measure(highest, unit)}", _measure(value, unit)
             part = "" if topic == TRUTH else topic  # which is no name that a student knows
-            run.wrong_at(_ns(at), f"expected {field} from {expected}, got {got}.", part, expected, got)
+            run.wrong_at(at, f"expected {field} from {expected}, got {got}.", part, expected, got)
 
 
 def must_estimate(run: RecordedRun, topic: str, fields: dict[str, str], rmse: float, start: float = 0.0) -> None:
@@ -109,11 +108,11 @@ def must_estimate(run: RecordedRun, topic: str, fields: dict[str, str], rmse: fl
 
     Example: `run.must_estimate("/out", {"data": "level"}, rmse=0.2)`
     """
-    truth, times = run.recording.truth, [state.at for state in run.recording.truth]
-    messages = [m for m in run.published_on(topic) if m.at >= _ns(start) and times and m.at >= times[0]]
+    truth, times = run.recording.truth, [state.at_ns for state in run.recording.truth]
+    messages = [m for m in run.published_on(topic) if m.at >= start and times and m.at_ns >= times[0]]
     if not messages:
         run.wrong_at(None, f"expected messages on {topic}, got none from {start:g} s on.", "", "messages", "none")
-    pairs = [(truth[bisect_right(times, m.at) - 1].values, m.fields) for m in messages]
+    pairs = [(truth[bisect_right(times, m.at_ns) - 1].values, m.fields) for m in messages]
     each = {
         field: [(float(field_of(true, name)), float(field_of(got, field))) for true, got in pairs]
         for field, name in fields.items()
@@ -131,6 +130,9 @@ def must_estimate(run: RecordedRun, topic: str, fields: dict[str, str], rmse: fl
 def must_steer(run: RecordedRun, topic: str, field: str, errors: Errors) -> None:
     """Check that each value of `field` on `topic` has the sign of the error at that time.
 
+    `errors` are pairs of a time (s) and how far it is to the goal then: the goal minus the place. Each holds until the
+    next one.
+
     Example: `run.must_steer("/out", "data", [(0.0, 2.0)])`
     """
     cause = steers_away(run, topic, field, errors)
@@ -138,11 +140,13 @@ def must_steer(run: RecordedRun, topic: str, field: str, errors: Errors) -> None
         if error * value <= 0:
             expected, got = "more than 0" if error > 0 else "less than 0", _measure(value, run.unit_of(field, topic))
             text = f"expected {field} {expected}, because the goal is {error:+.3g} away; got {got}."
-            run.wrong_at(_ns(at), text, topic, expected, got, cause)
+            run.wrong_at(at, text, topic, expected, got, cause)
 
 
 def steers_away(run: RecordedRun, topic: str, field: str, errors: Errors) -> Cause:
     """Explain that every value of `field` on `topic` leads away from the goal; UNKNOWN if not every one does.
+
+    `errors` are as in `must_steer`. Give what this returns to `run.wrong_at(…, cause=…)`.
 
     Example: `run.steers_away("/out", "data", [(0.0, 2.0)])`
     """
@@ -174,11 +178,11 @@ def _never_there(
     expected = f"within {_measure(tolerance, unit)} of {words} after {within:g} s"
     if reached is not None:
         text = f"it was expected {expected}, but got there only after {reached - start:.2f} s."
-        run.wrong_at(_ns(reached), text, "", expected, f"after {reached - start:.2f} s")
+        run.wrong_at(reached, text, "", expected, f"after {reached - start:.2f} s")
     at, closest = min(way, key=lambda point: math.dist(point[1], goal))
     distance = math.dist(closest, goal)
     text = f"it was expected {expected}; the closest it got was {_measure(distance, unit)}."
-    run.wrong_at(_ns(at), text, "", expected, _measure(distance, unit), _of_way(way, goal))
+    run.wrong_at(at, text, "", expected, _measure(distance, unit), _of_way(way, goal))
 
 
 def _beyond(
@@ -199,7 +203,7 @@ def _beyond(
         if beyond > overshoot + 1e-9:
             furthest = max(sum(a * (p - g) for a, p, g in zip(ahead, q, goal, strict=True)) for _, q in way)
             expected, got = f"at most {_measure(overshoot, unit)}", _measure(furthest, unit)
-            run.wrong_at(_ns(at), f"it goes {got} beyond {words}; {expected} is allowed.", "", expected, got)
+            run.wrong_at(at, f"it goes {got} beyond {words}; {expected} is allowed.", "", expected, got)
 
 
 def _of_way(way: Way, goal: tuple[float, ...]) -> Cause:
@@ -226,7 +230,3 @@ def _words(place: Place) -> str:
 
 def _measure(value: float, unit: str) -> str:
     return f"{value:.3g}{f' {unit}' if unit else ''}"
-
-
-def _ns(at: float) -> int:
-    return START + round(at * SECOND)

@@ -164,7 +164,7 @@ def must_have_nodes(run: RecordedRun) -> None:
     elif len(run.nodes) > len(expected):
         text = f"your program creates other nodes, too. Expected {', '.join(expected)}, got {got}."
     if text:
-        _wrong(text, ", ".join(expected), got, _NODES)
+        _wrong(text, ", ".join(expected), got, _of_launched(run) or _NODES)
 
 
 def must_publish_on_no_others(run: RecordedRun) -> None:
@@ -235,9 +235,12 @@ def _has_no_others(run: RecordedRun, declared: list[tuple[Kind, str]]) -> None:
 def _lacks(run: RecordedRun, kind: Kind, name: str) -> NoReturn:
     does, others = _WORDS[kind]
     names = ", ".join(sorted({end.topic for end in end_points(run, kind)} - {*OF_EVERY_NODE})) or "none"
-    # If a program of a launch file has ended with an error, that is why.
-    cause = run.observed if run.exercise.nodes and run.recording.ending.survived else lacking(kind)
-    _wrong(f"your node does not {does} {name}. {others}: {names}.", name, names, cause)
+    _wrong(f"your node does not {does} {name}. {others}: {names}.", name, names, _of_launched(run) or lacking(kind))
+
+
+def _of_launched(run: RecordedRun) -> Cause:
+    """Return with which error a program of a launch file ended: that is why its node is not there."""
+    return run.observed if run.exercise.nodes and run.recording.ending.survived else UNKNOWN
 
 
 #: Kind of endpoint -> the call that creates it.

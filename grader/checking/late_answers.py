@@ -39,7 +39,7 @@ def how_late(run: RecordedRun, exchange: Exchange) -> str:
     expected = exchange.expected[0]._fields
     for received in run.recording.received:
         if received.after > exchange.number and same(received.fields, expected) and not _is_in_time(run, received):
-            return _delay(run, exchange, received.at, received.after)
+            return _delay(run, exchange, received.at_ns, received.after)
     return ""
 
 
@@ -74,7 +74,7 @@ def in_general(run: RecordedRun) -> Cause:
 def _with_next(run: RecordedRun, exchange: Exchange, answer: Message) -> bool:
     """Return whether an answer came at the simulated time of the next message."""
     sent = run.recording.sent
-    return exchange.number < len(sent) and answer.at_ns == sent[exchange.number].at
+    return exchange.number < len(sent) and answer.at_ns == sent[exchange.number].at_ns
 
 
 def same(got: Any, expected: Any) -> bool:
@@ -96,9 +96,9 @@ def _is_in_time(run: RecordedRun, received: ReceivedMessage) -> bool:
 
 def _delay(run: RecordedRun, exchange: Exchange, at: int, after: int) -> str:
     late = after - exchange.number
-    if late and at == run.recording.sent[after - 1].at:
+    if late and at == run.recording.sent[after - 1].at_ns:
         return "one message late" if late == 1 else f"{late} messages late"
-    return f"{_shown((at - run.recording.sent[exchange.number - 1].at) / SECOND)} later"
+    return f"{_shown((at - run.recording.sent[exchange.number - 1].at_ns) / SECOND)} later"
 
 
 def _shown(seconds: float) -> str:

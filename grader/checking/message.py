@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from grader.recording.events import Truth
 from grader.recording.fields import OnTopic, Part
 from grader.recording.recording import ReceivedMessage, Recording, SentMessage
-from grader.scenario.times import SECOND, START
 
 
 class Message(OnTopic, Part):
@@ -26,8 +25,7 @@ class Message(OnTopic, Part):
     def __init__(self, kept: SentMessage | ReceivedMessage) -> None:
         super().__init__(kept.fields)
         self.heard = not isinstance(kept, SentMessage) or kept.heard
-        self.at = (kept.at - START) / SECOND
-        self.at_ns = kept.at
+        self.at, self.at_ns = kept.at, kept.at_ns
         self.after = kept.after if isinstance(kept, ReceivedMessage) else 0
         self.topic = kept.topic
 
@@ -40,8 +38,7 @@ class WorldState(Part):
 
     def __init__(self, truth: Truth) -> None:
         super().__init__(truth.values)
-        self.at = (truth.at - START) / SECOND
-        self.at_ns = truth.at
+        self.at, self.at_ns = truth.at, truth.at_ns
 
 
 @dataclass(frozen=True)

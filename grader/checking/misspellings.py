@@ -22,6 +22,7 @@ from grader.exercise.imported_files import with_modules
 from grader.recording.events import STATES, Call, Goal
 from grader.recording.recording import Endpoint, ReceivedMessage, SentMessage
 from grader.scenario.scenario import Scenario
+from ros_in_python.field_path import steps_of
 
 #: What an expression in a check is: a message of a type, or a record such as `Call`; a list of these.
 Value = tuple[str, Any]
@@ -30,7 +31,7 @@ Value = tuple[str, Any]
 _OF_MESSAGES = {
     *(name for kind in (ReceivedMessage, SentMessage) for name in (one.name for one in fields_of_class(kind))),
     *(name for name in dir(Message) if not name.startswith("_")),
-    *("at_ns", "heard", "after", "topic"),
+    *("at", "at_ns", "heard", "after", "topic"),
 }
 
 _OF_RUNS = {*(name for name in dir(Run) if not name.startswith("_")), *(one.name for one in fields_of_class(Run))}
@@ -255,7 +256,11 @@ class _Function:
         if name in ("field", "fields", "per", "place"):
             types = self._types(method, self._text((self._arguments(node, method) or {}).get("topic")))
             for path in self._texts(argument):
-                if types and not any(known_names.has(type_, path) for type_ in types):
+                if problem := _unreadable(path):
+                    yield ExerciseError(
+                        self._file, problem, "Write for example position[0] or header.stamp.", node.lineno
+                    )
+                elif types and not any(known_names.has(type_, path) for type_ in types):
                     every = {known for type_ in types for known in known_names.fields(type_)}
                     yield self._error(node, f"{' and '.join(types)} has no field {path!r}", path, every)
 
@@ -313,6 +318,14 @@ class _Function:
         return list(known.received) if method in on_outputs else []
 
 
+def _unreadable(path: str) -> str:
+    try:
+        steps_of(path)
+    except ValueError as error:
+        return str(error).partition(". Write")[0]
+    return ""
+
+
 def _names_in(message: str) -> set[str]:
     """Return the attributes of a message of this type. One without a header has no stamp."""
     fields = {*known_names.fields(message)}
@@ -320,4 +333,4 @@ def _names_in(message: str) -> set[str]:
 
 
 def _names_of(record: type) -> set[str]:
-    return {one.name for one in fields_of_class(record)}
+    return {one.name for one in fields_of_class(record)} | {name for name in dir(record) if not name.startswith("_")}

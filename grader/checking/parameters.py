@@ -113,7 +113,7 @@ def _never_refuses(run: RecordedRun, taken: bool) -> Cause:
     return UNKNOWN
 
 
-def _unknown(run: RecordedRun, at: int, name: str, answered: bool) -> None:
+def _unknown(run: RecordedRun, at: float, name: str, answered: bool) -> None:
     if answered:
         text = "your node does not have it. Declare it in __init__, with declare_parameter."
         run.wrong_at(at, text, f"parameter {name}", "a value", "not declared")

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import inspect
-import signal
-import sys
 import tempfile
 from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Literal, NoReturn
+from typing import Any, Literal
 
 import pytest
 
@@ -19,11 +17,9 @@ from grader.checking import doubts
 from grader.checking.ending_message import message_of
 from grader.checking.run import Run
 from grader.checking.verdict import CheckOptions, Finding, Verdict, Wrong, check_options
+from grader.exercise.computing_limit import computing_limit
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.modules import error_in
-
-#: How long one check may compute (s). They take milliseconds.
-LONGEST_CPU_S = 10.0
 
 #: Of a hint that says what to do: students don't read more.
 MOST_WORDS = 160
@@ -147,6 +143,12 @@ class Checks:
         known = {*info.name2fixturedefs, "request", *self.scenarios}
         return next((name for name in info.names_closure if name not in known), "") if self.scenarios else ""
 
+    @pytest.hookimpl(wrapper=True)
+    def pytest_collection(self, session: pytest.Session) -> Generator[None, object, object]:
+        """End a file of checks that computes for too long while it is imported, in the line at which it is."""
+        with computing_limit():
+            return (yield)
+
     def pytest_exception_interact(self, node: Any, call: pytest.CallInfo[Any], report: object) -> None:
         """Report a file of checks that can't be imported: the author must fix it."""
         if isinstance(report, pytest.CollectReport) and call.excinfo and not self.problem:
@@ -184,15 +186,8 @@ class Checks:
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_call(self, item: pytest.Item) -> Any:
         """End a check that computes for too long, in the line at which it is."""
-        if sys.platform == "emscripten":  # a page can be closed
+        with computing_limit():
             return (yield)
-        before = signal.signal(signal.SIGVTALRM, _too_long)
-        signal.setitimer(signal.ITIMER_VIRTUAL, LONGEST_CPU_S)
-        try:
-            return (yield)
-        finally:
-            signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
-            signal.signal(signal.SIGVTALRM, before)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Any:
@@ -222,10 +217,6 @@ class Checks:
             finding = wrong.finding.shortened()
             return replace(verdict, status="failed", finding=finding, share=wrong.share, partial=mark.partial)
         return replace(verdict, status="error", error=_describe(error, item.path))
-
-
-def _too_long(number: int, frame: object) -> NoReturn:
-    raise TimeoutError(f"it computed for {LONGEST_CPU_S:g} s: is there an endless loop?")
 
 
 def _is_defined_here(item: pytest.Item) -> bool:

@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import ast
 import difflib
-import importlib
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import NoReturn
 
 from grader.checking.agreement import disagreements
 from grader.checking.judge import ListedCheck, listed
@@ -24,6 +25,7 @@ from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.imported_files import with_modules
 from grader.exercise.loading import load
 from grader.exercise.mistakes import each_mistake
+from grader.exercise.modules import error_in, import_of
 from grader.exercise.rules import named_by, rules_of, without_markup
 from grader.exercise.starter import MarkerError, starter
 from grader.recording.arrays import ArrayEncoder
@@ -37,6 +39,9 @@ from groundwork.words import counted
 
 #: The time limit (s) for importing an exercise's files.
 TIME_LIMIT_S = 60
+
+#: After this time (s) the line that sleeps, or waits for something else, is named. One that computes is named sooner.
+_WAITING_LIMIT_S = TIME_LIMIT_S - 10
 
 
 def problems_of(folder: Path) -> tuple[Problem, ...]:
@@ -133,9 +138,8 @@ def undefined_names(files: Iterable[Path]) -> Iterator[ExerciseError]:
 
 
 def _remedy_for(name: str, tree: ast.Module) -> str:
-    for module in ("grader.checking", "grader.scenario"):
-        if hasattr(importlib.import_module(module), name):
-            return f"Import it: from {module} import {name}"
+    if line := import_of(name):
+        return f"Import it: {line}"
     known = python_code.bound(tree.body) | {node.arg for node in ast.walk(tree) if isinstance(node, ast.arg)}
     near = difflib.get_close_matches(name, sorted(known), n=1)
     return f"Did you mean {near[0]}?" if near else "Define it, or import it."
@@ -231,9 +235,21 @@ def _of_mistakes(exercise: Exercise, checks: tuple[ListedCheck, ...]) -> Iterato
             yield ExerciseError(mistake.file, problem, fix, mistake.line)
 
 
+def _waits(number: int, frame: object) -> NoReturn:
+    raise TimeoutError(f"it still waits after {_WAITING_LIMIT_S:g} s")
+
+
 def main() -> None:
     """Print the problems of the exercise that the command line names, as JSON."""
-    problems = [error.problem for error in faults(Path(sys.argv[1]))]
+    folder = Path(sys.argv[1])
+    signal.signal(signal.SIGALRM, _waits)
+    signal.setitimer(signal.ITIMER_REAL, _WAITING_LIMIT_S)
+    errors: list[ExerciseError] = []
+    try:
+        errors.extend(faults(folder))
+    except Exception as error:  # an author's code, such as a world, may raise anything wherever it is called
+        errors.append(error_in(error, folder, folder / "exercise.toml"))
+    problems = [error.problem for error in errors]
     print(json.dumps([(str(p.file), p.line, p.problem, p.fix) for p in problems]))
 
 

@@ -18,7 +18,6 @@ from grader.checking.patterns import COMPUTER_CLOCK, common, other_text
 from grader.checking.verdict import Finding, Wrong, with_values
 from grader.exercise.exercise import Exercise, Role, ServiceOrAction, Topic
 from grader.recording.recording import Ending, ReceivedMessage, Recording, SentMessage
-from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import NoSuchField, field_of, steps_of
 
 _WAITS = (
@@ -135,25 +134,24 @@ class RecordedRun:
 
     def wrong_at(
         self,
-        at: int | None,
+        at: float | None,
         text: str,
         part: str = "",
         expected: object = "",
         got: object = "",
         cause: str | Cause = UNKNOWN,
     ) -> NoReturn:
-        """End the check: `text` says what is wrong at `at`, in ns of simulated time, or in the whole scenario.
+        """End the check: `text` says what is wrong at `at` (s after the start), or in the whole scenario.
 
         `part` is what is wrong, such as a service or a goal. `expected`, `got` and `cause` are as in `wrong`.
 
-        Example: `run.wrong_at(run.recording.received[0].at, "the valve is open.", "/out")`
+        Example: `run.wrong_at(run.received[0].at, "the valve is open.", "/out")`
         """
-        seconds = None if at is None else (at - START) / SECOND
-        where = "" if seconds is None else "Before the start" if seconds < 0 else f"At {seconds:.2f} s"
+        where = "" if at is None else "Before the start" if at < 0 else f"At {at:.2f} s"
         if self.title:
             where += f" ({self.title})" if where else f"In “{self.title}”"
         finding = _finding(", ".join(filter(None, (where, part))), text, part, expected, got)
-        self._end(replace(finding, scenario=self.scenario, at=seconds), cause)
+        self._end(replace(finding, scenario=self.scenario, at=at), cause)
 
     def _end(self, finding: Finding, cause: str | Cause) -> NoReturn:
         known = self.observed or as_cause(cause)
@@ -162,7 +160,7 @@ class RecordedRun:
 
     def compare_at(
         self,
-        at: int | None,
+        at: float | None,
         part: str,
         field: str,
         got: dict[str, Any],
@@ -198,15 +196,15 @@ class RecordedRun:
             general or otherwise,
         )
 
-    def time_at(self, at: int, expected: int, part: str, time: float | None, since: int = START) -> None:
+    def time_at(self, at: float, expected: float, part: str, time: float | None, since: float = 0.0) -> None:
         """End the check if something happened more than `time` s before or after it was expected.
 
-        `since` is when the node began to wait for it.
+        `at` and `expected` are in seconds after the start; `since` is when the node began to wait for it.
 
-        Example: `run.time_at(100_000_000_000, 100_000_000_000, "call 1", time=0.1)`
+        Example: `run.time_at(run.received[0].at, 0.0, "/out", time=0.1)`
         """
-        if time is not None and abs(at - expected) > time * SECOND + 1:
-            expected_text, got_text = f"{seconds(expected):.2f} s", f"{seconds(at):.2f} s"
+        if time is not None and abs(at - expected) > time + 1e-9:
+            expected_text, got_text = f"{expected:.2f} s", f"{at:.2f} s"
             by_computer = expected > since and math.isclose(
                 (at - since) / (expected - since), COMPUTER_CLOCK, rel_tol=0.03
             )
@@ -220,10 +218,10 @@ class RecordedRun:
             return UNKNOWN
         last = max([asked[0], *(message.at for message in self.recording.received)])
         later = [message.at for message in self.reference.received] + [at for at, _, _ in _requests(self.reference)]
-        if last > asked[0] or max(later, default=0) - last < _STUCK * SECOND:
+        if last > asked[0] or max(later, default=0) - last < _STUCK:
             return UNKNOWN
         at, name, request = asked
-        return Cause(_WAITS.format(request=request, name=name, at=seconds(at)), *hints("do_not_wait"))
+        return Cause(_WAITS.format(request=request, name=name, at=at), *hints("do_not_wait"))
 
     def unit_of(self, field: str, name: str = "") -> str:
         """Return the unit of a field in exercise.toml: of the topic, service or action `name`, or of any.
@@ -246,7 +244,7 @@ class RecordedRun:
 
         They are the student's, or with `reference` those of the run with the solution. On a topic that only the grader
         or the world publishes, they are what these published. With `subscriber`, they are what that subscriber of the
-        scenario got. Each has what a `Message` has, but its `at`, like its `at_ns`, is in ns of simulated time.
+        scenario got. Each has what a `Message` has.
 
         Example: `[message.data for message in run.messages_on("/out")]`
         """
@@ -288,15 +286,10 @@ def _finding(place: str, text: str, part: str, expected: object, got: object) ->
     return Finding(f"{place}: {message}" if place else message, part=part, expected=values[0], got=values[1])
 
 
-def _requests(recording: Recording) -> list[tuple[int, str, str]]:
+def _requests(recording: Recording) -> list[tuple[float, str, str]]:
     """Return when the node sent a request or a goal, to which service or action, and which of the two."""
     calls = [(call.at, call.service, "a request") for call in recording.calls if call.by == "node"]
     return calls + [(goal.at, goal.action, "a goal") for goal in recording.goals if goal.by == "node"]
-
-
-def seconds(at: int) -> float:
-    """Return a moment of simulated time (ns) as seconds after the start."""
-    return (at - START) / SECOND
 
 
 def _number(fields: dict[str, Any], path: str) -> float | None:

@@ -12,7 +12,7 @@ from grader.checking.graph import lacking
 from grader.checking.hint_texts import hints
 from grader.checking.partial import each
 from grader.checking.patterns import COMPUTER_CLOCK, shift
-from grader.checking.recorded_run import RecordedRun, seconds
+from grader.checking.recorded_run import RecordedRun
 from grader.recording.recording import Endpoint, ReceivedMessage
 from grader.scenario.scenario import RATE
 from grader.scenario.times import SECOND, START
@@ -73,7 +73,7 @@ def must_match_series(
             run.compare_at(
                 message.at, part, field, message.fields, reference.fields, tolerance, name, messages, too_early
             )
-        if time is not None and abs(message.at - reference.at) > time * SECOND + 1:
+        if time is not None and abs(message.at_ns - reference.at_ns) > time * SECOND + 1:
             _wrong_time(run, part, reference, message, pairs)
 
     each(enumerate(itertools.zip_longest(expected, got), start=1), judge)
@@ -96,16 +96,16 @@ def must_keep_rate(run: RecordedRun, hz: float, topic: str = "", tolerance: floa
         _never(run, name, f"{hz:g} messages per second") if not got else None
         text = f"only one message was published on {name}."
         run.wrong_at(got[0].at, text, "", f"{hz:g} Hz", "one message", run.waits())
-    if got[0].at == got[-1].at:
+    if got[0].at_ns == got[-1].at_ns:
         at_once = f"all {len(got)} messages on {name} were published at one moment, {hz:g} per second were expected."
-        run.wrong_at(got[0].at, at_once, "", f"{hz:g} Hz", f"{len(got)} at once", _at_one_moment(got[0].at))
+        run.wrong_at(got[0].at, at_once, "", f"{hz:g} Hz", f"{len(got)} at once", _at_one_moment(got[0].at_ns))
     regular = got[1:] if _begins_with_the_clock(got) else got
-    rate = (len(regular) - 1) * SECOND / max(regular[-1].at - regular[0].at, 1)
+    rate = (len(regular) - 1) * SECOND / max(regular[-1].at_ns - regular[0].at_ns, 1)
     if abs(rate / hz - 1) > tolerance:
         text = f"expected {hz:g} messages per second on {name}, got {rate:.4g}."
         run.wrong_at(None, text, "", f"{hz:g} Hz", f"{rate:.4g} Hz", _of_rate(rate / hz, hz, rate))
-    if expected and expected[-1].at - got[-1].at > 2 * SECOND / hz:
-        last = seconds(got[-1].at)
+    if expected and expected[-1].at_ns - got[-1].at_ns > 2 * SECOND / hz:
+        last = got[-1].at
         text = f"your node published nothing on {name} after that, but must continue."
         end = f"the last message at {last:.2f} s"
         run.wrong_at(got[-1].at, text, "", f"{hz:g} Hz to the end", end, run.waits())
@@ -122,16 +122,15 @@ def must_have_no_gap(
     Example: `run.must_have_no_gap(0.15, "/out")`
     """
     name = topic or run.output.name
-    times = [seconds(message.at) for message in run.published_on(name)]
+    times = [message.at for message in run.published_on(name)]
     if end is None:
-        end = max((seconds(message.at) for message in run.published_on(name, reference=True)), default=None)
+        end = max((message.at for message in run.published_on(name, reference=True)), default=None)
     inside = [at for at in times if at >= start and (end is None or at <= end)]
     moments = [start, *inside, *([end] if end is not None else [])]
     for before, after in itertools.pairwise(moments):
         if after - before > longest + 1e-9:
             text = f"nothing was published on {name} for {after - before:.2f} s, from {before:.2f} s on."
-            at = round(before * SECOND) + START
-            run.wrong_at(at, text, "", f"a gap of at most {longest:g} s", f"{after - before:.2f} s", _GAP)
+            run.wrong_at(before, text, "", f"a gap of at most {longest:g} s", f"{after - before:.2f} s", _GAP)
     if not inside:
         _never(run, name, f"a message every {longest:g} s")
 
@@ -147,8 +146,8 @@ def must_stamp(run: RecordedRun, topic: str = "", field: str = "header.stamp", w
 
     def judge(numbered: tuple[int, tuple[ReceivedMessage, int]]) -> None:
         number, (message, stamp) = numbered
-        if abs(stamp - message.at) > within * SECOND:
-            expected, got = shown(_stamp(message.at)), shown(_stamp(stamp))
+        if abs(stamp - message.at_ns) > within * SECOND:
+            expected, got = shown(_stamp(message.at_ns)), shown(_stamp(stamp))
             text = f"expected {field} {expected}, the time when it was published, got {got}."
             run.wrong_at(message.at, text, f"message {number} on {name}", expected, got, _of_stamps(stamps, messages))
 
@@ -193,13 +192,13 @@ def _wrong_time(
     message: ReceivedMessage,
     pairs: Sequence[tuple[ReceivedMessage, ReceivedMessage]],
 ) -> None:
-    late = [(got.at - expected.at) / SECOND for expected, got in pairs]
-    at, general = seconds(reference.at), ""
+    late = [got.at - expected.at for expected, got in pairs]
+    at, general = reference.at, ""
     if len(late) >= 3 and max(late) - min(late) < 0.02 * abs(late[0]):
         general = f"Every message comes {abs(late[0]):.2f} s too {'late' if late[0] > 0 else 'early'}."
     general = general or _at_the_start([reference], [message])
-    text = f"it was expected at {at:.2f} s, but happened at {seconds(message.at):.2f} s."
-    run.wrong_at(message.at, text, part, f"{at:.2f} s", f"{seconds(message.at):.2f} s", general)
+    text = f"it was expected at {at:.2f} s, but happened at {message.at:.2f} s."
+    run.wrong_at(message.at, text, part, f"{at:.2f} s", f"{message.at:.2f} s", general)
 
 
 #: The clock of a new node is 0, and jumps to the simulated time with the first message on /clock.
@@ -211,7 +210,7 @@ _WITH_THE_CLOCK = (
 
 def _at_the_start(expected: Sequence[ReceivedMessage], got: Sequence[ReceivedMessage]) -> str:
     """Explain why there are more messages at the start than expected; empty if there are not."""
-    mine, its = (sum(message.at <= START for message in series) for series in (got, expected))
+    mine, its = (sum(message.at_ns <= START for message in series) for series in (got, expected))
     return _WITH_THE_CLOCK if mine > its else ""
 
 
@@ -222,7 +221,7 @@ def _in_the_order_of(
     left, ordered = list(got), []
     for reference in expected[: len(got)]:
         unordered, value = left[0].unordered or reference.unordered, field_of(reference.fields, field)
-        at_once = [i for i, message in enumerate(left) if message.at == left[0].at] if unordered else [0]
+        at_once = [i for i, message in enumerate(left) if message.at_ns == left[0].at_ns] if unordered else [0]
         same = (i for i in at_once if equal(field_of(left[i].fields, field), value, tolerance))
         ordered.append(left.pop(next(same, 0)))
     return ordered + left
@@ -233,7 +232,7 @@ def _begins_with_the_clock(series: Sequence[ReceivedMessage]) -> bool:
 
     That is how a timer begins. Two messages at once do not come from one timer.
     """
-    return len(series) > 2 and 0 < series[1].at - series[0].at < series[2].at - series[1].at
+    return len(series) > 2 and 0 < series[1].at_ns - series[0].at_ns < series[2].at_ns - series[1].at_ns
 
 
 #: A wrong rate alone does not show which of the two is the cause.
@@ -262,7 +261,7 @@ def _at_one_moment(at: int) -> Cause:
 
 def _of_stamps(stamps: Sequence[int], messages: Sequence[ReceivedMessage]) -> Cause:
     if not any(stamps):
-        if all(message.at <= START for message in messages):
+        if all(message.at_ns <= START for message in messages):
             return Cause("The node's clock had not started when it published them.", *_STAMP)
         return Cause(
             "Every stamp is 0: your node does not fill it in, or it takes the time before its clock runs, in __init__ "
@@ -274,7 +273,7 @@ def _of_stamps(stamps: Sequence[int], messages: Sequence[ReceivedMessage]) -> Ca
         return Cause(text, *_STAMP)
     if len(stamps) > 2 and len(set(stamps)) == 1:
         return Cause("Every stamp is the same.", *_STAMP)
-    text = _common_to_stamps([divmod(stamp, SECOND) for stamp in stamps], [divmod(m.at, SECOND) for m in messages])
+    text = _common_to_stamps([divmod(stamp, SECOND) for stamp in stamps], [divmod(m.at_ns, SECOND) for m in messages])
     if text and len(stamps) > 2:
         return Cause(text, *_STAMP)
     text = "Only the first stamp is 0: the node's clock had not started when it was published."
@@ -308,6 +307,6 @@ def _stamp(nanoseconds: int) -> dict[str, int]:
 
 def _stops(expected: Sequence[ReceivedMessage], got: Sequence[ReceivedMessage]) -> str:
     """Return when the last message came, if more were expected long after it."""
-    if not 0 < len(got) < len(expected) or expected[-1].at - got[-1].at <= SECOND:
+    if not 0 < len(got) < len(expected) or expected[-1].at_ns - got[-1].at_ns <= SECOND:
         return ""
-    return f"The last one came at {seconds(got[-1].at):.2f} s."
+    return f"The last one came at {got[-1].at:.2f} s."

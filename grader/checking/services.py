@@ -12,7 +12,6 @@ from grader.checking.hint_texts import hints
 from grader.checking.partial import each
 from grader.checking.recorded_run import RecordedRun
 from grader.recording.events import By, Call
-from grader.scenario.times import SECOND
 
 _NEVER_RESPONDS = Cause(
     "Your node never responds. Does the callback return the response, without blocking?", *hints("never_responds")
@@ -41,7 +40,7 @@ def must_respond(run: RecordedRun, service: str = "", within: float | None = Non
             return
         if call.answered is None:
             _no_response(run, number, call)
-        late = (call.answered - call.at) / SECOND
+        late = call.answered - call.at
         if within is not None and late > within + 1e-9:
             text = f"a response was expected within {within:g} s, got it {late:.2f} s after the request."
             run.wrong_at(call.at, text, _part(number, call), f"{within:g} s", f"{late:.2f} s", _all_late(run, call))
@@ -128,7 +127,7 @@ def _no_response(run: RecordedRun, number: int, call: Call) -> NoReturn:
 
 
 def _all_late(run: RecordedRun, call: Call) -> str:
-    late = [(c.answered - c.at) / SECOND for c in calls(run, call.service) if c.answered is not None]
+    late = [c.answered - c.at for c in calls(run, call.service) if c.answered is not None]
     if len(late) < 3 or max(late) - min(late) > 0.02 * max(late):
         return ""
     return f"Every response comes {late[0]:.2f} s after its request."

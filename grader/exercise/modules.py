@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import importlib
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -53,11 +54,38 @@ def _see_import(exercise: Exercise, file: Path, line: int, name: str) -> None:
         raise ExerciseError(file, problem, "Import only files next to this one: put the module there.", line)
 
 
+#: The grader's modules from which authors import.
+_FOR_AUTHORS = (
+    *("grader.checking", "grader.checking.cause", "grader.scenario", "grader.scenario.numbers"),
+    *("grader.scenario.joint_states", "grader.scenario.times"),
+)
+
+
+def import_of(name: str) -> str:
+    """Return the line that imports a name that the grader has for authors; "" if it has none."""
+    home = next((one for one in _FOR_AUTHORS if callable(getattr(importlib.import_module(one), name, None))), "")
+    return f"from {home} import {name}" if home else ""
+
+
+def _of_import(error: ImportError) -> str:
+    """Return what to do about a name that a module of the grader does not have."""
+    match = re.match(r"cannot import name '(\w+)' from '(grader[\w.]*)'", str(error))
+    if not match:
+        return ""
+    near = difflib.get_close_matches(match[1], vars(importlib.import_module(match[2])), n=1)
+    line = import_of(match[1]) or (f"from {match[2]} import {near[0]}" if near else "")
+    return f"Write: {line}" if line else "docs/check-api.md and docs/scenarios.md have the names."
+
+
 def _remedy(error: BaseException, folder: Path) -> str:
     """Return what to do about an error that authors often make; "" for any other."""
+    if isinstance(error, TypeError) and "'module' object is not callable" in str(error):
+        return "This is a module. Import what is in it, such as: from grader.scenario.numbers import numbers"
     if isinstance(error, ModuleNotFoundError) and error.name:
         near = difflib.get_close_matches(error.name, [file.stem for file in folder.glob("*.py")], n=1)
         return f"Did you mean {near[0]}?" if near else f"Put {error.name}.py next to this file, or install it."
+    if isinstance(error, ImportError):
+        return _of_import(error)
     if isinstance(error, FileNotFoundError):
         return 'Is it there? Write its path from this file: Path(__file__).parent / "…".'
     if isinstance(error, TypeError) and re.search(r"\bcheck\(\) (missing|takes)", str(error)):

@@ -131,7 +131,7 @@ def _made(runner: ScenarioRunner) -> dict[str, Recording]:
 
 
 def _see_it(exercise: Exercise, scenario: str) -> str:
-    return f"See what it did: spinbook trace {exercise.name}{f' --scenario {scenario}' if scenario else ''}"
+    return f"See what it did: spinbook trace {exercise.name}{f' --scenario {scenario}' if scenario else ''} --log"
 
 
 def _prove(runner: ScenarioRunner, recordings: dict[str, Recording]) -> None:

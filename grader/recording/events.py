@@ -1,12 +1,14 @@
 """What can happen in a run besides messages: calls, goals, parameters, and programs that end.
 
-Times are nanoseconds of simulated time, like those of messages; None stands for "never".
+Each time is there twice: `at` in seconds after the start, and `at_ns` in ns of simulated time. None is "never".
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Any, Literal
+
+from grader.recording.moments import RecordedMoment, RecordedRequest, seconds
 
 #: A message's fields by name: numbers, texts, lists and nested dictionaries.
 Fields = dict[str, Any]
@@ -19,7 +21,7 @@ STATES = ("unknown", "accepted", "executing", "canceling", "succeeded", "cancele
 
 
 @dataclass(frozen=True)
-class Call:
+class Call(RecordedRequest):
     """One request to a service at `at`, and its response.
 
     `by` is "grader" for a call of the student's service, and "node" for a request that the student's node sent to a
@@ -27,45 +29,45 @@ class Call:
     response. `served` is False if there was no server.
     """
 
-    at: int
+    at_ns: int
     service: str
     type: str
     request: Fields
     by: By
-    answered: int | None = None
+    answered_ns: int | None = None
     response: Fields | None = None
     node: str = ""
     served: bool = True
 
 
 @dataclass(frozen=True)
-class GoalState:
+class GoalState(RecordedMoment):
     """A state of a goal on the action's raw status topic, such as "executing"."""
 
-    at: int
+    at_ns: int
     state: str
 
 
 @dataclass(frozen=True)
-class Feedback:
+class Feedback(RecordedMoment):
     """One message of the action's raw feedback topic."""
 
-    at: int
+    at_ns: int
     fields: Fields
 
 
 @dataclass(frozen=True)
-class Cancel:
+class Cancel(RecordedRequest):
     """A request to cancel a goal. `accepted` is whether the response names the goal; `code` is its return_code."""
 
-    at: int
-    answered: int | None = None
+    at_ns: int
+    answered_ns: int | None = None
     accepted: bool | None = None
     code: int | None = None
 
 
 @dataclass(frozen=True)
-class Goal:
+class Goal(RecordedRequest):
     """One goal, from the request to the result.
 
     Goals count from 1 (`number`), in the order in which they were sent. `by` is "grader" for a goal for the student's
@@ -75,52 +77,62 @@ class Goal:
     """
 
     number: int
-    at: int
+    at_ns: int
     action: str
     type: str
     goal: Fields
     by: By
     accepted: bool | None = None
-    answered: int | None = None
+    answered_ns: int | None = None
     states: tuple[GoalState, ...] = ()
     feedback: tuple[Feedback, ...] = ()
     cancels: tuple[Cancel, ...] = ()
     status: str = ""
     result: Fields | None = None
-    finished: int | None = None
-    asked_result: int | None = None
+    finished_ns: int | None = None
+    asked_result_ns: int | None = None
     node: str = ""
+
+    @property
+    def finished(self) -> float | None:
+        """Return when the result came, in seconds after the start; None without one."""
+        return None if self.finished_ns is None else seconds(self.finished_ns)
+
+    @property
+    def asked_result(self) -> float | None:
+        """Return when the node requested the result, in seconds after the start; None if it did not."""
+        return None if self.asked_result_ns is None else seconds(self.asked_result_ns)
 
 
 @dataclass(frozen=True)
-class ParameterChange:
+class ParameterChange(RecordedRequest):
     """The grader set a parameter. `taken` is None if there was no answer; `reason` is the reason for a refusal."""
 
-    at: int
+    at_ns: int
     node: str
     name: str
     value: Any
     taken: bool | None = None
     reason: str = ""
-    answered: int | None = None
+    answered_ns: int | None = None
 
 
 @dataclass(frozen=True)
-class ParameterReading:
+class ParameterReading(RecordedRequest):
     """The grader read a parameter. `value` is None if it is not set or not declared, or if there was no answer."""
 
-    at: int
+    at_ns: int
     node: str
     name: str
     value: Any = None
-    answered: int | None = None
+    answered_ns: int | None = None
 
 
 @dataclass(frozen=True)
-class ProgramExit:
+class ProgramExit(RecordedMoment):
     """One of several programs ended. `by` is "grader" if the scenario killed it."""
 
-    at: int
+    at_ns: int
     program: str
     code: int | None = None
     signal: int | None = None
@@ -145,17 +157,17 @@ class ProgramStart:
 
 
 @dataclass(frozen=True)
-class Truth:
+class Truth(RecordedMoment):
     """What a world's truth() returned after a step: nothing of it reaches the student's program."""
 
-    at: int
+    at_ns: int
     values: Fields
 
 
 @dataclass(frozen=True)
-class Event:
+class Event(RecordedMoment):
     """One entry of a timeline: `what` happened at `at`; `item` is the record that it belongs to."""
 
-    at: int
+    at_ns: int
     what: str
     item: Any = field(repr=False)

@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Mapping
 from typing import Any
 
-SECOND = 1_000_000_000
+from grader.recording.moments import SECOND
 
 
 class Part:
@@ -69,11 +69,6 @@ class WithFields(OnTopic):
     @property
     def _fields(self) -> Mapping[str, Any]:  # type: ignore[override]
         return self.__dict__["fields"]  # type: ignore[no-any-return]
-
-    @property
-    def at_ns(self) -> int:
-        """Return the same as `at`: every message has this name for it."""
-        return int(self.__dict__["at"])
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):  # pickle and copy ask for these before there are fields

@@ -22,6 +22,7 @@ from grader.recording.events import (
     Truth,
 )
 from grader.recording.fields import WithFields
+from grader.recording.moments import RecordedMoment
 
 __all__ = ["Ending", "Endpoint", "Fields", "ReceivedMessage", "Recording", "RunOutcome", "SentMessage"]
 
@@ -33,13 +34,13 @@ EndPointKind = Literal["publisher", "subscription", "server", "client", "action 
 
 
 @dataclass(frozen=True)
-class SentMessage(WithFields):
-    """A message that a reference publisher published at `at` ns of simulated time.
+class SentMessage(RecordedMoment, WithFields):
+    """A message that a reference publisher published at `at` (s).
 
     `heard` is whether the student's node subscribed to its topic at that time.
     """
 
-    at: int
+    at_ns: int
     topic: str
     type: str
     fields: Fields
@@ -47,8 +48,8 @@ class SentMessage(WithFields):
 
 
 @dataclass(frozen=True)
-class ReceivedMessage(WithFields):
-    """A message from the student's node at `at` ns of simulated time.
+class ReceivedMessage(RecordedMoment, WithFields):
+    """A message from the student's node at `at` (s).
 
     `after` is how many messages had been sent by then: 3 means after the third and before the fourth.
     `subscriber` is the name of the scenario's own subscriber that got it, and empty for the recorder, which
@@ -56,7 +57,7 @@ class ReceivedMessage(WithFields):
     among those of its node and topic at the same moment, because several threads published them.
     """
 
-    at: int
+    at_ns: int
     after: int
     topic: str
     type: str
@@ -69,6 +70,8 @@ class ReceivedMessage(WithFields):
 @dataclass(frozen=True)
 class Endpoint:
     """An end point of the student's, as the ROS graph shows it; `topic` is also the name of a service or an action.
+
+    `kind` is "publisher", "subscription", "server", "client", "action server" or "action client".
 
     `depth` is 0 for "keep all". `deadline` and `lifespan` are in ns, and None without a limit.
     """
@@ -88,9 +91,10 @@ class Endpoint:
 class Ending:
     """How a run ended, in `message` for the student.
 
-    `interrupted` is whether the node was asked to end by Ctrl-C; then `ended_in_time` is whether it did so within
-    2 s, and `traceback` whether it printed one. `line` is the line of the student's file that is to blame, if known.
-    `survived` says what went wrong inside a program that went on all the same, such as an exception in a thread.
+    `outcome` is "completed" if the node ran to the end; otherwise "did-not-start", "crashed", "timed-out" or
+    "over-limit". `interrupted` is whether the node was asked to end by Ctrl-C; then `ended_in_time` is whether it did
+    so within 2 s, and `traceback` whether it printed one. `line` is the line of the student's file that is to blame, if
+    known. `survived` says what went wrong inside a program that went on all the same, such as an exception in a thread.
     """
 
     outcome: RunOutcome
@@ -135,17 +139,17 @@ class Recording:
     @property
     def timeline(self) -> tuple[Event, ...]:
         """All events in order of time. Events at the same moment are in a fixed order."""
-        found = [Event(one.at, f"sent {one.topic}", one) for one in self.sent]
-        found += [Event(one.at, f"received {one.topic}", one) for one in self.received]
-        found += [Event(one.at, f"set {one.name}", one) for one in self.parameters]
-        found += [Event(one.at, f"read {one.name}", one) for one in self.readings]
+        found = [Event(one.at_ns, f"sent {one.topic}", one) for one in self.sent]
+        found += [Event(one.at_ns, f"received {one.topic}", one) for one in self.received]
+        found += [Event(one.at_ns, f"set {one.name}", one) for one in self.parameters]
+        found += [Event(one.at_ns, f"read {one.name}", one) for one in self.readings]
         for call in self.calls:
-            found.append(Event(call.at, f"request {call.service}", call))
-            found += [Event(call.answered, f"response {call.service}", call)] if call.answered is not None else []
+            found.append(Event(call.at_ns, f"request {call.service}", call))
+            found += [Event(call.answered_ns, f"response {call.service}", call)] if call.answered_ns is not None else []
         for goal in self.goals:
             found += _of_goal(goal)
-        found += [Event(one.at, f"exit {one.program}", one) for one in self.exits]
-        return tuple(sorted(found, key=lambda event: event.at))
+        found += [Event(one.at_ns, f"exit {one.program}", one) for one in self.exits]
+        return tuple(sorted(found, key=lambda event: event.at_ns))
 
 
 def not_run_because(first: Recording, scenario: str) -> Recording:
@@ -158,11 +162,11 @@ def not_run_because(first: Recording, scenario: str) -> Recording:
 
 def _of_goal(goal: Goal) -> list[Event]:
     name = f"{goal.action} {goal.number}"
-    found = [Event(goal.at, f"goal {name}", goal)]
-    found += [Event(one.at, f"state {name}", one) for one in goal.states]
-    found += [Event(one.at, f"feedback {name}", one) for one in goal.feedback]
-    found += [Event(one.at, f"cancel {name}", one) for one in goal.cancels]
-    found += [Event(goal.finished, f"result {name}", goal)] if goal.finished is not None else []
+    found = [Event(goal.at_ns, f"goal {name}", goal)]
+    found += [Event(one.at_ns, f"state {name}", one) for one in goal.states]
+    found += [Event(one.at_ns, f"feedback {name}", one) for one in goal.feedback]
+    found += [Event(one.at_ns, f"cancel {name}", one) for one in goal.cancels]
+    found += [Event(goal.finished_ns, f"result {name}", goal)] if goal.finished_ns is not None else []
     return found
 
 

@@ -53,12 +53,12 @@ def write_bags(grade: Grade, folder: Path) -> list[Path]:
 
 
 def _in_order(recording: Recording, reference: Recording) -> list[tuple[int, str, str, Fields]]:
-    messages = [(sent.at, sent.topic, sent.type, sent.fields) for sent in recording.sent]
-    messages += [(got.at, got.topic, got.type, got.fields) for got in recording.received]
-    messages += [(got.at, REFERENCE + got.topic, got.type, got.fields) for got in reference.received]
+    messages = [(sent.at_ns, sent.topic, sent.type, sent.fields) for sent in recording.sent]
+    messages += [(got.at_ns, got.topic, got.type, got.fields) for got in recording.received]
+    messages += [(got.at_ns, REFERENCE + got.topic, got.type, got.fields) for got in reference.received]
     for prefix, source in (("", recording), (REFERENCE, reference)):
         others = [event for event in source.timeline if not isinstance(event.item, (SentMessage, ReceivedMessage))]
-        messages += [(event.at, prefix + EVENTS, TEXT, {"data": _as_json(event)}) for event in others]
+        messages += [(event.at_ns, prefix + EVENTS, TEXT, {"data": _as_json(event)}) for event in others]
     return sorted(messages, key=lambda message: (message[0], message[1]))
 
 

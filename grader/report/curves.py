@@ -14,7 +14,6 @@ from grader.checking.run import Run
 from grader.checking.verdict import Finding
 from grader.exercise.exercise import Exercise, Topic
 from grader.recording.recording import Recording
-from grader.scenario.times import SECOND, START
 
 if TYPE_CHECKING:
     from grader.grading.grade import Grade
@@ -141,7 +140,7 @@ def _state_curve(grade: Grade, scenario: str, quantity: Quantity) -> Curve:
     """Return what a world published of its state. The cross is at the first finding that has a time."""
     expected, got = (
         [
-            ((message.at - START) / SECOND, _number(Message(message).value(quantity.field)))
+            (message.at, _number(Message(message).value(quantity.field)))
             for message in runs[scenario].sent
             if message.topic == quantity.state
         ]
@@ -162,9 +161,7 @@ def _feedback_curves(grade: Grade, scenario: str, quantity: Quantity) -> tuple[C
     """Return the feedback of each goal that the student's node served."""
     its, mine = (
         {
-            f"goal {goal.number}": [
-                ((one.at - START) / SECOND, _number(one.fields.get(quantity.field))) for one in goal.feedback
-            ]
+            f"goal {goal.number}": [(one.at, _number(one.fields.get(quantity.field))) for one in goal.feedback]
             for goal in runs[scenario].goals
             if goal.action == quantity.topic
         }

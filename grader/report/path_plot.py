@@ -16,7 +16,6 @@ from markupsafe import Markup
 from grader.exercise.exercise import Exercise, Topic
 from grader.recording.recording import ReceivedMessage, Recording, SentMessage
 from grader.report.pages import template
-from grader.scenario.times import SECOND, START
 from ros_in_python.axis_marks import round_values
 from ros_in_python.field_path import NoSuchField, field_of
 
@@ -83,13 +82,13 @@ def _is_moved(student: Recording, reference: Recording, topic: Topic, has_goal: 
 
 def _way(recording: Recording, topic: Topic, fields: tuple[str, str]) -> Iterator[tuple[float, Place]]:
     messages: list[SentMessage | ReceivedMessage] = [*recording.sent, *recording.received]
-    for message in sorted((one for one in messages if one.topic == topic.name), key=lambda one: one.at):
+    for message in sorted((one for one in messages if one.topic == topic.name), key=lambda one: one.at_ns):
         try:
             x, y = (float(field_of(message.fields, name)) for name in fields)
         except (NoSuchField, TypeError, ValueError):
             continue
         if math.hypot(x, y) < FURTHEST:
-            yield (message.at - START) / SECOND, (x, y)
+            yield message.at, (x, y)
 
 
 def _wrong(grade: Grade, scenario: str, way: list[tuple[float, Place]]) -> tuple[float, Place] | None:

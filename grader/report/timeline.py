@@ -10,7 +10,6 @@ from grader.recording.events import ParameterChange as Change
 from grader.recording.events import ParameterReading as Reading
 from grader.recording.recording import ReceivedMessage, Recording, SentMessage
 from grader.report.printable import printable
-from grader.scenario.times import SECOND, START
 
 #: At most this many messages of a topic are shown, spread over the scenario, unless `--all` asks for all.
 MOST_OF_A_TOPIC = 12
@@ -32,14 +31,14 @@ def lines_of(recording: Recording, only: tuple[str, ...] = (), everything: bool 
         shown |= {id(event.item) for event in _some(events, left_out)}
     for event in events:
         if shown is None or id(event.item) in shown:
-            yield f"{(event.at - START) / SECOND:9.3f} s  {printable(_words(event))}"
+            yield f"{event.at:9.3f} s  {printable(_words(event))}"
     for name, count in left_out.items():
         yield f"{count} more messages of {name.partition(' ')[2]} are not shown: --all shows them."
 
 
 def _with_truth(recording: Recording) -> list[Event]:
-    truth = [Event(one.at, "truth", one) for one in recording.truth]
-    return sorted([*recording.timeline, *truth], key=lambda event: event.at)
+    truth = [Event(one.at_ns, "truth", one) for one in recording.truth]
+    return sorted([*recording.timeline, *truth], key=lambda event: event.at_ns)
 
 
 def _is_message(event: Event) -> bool:

@@ -97,19 +97,19 @@ class ScriptedActionClient:
         step = sent.step
         return Goal(
             number=sent.number,
-            at=step.at,
+            at_ns=step.at,
             action=self.action,
             type=self.type,
             goal=step.fields,
             by="grader",
             accepted=sent.accepted,
-            answered=self._when(self._send, sent.request),
+            answered_ns=self._when(self._send, sent.request),
             states=states,
             feedback=feedback,
             cancels=tuple(self._cancelled(sent, at, number) for at, number in sent.cancels),
             status=status,
             result=result,
-            finished=self._when(self._result, sent.result),
+            finished_ns=self._when(self._result, sent.result),
         )
 
     def _when(self, client: HubClient, number: int | None) -> int | None:

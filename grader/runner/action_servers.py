@@ -239,20 +239,20 @@ class ScriptedActionServer:
         result = filled(self._kind.Result(), goal.script.result) if has_result else None
         return Goal(
             number=goal.number,
-            at=goal.at,
+            at_ns=goal.at,
             action=self.name,
             type=self._declared.type,
             goal=goal.fields,
             by="node",
             accepted=goal.accepted,
-            answered=goal.answered,
+            answered_ns=goal.answered,
             states=tuple(goal.states),
             feedback=tuple(goal.feedback),
             cancels=tuple(goal.cancels),
             status=goal.state if has_result else "",
             result=to_fields(result) if has_result else None,
-            finished=goal.finished,
-            asked_result=goal.asked_result,
+            finished_ns=goal.finished,
+            asked_result_ns=goal.asked_result,
             node=goal.asked.node,
         )
 

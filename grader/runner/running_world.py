@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from functools import partial
 
+from grader.exercise.computing_limit import computing_limit
 from grader.recording.events import Truth
 from grader.runner.cdr import deserialized
 from grader.runner.grader_side import ACCEPT_ANY, GraderSide, Schedule, nanoseconds
@@ -74,6 +75,7 @@ class RunningWorld:
 
     def _ask(self, act: Callable[[], object]) -> None:
         try:
-            act()
+            with computing_limit():
+                act()
         except Exception as error:
             raise AuthorFault(f"the world {self._world.code.name}: {type(error).__name__}: {error}") from error

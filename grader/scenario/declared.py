@@ -8,6 +8,7 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any
 
+from grader.exercise.computing_limit import computing_limit
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.imported_files import importable, imported
 from grader.exercise.modules import error_in, see_modules
@@ -38,15 +39,17 @@ def declared(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
 def _returned(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
     file, folder = exercise.scenarios_file, exercise.folder
     try:
-        with importable(folder):
+        with importable(folder), computing_limit():
             module = imported(file, f"scenarios_of_{exercise.name}")
             _see_signature(module, file)
             found = module.scenarios(seed) if hasattr(module, "scenarios") else ()
+            # A generator computes only now.
+            found = tuple(found) if isinstance(found, Iterable) else found
     except ExerciseError:
         raise
     except Exception as error:
         raise error_in(error, folder, file, fix="Fix it: this file runs before anything is graded.") from None
-    several = tuple(found) if isinstance(found, Iterable) else ()
+    several = found if isinstance(found, tuple) else ()
     if not several or not all(isinstance(scenario, Scenario) for scenario in several):
         line = module.scenarios.__code__.co_firstlineno if hasattr(module, "scenarios") else None
         other = next((one for one in several if not isinstance(one, Scenario)), found)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NoReturn, TypeVar
 
+from grader.exercise.computing_limit import computing_limit
 from grader.exercise.exercise import Exercise, ExerciseError, ServiceOrAction
 from grader.exercise.imported_files import with_modules
 from grader.exercise.modules import error_in, see_that_students_have
@@ -347,11 +348,12 @@ class Resolver:
         if isinstance(world.period, bool) or not isinstance(world.period, (int, float)) or not world.period > 0:
             self._fault(world.line, f"the world's period={world.period!r}", "Give seconds, such as period=0.02.")
         try:
-            model = world.begin()
-            topics = {**model.reads, **model.publishes}
-            model.step(world.period)
-            state = model.state()
-            truth = model.truth() if hasattr(model, "truth") else {}
+            with computing_limit():
+                model = world.begin()
+                topics = {**model.reads, **model.publishes}
+                model.step(world.period)
+                state = model.state()
+                truth = model.truth() if hasattr(model, "truth") else {}
         except Exception as error:
             self._world_fault(world, error)
         if not isinstance(truth, dict) or not _is_plain(truth):

@@ -5,11 +5,9 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 
-#: Simulated time counts nanoseconds.
-SECOND = 1_000_000_000
+from grader.recording.moments import SECOND, START
 
-#: Simulated time at which every scenario begins. Not 0, which means "no time yet" in ROS.
-START = 100 * SECOND
+__all__ = ["BEFORE_START", "SECOND", "START", "every", "later", "uneven"]
 
 #: The time of events before the student's program starts.
 BEFORE_START = START - SECOND

@@ -49,6 +49,8 @@ def _checked(type_name: str, value: Any, field: str, name: str) -> Any:
     if "/" in type_name:
         package, _, short = type_name.partition("/")
         return checked_fields(message_class(f"{package}/msg/{short}"), value, f"{package}/msg/{short}", field)
+    if hasattr(value, "item") and getattr(value, "shape", None) == ():  # a number of numpy's
+        value = value.item()
     if type_name == "octet":
         type_name, value = "uint8", value[0] if isinstance(value, bytes) and len(value) == 1 else value
     _check_value(type_name, value, field, name)
@@ -70,6 +72,9 @@ def _check_value(type_name: str, value: Any, field: str, name: str) -> None:
 def _checked_list(found: re.Match[str], type_name: str, value: Any, field: str, name: str) -> Any:
     kind = found["of"] or found["array"]
     value = _as_list(kind, value)
+    if getattr(value, "ndim", 1) > 1 and not isinstance(value, memoryview):
+        problem = f"an array of the shape {value.shape} is given for {field}, which is {type_name} in {name}"
+        raise InvalidValue(field, problem, "Write array.ravel(), row by row.")
     _expect(isinstance(value, (list, tuple, LongArray)), type_name, value, field, name, "Write a list.")
     if found["size"]:
         fix = f"Give {found['size']} values."

@@ -15,7 +15,7 @@ from grader.recording.events import Call, Feedback, Goal, GoalState
 from grader.recording.recording import ReceivedMessage, Recording, SentMessage
 from grader.runner.real_time import RealTimeRun
 from grader.scenario.command_line import arguments
-from grader.scenario.scenario import SECOND, START, Scenario
+from grader.scenario.scenario import SECOND, Scenario
 from ros_in_python.robot import urdf
 from ros_in_python.robot.urdf import RobotDescription
 from spinbook.kernel.timeline import RecordedEvents, TimelineEvent
@@ -78,7 +78,7 @@ class Narration:
         for event in recording.timeline:
             seen[event.what] += 1
             if self._counts[event.what] < seen[event.what] <= _LINES:
-                at = (event.at - START) / SECOND
+                at = event.at
                 yield f"{at:7.2f} s  {_in_words(event.what)}  {_content(event.what, event.item)}".rstrip()
         self._counts = seen
 
@@ -130,26 +130,26 @@ def events_of(recording: Recording) -> RecordedEvents:
     found = RecordedEvents()
     for call in recording.calls:
         found.kinds[call.service] = "service"
-        answers = [call.answered] if call.answered is not None else []
-        found.events.append(TimelineEvent(call.at / SECOND, call.service, "request"))
+        answers = [call.answered_ns] if call.answered_ns is not None else []
+        found.events.append(TimelineEvent(call.at_ns / SECOND, call.service, "request"))
         found.events += [TimelineEvent(at / SECOND, call.service, "response") for at in answers]
     for goal in recording.goals:
         found.kinds[goal.action] = "action"
         found.events += _of_goal(goal)
     for message in () if found.kinds else (*recording.sent, *recording.received):
         found.kinds[message.topic] = "topic"
-        found.events.append(TimelineEvent(message.at / SECOND, message.topic, "message"))
+        found.events.append(TimelineEvent(message.at_ns / SECOND, message.topic, "message"))
     return found
 
 
 def _of_goal(goal: Goal) -> list[TimelineEvent]:
     asked = ", ".join(f"{name} {value}" for name, value in goal.goal.items())
-    steps: list[tuple[int | None, str]] = [(one.at, one.state.upper()) for one in goal.states]
-    steps += [(one.at, "feedback") for one in goal.feedback]
-    steps += [(goal.answered, "rejected")] if goal.accepted is False else []
+    steps: list[tuple[int | None, str]] = [(one.at_ns, one.state.upper()) for one in goal.states]
+    steps += [(one.at_ns, "feedback") for one in goal.feedback]
+    steps += [(goal.answered_ns, "rejected")] if goal.accepted is False else []
     for one in goal.cancels:
-        steps += [(one.at, "cancel"), (one.answered, "cancel answered")]
+        steps += [(one.at_ns, "cancel"), (one.answered_ns, "cancel answered")]
     return [
-        TimelineEvent(goal.at / SECOND, goal.action, "goal", str(goal.number), asked),
+        TimelineEvent(goal.at_ns / SECOND, goal.action, "goal", str(goal.number), asked),
         *(TimelineEvent(at / SECOND, goal.action, what, str(goal.number)) for at, what in steps if at is not None),
     ]

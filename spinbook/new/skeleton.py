@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from grader.exercise.exercise import (
     Direction,
@@ -22,6 +22,8 @@ from grader.exercise.exercise import (
     ServiceOrAction,
     Topic,
 )
+from grader.scenario.command_line import starts
+from grader.scenario.scenario import Scenario
 
 #: A program's endpoint, and what an __init__ does for it.
 _ENTRY = {
@@ -119,6 +121,30 @@ def skeleton(exercise: Exercise) -> str:
         for program in exercise.programs
     )
     return "\n\n".join(parts)
+
+
+def with_relative_names(exercise: Exercise, scenarios: Iterable[Scenario]) -> Exercise:
+    """Return the exercise with names without a slash if scenarios start the program in a namespace.
+
+    A name that such a scenario itself uses as it is, such as a map that all robots share, keeps its slash.
+    """
+    spaces = [one for one in scenarios if any(start.namespace for start in starts(exercise, one))]
+    if not spaces:
+        return exercise
+    worlds = [scenario.world.begin() for scenario in spaces if scenario.world]
+    steps = [step for scenario in spaces for step in (*scenario.content, *scenario.servers)]
+    shared = {getattr(step, part, "") for step in steps for part in ("topic", "service", "action")}
+    shared |= {name for world in worlds for name in (*world.reads, *world.publishes)}
+    shared -= {to for one in spaces for start in starts(exercise, one) for to in start.remappings.values()}
+
+    def relative(name: str) -> str:
+        return name if name in shared else name.removeprefix("/")
+
+    return replace(
+        exercise,
+        topics=tuple(replace(topic, name=relative(topic.name)) for topic in exercise.topics),
+        endpoints=tuple(replace(end, name=relative(end.name)) for end in exercise.endpoints),
+    )
 
 
 def _launched(node: str) -> str:

@@ -11,11 +11,13 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from grader.exercise.exercise import OWN_FILES, Exercise
+from grader.exercise.exercise import OWN_FILES, Exercise, ExerciseError
+from grader.scenario.declared import declared
+from grader.scenario.scenario import Scenario
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem
 from spinbook.new.kind import ExerciseKind, kinds
-from spinbook.new.skeleton import skeleton
+from spinbook.new.skeleton import skeleton, with_relative_names
 from spinbook.problem import SpinbookError
 
 #: A whole course, with one exercise.
@@ -125,11 +127,19 @@ def write_solution(course: Path, exercise: Exercise) -> Path:
     _refuse_existing(file)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        write_if_changed(file, skeleton(exercise).encode())
+        write_if_changed(file, skeleton(with_relative_names(exercise, _scenarios_of(exercise))).encode())
     except OSError as error:
         found = f"it can't be made: {error.strerror}."
         raise SpinbookError(Problem(file, None, found, "Choose a place where you may write.")) from None
     return file
+
+
+def _scenarios_of(exercise: Exercise) -> tuple[Scenario, ...]:
+    """Return the exercise's scenarios; none if they are not written yet, or not right."""
+    try:
+        return declared(exercise, seed=1)
+    except ExerciseError:
+        return ()
 
 
 def _refuse_existing(folder: Path) -> None:

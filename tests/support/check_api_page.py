@@ -33,7 +33,17 @@ HEAD = """\
 # What a check can use
 
 Made from the docstrings; each example is run by a test. The [guide](writing-checks.md) says how to write a check.
-`run` is the recording of one scenario, which the check's argument names. Times are in seconds unless it says ns.
+`run` is the recording of one scenario, which the check's argument names.
+
+- **Times** are in seconds after the scenario's start. A name that ends in `_ns`, such as `at_ns`, is the exact time in
+  nanoseconds of simulated time, in which the start is at 100 s: 2.5 s after it is 102_500_000_000.
+- **A field** is a name, `"data"`, or leads into nested messages and lists: `"pose.position.x"`, `"ranges[0]"`,
+  `"transforms[0].transform.translation"`.
+- **A topic, service or action** that you leave out is the only one of its kind in exercise.toml. If there are several,
+  name it.
+- **Types**: `Place` is a dictionary from fields to values, `Way` and `Errors` are lists of (seconds, value), `By` is
+  "grader" or "node", `Kind` is that of an [Endpoint](#endpoint).
+- **Helpers that begin with `must_`** end the check if the node does not do so, with a sentence for the student.
 
 ```python
 from grader.checking import Run, check, each, fail
@@ -67,9 +77,9 @@ _PLAIN = """\
 - `run.recording`: all that was recorded, see [Recording](#recording)
 - `run.reference`: the same of the run with your solution"""
 
-_TIMES = """\
-The `at` of a `Message` and of a `WorldState` is in seconds after the scenario's start. All other times are in ns of
-simulated time, in which the start is at 100 s: 2.5 s after it is 102_500_000_000."""
+_FIELDS = """\
+`Fields` is a dictionary of a message's fields: `call.response["sum"]`. Messages have them as attributes as well:
+`message.data`."""
 
 #: What helpers share, and checks do not need.
 _INTERNAL = ("observed", "waits", "only", "output", "published_on")
@@ -98,7 +108,8 @@ def _page() -> Iterator[str]:
         if isinstance(entry, types.FunctionType):
             yield from _function(f"run.{name}", entry)
         else:
-            yield from _entry(f"run.{name}", _documented(entry))
+            documented = _documented(entry)
+            yield from _entry(f"run.{name}{_returned(documented)}", documented)
     yield f"{_PLAIN}\n"
     for title, module in SUBJECTS.items():
         yield f"## {title}\n"
@@ -106,7 +117,7 @@ def _page() -> Iterator[str]:
             if inspect.isfunction(function) and function.__module__ == module.__name__:
                 yield from _function(f"run.{name}", function)
     yield "## Records\n"
-    yield f"{_TIMES}\n"
+    yield f"{_FIELDS}\n"
     for record in RECORDS:
         yield from _record(record)
 
@@ -117,7 +128,14 @@ def _documented(entry: Any) -> Any:
 
 def _function(name: str, function: Callable[..., Any]) -> Iterator[str]:
     parameters = [one for key, one in inspect.signature(function).parameters.items() if key not in ("self", "run")]
-    yield from _entry(f"{name}({', '.join(map(_parameter, parameters))})", function)
+    returned = _returned(function) if name != "check" else ""
+    yield from _entry(f"{name}({', '.join(map(_parameter, parameters))}){returned}", function)
+
+
+def _returned(function: Callable[..., Any]) -> str:
+    """Return what a function returns, as Python writes it; nothing for one that only checks."""
+    returned = str(inspect.signature(function).return_annotation)
+    return "" if returned in ("None", "NoReturn") else f" -> {returned}"
 
 
 def _parameter(one: inspect.Parameter) -> str:
@@ -144,11 +162,15 @@ def _record(record: type) -> Iterator[str]:
     names = {name: f"`: {type_}" for name, type_ in inspect.get_annotations(record).items()}
     for name, entry in _members(record):
         if isinstance(entry, property):
-            names[name] = f"`: {inspect.getdoc(entry)}"
+            names[name] = f"`: {_what(entry)}"
         elif inspect.isfunction(entry):
-            names[name] = f"(…)`: {inspect.getdoc(entry)}"
+            names[name] = f"(…)`: {_what(entry)}"
     names = {name: text for name, text in names.items() if not name.startswith("_")}
     yield "\n".join(f"- `{name}{text}" for name, text in names.items()) + "\n"
+
+
+def _what(entry: Any) -> str:
+    return (inspect.getdoc(entry) or "").removeprefix("Return ")
 
 
 def _members(record: type) -> Iterator[tuple[str, Any]]:

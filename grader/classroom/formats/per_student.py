@@ -8,7 +8,7 @@ from collections.abc import Callable
 from grader.classroom.formats.format import Export, Format, Interpretation, Parts, UploadedFile, person
 from grader.classroom.names import normal, student_id
 from grader.classroom.times import UNKNOWN
-from grader.submission.file_kinds import kind_of, original_name
+from grader.submission.file_kinds import kind_of, kind_of_content, original_name
 
 SUFFIX = re.compile(r"(\.py\.txt|\.launch\.\w+|\.ipynb\.(json|txt)|\.tar\.\w+|\.[^.]+)$", re.IGNORECASE)
 
@@ -27,7 +27,11 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
 
     def understand(parts: Parts) -> Interpretation:
         is_work = len(parts) > 1 or kind_of(parts[0]) == "launch file"
-        if not is_work and (parts[0].lower().endswith(NOT_WORK) or README.fullmatch(parts[0])):
+        if (
+            not is_work
+            and (parts[0].lower().endswith(NOT_WORK) or README.fullmatch(parts[0]))
+            and not (export.exercise.nodes and _is_launch_file(export.text(*parts)))
+        ):
             return "a table, a note or a page, not a submission"
         name = _name(parts)
         while names.get(name, name) != name and (names[name] in names or originals.count(names[name]) == 1):
@@ -37,6 +41,11 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
         return UploadedFile((student,), parts[1:] or parts, time=file.time if file else UNKNOWN)
 
     return understand
+
+
+def _is_launch_file(text: str) -> bool:
+    """Return whether the content of `anna.yaml` is that of a launch file, and not a table of the instructor's."""
+    return kind_of_content(text.encode(), "other") == "launch file"
 
 
 def _name(parts: Parts) -> str:

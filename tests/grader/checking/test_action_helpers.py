@@ -24,7 +24,7 @@ def goal(*states: tuple[float, str], **fields: Any) -> Recording:
         "states": tuple(GoalState(ns(at), state) for at, state in states),
         "status": status if ends else "",
         "result": {"sequence": [0, 1, 1]} if ends else None,
-        "finished": ns(ends[0]) if ends else None,
+        "finished_ns": ns(ends[0]) if ends else None,
         "feedback": tuple(Feedback(ns(1.5 + i / 2), {"left": 2 - i}) for i in range(2)),
     }
     return replace(EMPTY, goals=(Goal(1, ns(1.0), "/count", COUNT, {"order": 3}, "grader", **{**given, **fields}),))
@@ -176,7 +176,7 @@ def test_goals_of_a_client() -> None:
     assert "expected 1 goals for /count, got 0. Your node has no action client for /count." in says(
         lambda: run(none, right, CLIENT).must_match_goals()
     )
-    ignoring = changed(right, accepted=False, asked_result=ns(1.1))
+    ignoring = changed(right, accepted=False, asked_result_ns=ns(1.1))
     assert "it was rejected, but your node asked for its result." in says(
         lambda: run(ignoring, right, CLIENT).must_ask_only_for_accepted()
     )

@@ -51,9 +51,9 @@ def everything() -> Recording:
         ReceivedMessage(ns(at), i + 1, "/point", STAMPED, {"header": {"stamp": time}})
         for i, (at, time) in enumerate(zip(times, stamp, strict=True))
     ]
-    done = {"status": "succeeded", "result": {"sequence": [0, 1]}, "finished": ns(2)}
+    done = {"status": "succeeded", "result": {"sequence": [0, 1]}, "finished_ns": ns(2)}
     feedback = (Feedback(ns(1.1), {"sequence": [0]}),)
-    canceled = {"cancels": (Cancel(ns(3.1), ns(3.2), True, 0),), "status": "canceled", "finished": ns(3.3)}
+    canceled = {"cancels": (Cancel(ns(3.1), ns(3.2), True, 0),), "status": "canceled", "finished_ns": ns(3.3)}
     goals = (
         goal(1, "accepted", "executing", "succeeded", feedback=feedback, **done),
         goal(2),

@@ -19,7 +19,7 @@ def transitions(*done: bool | None, served: bool = True) -> Recording:
     calls = tuple(
         Call(
             *(ns(second), *CHANGE, {"transition": {"label": name}}, "grader"),  # type: ignore[arg-type]
-            answered=None if success is None else ns(second),
+            answered_ns=None if success is None else ns(second),
             response=None if success is None else {"success": success},
             served=served,
         )

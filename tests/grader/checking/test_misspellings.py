@@ -92,6 +92,7 @@ def problems(folder: Path, line: str) -> list[tuple[int | None, str]]:
         ("far.messages_on('/scam')", "there is no topic '/scam'. Did you mean /scan?"),
         ("near.must_reach('/turtle1/pos', {'x': 1.0}, 0.1, 2.0)", "Did you mean /turtle1/pose?"),
         ("near.must_reach('/turtle1/pose', {'z': 1.0}, 0.1, 2.0)", "turtlesim/msg/Pose has no field 'z'"),
+        ("near.must_match('linear.0.x')", "`0` in `linear.0.x` is not a field. Write for example position[0]"),
         ("near.must_match('linear.w')", "geometry_msgs/msg/Twist has no field 'linear.w'"),
         ("near.must_match_series('liner.x', SPEED)", "'liner.x'. Did you mean linear?"),
         ("near.must_match_responses('sucess')", "SetBool.Response has no field 'sucess'. Did you mean success?"),
@@ -127,5 +128,5 @@ def test_what_is_right_or_not_known_is_not_reported(tmp_path: Path) -> None:
         call = near.calls("/switch")[0]
         print(call.request["data"], near.topics("publisher"), near.subscriptions("/clock"), near.recording.timeline)
         for goal in sorted(near.goals(), key=print):
-            print(goal.states[0].state)"""
+            print(goal.states[0].state, goal.finished - goal.at, call.answered_ns)"""
     assert problems(tmp_path, right) == []

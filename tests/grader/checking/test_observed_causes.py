@@ -102,7 +102,7 @@ def test_a_copied_stamp_is_tested_only_where_messages_are_late(late: float, unte
         return {"header": {"stamp": {"sec": sec, "nanosec": nanosec}, "frame_id": ""}}
 
     sent = tuple(SentMessage(ns(at + late), "/in", STAMPED, stamped(at)) for at in (0.1, 0.2))
-    got = tuple(ReceivedMessage(one.at, number, "/out", STAMPED, one.fields) for number, one in enumerate(sent, 1))
+    got = tuple(ReceivedMessage(one.at_ns, number, "/out", STAMPED, one.fields) for number, one in enumerate(sent, 1))
     doubts.begin()
 
     run(replace(EMPTY, sent=sent, received=got)).must_match("header.stamp")

@@ -168,6 +168,9 @@ def test_nodes() -> None:
     )
     several = replace(EXERCISE, programs=(ProgramFile("a.py", "worker"), ProgramFile("b.py", "helper")))
     run(two, exercise=several).must_have_nodes()
+    ended = replace(EMPTY, nodes=("/right",), ending=Ending("completed", survived="gauge-1 ended: ValueError: no."))
+    launched = replace(EXERCISE, nodes=("/left", "/right"))
+    assert says(run(ended, exercise=launched).must_have_nodes).endswith("got /right. gauge-1 ended: ValueError: no.")
 
 
 def test_ends() -> None:

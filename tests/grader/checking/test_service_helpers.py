@@ -17,7 +17,7 @@ def calls(*sums: int | None, late: float = 0.0, by: str = "grader", served: bool
     made = tuple(
         Call(
             *(ns(n), "/add", ADD, {"a": n, "b": 1}, by),  # type: ignore[arg-type]
-            answered=None if total is None else ns(n + late),
+            answered_ns=None if total is None else ns(n + late),
             response=None if total is None else {"sum": total},
             served=served,
         )
@@ -95,7 +95,7 @@ def test_a_client_that_does_nothing_after_its_request_is_asked_whether_it_waits(
 
 def test_requests_that_come_too_late() -> None:
     right = calls(2, 3, by="node")
-    late = replace(right, calls=tuple(replace(call, at=call.at + ns(0.45) - ns(0)) for call in right.calls))
+    late = replace(right, calls=tuple(replace(call, at_ns=call.at_ns + ns(0.45) - ns(0)) for call in right.calls))
     run(late, right, CLIENT).must_match_requests()
     assert "request 1 to /add: it was expected at 1.00 s, but happened at 1.45 s." in says(
         lambda: run(late, right, CLIENT).must_match_requests(time=0.1)

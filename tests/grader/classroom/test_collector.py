@@ -6,6 +6,7 @@ import io
 import stat
 import tarfile
 import zipfile
+from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
@@ -64,6 +65,15 @@ def test_launch_files_in_xml_and_yaml_are_submissions_and_other_yaml_is_not(tmp_
     collected = taken(written(tmp_path / "s", "anna.launch.xml", "bert.launch.yaml", "cleo.py", "class.yaml"), tmp_path)
     assert files(collected) == {"anna": "anna.launch.xml", "bert": "bert.launch.yaml", "cleo": "cleo.py"}
     assert "not a submission" in why(collected)["class.yaml"]
+
+
+def test_of_an_exercise_with_a_launch_file_yaml_with_a_launch_in_it_is_one_too(tmp_path: Path) -> None:
+    root = written(tmp_path / "s", "cleo.py", "class.yaml", "params.yaml")
+    (root / "anna.yaml").write_text("# mine\nlaunch:\n  - node: {pkg: arms, exec: driver}\n")
+    exercise = replace(load(ROOT / "exercises" / EXERCISE), nodes=("/arm",))
+    collected = collect(root, exercise, tmp_path, CollectOptions())
+    assert files(collected) == {"anna": "anna.yaml", "cleo": "cleo.py"}
+    assert set(why(collected)) == {"class.yaml", "params.yaml"}
 
 
 def test_the_upload_that_spinbook_submit_writes_is_a_submission(tmp_path: Path) -> None:

@@ -30,7 +30,7 @@ def answers(recording: Recording) -> list[float]:
 
 def delays(recording: Recording) -> list[float]:
     """Return how long after its message each answer arrived, in ms of simulated time."""
-    return [(received.at - recording.sent[received.after - 1].at) / MS for received in recording.received]
+    return [(received.at_ns - recording.sent[received.after - 1].at_ns) / MS for received in recording.received]
 
 
 ANSWER_SOMETHING_ELSE = (
@@ -59,7 +59,7 @@ def test_an_answer_that_comes_after_the_next_messages_is_recorded_with_the_messa
     run_program: RunProgram,
 ) -> None:
     recording = run_program(program(body="threading.Timer(0.15, self.answer, [message.data]).start()"))
-    assert [received.at - START for received in recording.received] == [(i * 100 + 120) * MS for i in range(5)]
+    assert [received.at_ns - START for received in recording.received] == [(i * 100 + 120) * MS for i in range(5)]
     assert [received.after for received in recording.received] == [2, 3, 4, 5, 5]
 
 
@@ -106,7 +106,7 @@ def test_two_processes_with_one_nodes_name_have_no_order_whichever_is_faster(run
 
 def test_what_was_published_before_simulated_time_began_has_no_time(run_program: RunProgram) -> None:
     recording = run_program(program(init="self.answer(21.0)"))
-    assert (recording.received[0].at, recording.received[0].after, answers(recording)[0]) == (0, 0, 42.0)
+    assert (recording.received[0].at_ns, recording.received[0].after, answers(recording)[0]) == (0, 0, 42.0)
 
 
 @pytest.mark.parametrize("last", ["os._exit(0)", "os.kill(os.getpid(), 9)", "raise RuntimeError('enough')"])
@@ -142,7 +142,7 @@ def test_a_late_subscription_of_latched_messages_gets_what_came_before(run_progr
 
 def test_simulated_time_is_what_ros_shows(run_program: RunProgram) -> None:
     recording = run_program(program(body="self.answer(self.get_clock().now().nanoseconds / 1e9)"))
-    assert answers(recording) == [2 * sent.at / SECOND for sent in recording.sent]
+    assert answers(recording) == [2 * sent.at_ns / SECOND for sent in recording.sent]
 
 
 def test_on_ctrl_c_it_has_two_seconds(run_program: RunProgram) -> None:

@@ -62,8 +62,8 @@ range = [0.0, 10.0]
 """
 
 SCENARIOS = """\
+import numpy
 from grader.scenario import *
-
 
 class Tank:
     def __init__(self, level):
@@ -152,6 +152,7 @@ def scenario_of(folder: Path, step: str = "", more: str = "") -> Scenario:
         ("Message(0, '/in', 'std_msgs/msg/Float64', {'data': None})", "which is double"),
         ('at("0.5").publish("/in", data=1.0)', r"at\('0.5'\): give seconds after the start"),
         ('at(-1.0).publish("/in", data=1.0)', r"at\(-1.0\): give seconds after the start"),
+        ('at(0.5).publish("/joints", position=numpy.zeros((2, 3)))', r"shape \(2, 3\) is given for position.*ravel"),
         ('at(6.05).publish("/in", data=1.0)', "6.05 s after the start, but the scenario first ends after 3 s"),
     ],
 )
@@ -272,6 +273,33 @@ def test_an_error_in_a_world_or_a_module_names_its_line_there(tmp_path: Path) ->
             declared(load(author), seed=0)
         problem = caught.value.problem
         assert line is None or (problem.file.name, problem.line) == ("tank.py", line)
+
+
+def test_numbers_of_numpy_are_numbers(tmp_path: Path) -> None:
+    step = 'at(0.5).publish("/in", data=numpy.float32(0.5)), at(0.6).send_goal("/count", order=numpy.int64(3))'
+    assert [one.fields for one in scenario_of(tmp_path, step).content[:2]] == [{"data": 0.5}, {"order": 3}]
+
+
+@pytest.mark.parametrize(
+    ("imported", "message"),
+    [
+        ("from grader.scenario import wave", "Write: from grader.scenario.numbers import wave"),
+        ("from grader.scenario import Sever", "Write: from grader.scenario import Server"),
+        ("from grader.scenario import numbers\nnumbers('/in', [])", "from grader.scenario.numbers import numbers"),
+        ("while True: pass", "it computed for 0.05 s: is there an endless loop"),
+    ],
+)
+def test_what_ends_scenarios_py_at_its_top_is_reported_with_its_line_and_what_to_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, imported: str, message: str
+) -> None:
+    monkeypatch.setattr("grader.exercise.computing_limit.LONGEST_CPU_S", 0.05)
+    author = exercise_in(tmp_path)
+    (author / "scenarios.py").write_text(f"{imported}\n{(author / 'scenarios.py').read_text()}")
+    with pytest.raises(ExerciseError) as caught:
+        declared(load(author), seed=0)
+    problem = caught.value.problem
+    assert (problem.file.name, problem.line) == ("scenarios.py", imported.count("\n") + 1)
+    assert message in f"{problem.problem} {problem.fix}"
 
 
 def test_two_exercises_may_have_worlds_in_files_of_the_same_name(tmp_path: Path) -> None:

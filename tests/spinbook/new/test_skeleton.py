@@ -14,9 +14,10 @@ from rclpy.node import Node
 
 from grader.exercise import Exercise, load, starter
 from grader.exercise.exercise import Topic
+from grader.scenario.scenario import START, Message, Scenario
 from spinbook.new.command import new
 from spinbook.new.kind import ExerciseKind
-from spinbook.new.skeleton import skeleton
+from spinbook.new.skeleton import skeleton, with_relative_names
 from spinbook.new.templates import BY_NAME, KINDS, write_exercise
 from spinbook.problem import SpinbookError
 
@@ -92,6 +93,18 @@ def test_a_launch_file_starts_the_declared_nodes(exercise: Exercise) -> None:
     for name in ("left", "right"):
         assert f'Node(package="TODO", executable="TODO", name="{name}", namespace="/gripper_force"),' in text
     assert "Node(" not in starter(text)
+
+
+@pytest.mark.parametrize("kind", [BY_NAME["filter"]])
+def test_names_have_no_slash_if_a_scenario_starts_the_program_in_a_namespace(exercise: Exercise) -> None:
+    alone, left = Scenario("alone", "alone"), Scenario("left", "on the left", namespace="/left")
+    shared = Scenario("shared", "a shared input", Message(START, "/gripper_force/input", "", {}), namespace="/left")
+    ends = [
+        {topic.name for topic in with_relative_names(exercise, scenarios).topics}
+        for scenarios in ([alone], [alone, left], [left, shared])
+    ]
+    given, relative = "/gripper_force/input", "gripper_force/output"
+    assert ends == [{given, f"/{relative}"}, {given[1:], relative}, {given, relative}]
 
 
 def made(*words: str) -> Result:
