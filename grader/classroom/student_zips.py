@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import io
 import os
-import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
 from grader.grading.grade import Entry
 from grader.report.as_json import folder_of
+from interface_compiler.wheel_file import zipped
 
 FOLDER = "to-students"
-
-#: The same content gives the same bytes: every entry has the earliest date that a zip can contain.
-DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def publish(results: Path, entries: Sequence[Entry]) -> Path:
@@ -33,10 +29,5 @@ def publish(results: Path, entries: Sequence[Entry]) -> Path:
 
 
 def _zip(results: Path, entry: Entry) -> bytes:
-    out = io.BytesIO()
-    with zipfile.ZipFile(out, "w") as archive:
-        page = zipfile.ZipInfo(f"{entry.grade.exercise}/feedback.html", DATE)
-        page.external_attr = 0o100444 << 16
-        page.compress_type = zipfile.ZIP_DEFLATED
-        archive.writestr(page, (folder_of(results, entry.student.id) / "feedback.html").read_bytes())
-    return out.getvalue()
+    page = f"{entry.grade.exercise}/feedback.html"
+    return zipped({page: (folder_of(results, entry.student.id) / "feedback.html").read_bytes()}, modes={page: 0o444})

@@ -48,7 +48,7 @@ def classroom50(exercise: str, out: Path | None, isolation: Isolation | None) ->
 
 
 def _files(exercise: Exercise, isolation: Isolation | None) -> dict[str, bytes]:
-    files = {name: content for name, (content, _) in autograder_files(exercise, isolation).items()}
+    files = autograder_files(exercise, isolation)
     del files["run_autograder"]
     files["autograder.py"] = _filled("autograder.py", exercise, isolation)
     files["fetch_repositories.py"] = _filled("fetch_repositories.py", exercise, isolation)

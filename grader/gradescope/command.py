@@ -2,44 +2,26 @@
 
 from __future__ import annotations
 
-import io
 import shlex
 import sys
-import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib import metadata
 from pathlib import Path
 
 import click
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import COURSE, NoExercise, find, load
-from grader.gradescope.pins import NAME, hashed_pins, pins
+from grader.gradescope.own_wheel import SOURCE, NoWheel, as_wheel, is_checkout, wheel_contents
+from grader.gradescope.pins import hashed_pins, pins
 from grader.grading.reference import solution_file
 from grader.sandbox.middleware import MiddlewareUnavailable
 from grader.sandbox.program import Isolation
 from grader.wheels import compiled_wheels
-from interface_compiler.wheel_file import record, zipped
+from interface_compiler.wheel_file import zipped
 
-#: The root of this software's source: the folder with pyproject.toml.
-SOURCE = Path(__file__).parents[2]
-
-#: The parts of it that the container needs.
-NEEDED = ("pyproject.toml", "README.md", "LICENSE")
-LOCKS = ("constraints.txt", "constraints-ros.txt")
-
-PACKAGES = (
-    *("grader", "spinbook", "packages/groundwork", "packages/rmw_lockstep"),
-    *("packages/interface_compiler", "packages/ros_in_python"),
-)
-
-#: The same content gives the same bytes: every entry has the earliest date that a zip can name.
-DATE = (1980, 1, 1, 0, 0, 0)
-
-
-class NoSource(Exception):
-    """Raised if there is neither a checkout nor a wheel of what the container must install."""
+#: The files that Gradescope runs, and those that they are made from.
+SCRIPTS = {"setup.sh": "setup.sh", "run_autograder": "run_autograder.sh"}
 
 
 def bundle(exercise: Exercise, isolation: Isolation | None = None) -> bytes:
@@ -47,55 +29,22 @@ def bundle(exercise: Exercise, isolation: Isolation | None = None) -> bytes:
 
     Of the solutions it contains only `solution.py`, which a student could read only by breaking out of the sandbox.
     `isolation` is the level at which students' programs run, None for the strongest that works in the container. Raises
-    `NoSource`, and `ExerciseError` if there is no solution.
+    `NoWheel`, `MiddlewareUnavailable`, and `ExerciseError` if there is no solution.
     """
-    out = io.BytesIO()
-    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, (content, mode) in autograder_files(exercise, isolation).items():
-            _add(archive, name, content, mode)
-    return out.getvalue()
+    return zipped(autograder_files(exercise, isolation), modes=dict.fromkeys(SCRIPTS, 0o755))
 
 
-def autograder_files(exercise: Exercise, isolation: Isolation | None = None) -> dict[str, tuple[bytes, int]]:
-    """Return the content and mode of each file of an autograder, by name. Raises as `bundle` does."""
-    files = {
-        name: (_script(script, exercise, isolation).encode(), 0o755)
-        for name, script in (("setup.sh", "setup.sh"), ("run_autograder", "run_autograder.sh"))
-    }
-    software = _source() if (SOURCE / "pyproject.toml").exists() else _installed()
-    packages = "".join(f"{package}\n" for package in exercise.packages).encode()
-    for name, content in {**software, **_compiled(), **({"packages.txt": packages} if packages else {})}.items():
-        files[f"course/{name}"] = (content, 0o644)
-    for name, file in _files(exercise):
-        files[f"course/{name}"] = (file.read_bytes(), 0o644)
-    return files
-
-
-def _source() -> dict[str, bytes]:
-    """Return the files of a checkout that the container needs."""
-    files = {name: (SOURCE / name).read_bytes() for name in NEEDED}
-    files["pins.txt"] = hashed_pins(*(SOURCE / name for name in LOCKS)).encode()
-    for package in PACKAGES:
-        for file in _within(SOURCE / package, but="tests"):
-            files[f"{package}/{file.relative_to(SOURCE / package)}"] = file.read_bytes()
-    return files
-
-
-def _installed() -> dict[str, bytes]:
-    """Return the wheel that is installed here, and the versions of its dependencies."""
-    try:
-        name, content = installed_wheel()
-    except NotInstalled as error:
-        raise NoSource(str(error)) from None
-    return {name: content, "pins.txt": "".join(f"{pin}\n" for pin in pins()).encode()}
-
-
-def _compiled() -> dict[str, bytes]:
-    """Return the wheels of what is compiled: they fit every container that PyPI's ROS 2 fits."""
-    try:
-        return {f"wheels/{name}": content for name, content in compiled_wheels().items()}
-    except MiddlewareUnavailable as error:
-        raise NoSource(str(error)) from None
+def autograder_files(exercise: Exercise, isolation: Isolation | None = None) -> dict[str, bytes]:
+    """Return the content of each file of an autograder, by name. Raises as `bundle` does."""
+    name, wheel = as_wheel(wheel_contents())
+    course = {name: wheel, "pins.txt": (hashed_pins(SOURCE) if is_checkout() else pins()).encode()}
+    # The wheels of what is compiled fit every container that PyPI's ROS 2 fits.
+    course |= {f"wheels/{name}": content for name, content in compiled_wheels().items()}
+    if exercise.packages:
+        course["packages.txt"] = "".join(f"{package}\n" for package in exercise.packages).encode()
+    course |= {name: file.read_bytes() for name, file in _files(exercise)}
+    scripts = {name: _script(script, exercise, isolation).encode() for name, script in SCRIPTS.items()}
+    return {**scripts, **{f"course/{name}": content for name, content in course.items()}}
 
 
 def _script(file: str, exercise: Exercise, isolation: Isolation | None) -> str:
@@ -106,27 +55,14 @@ def _script(file: str, exercise: Exercise, isolation: Isolation | None) -> str:
 
 def _files(exercise: Exercise) -> Iterator[tuple[str, Path]]:
     """Yield the files of the course itself, with their names in the container."""
-    for file in _within(exercise.folder):
-        yield f"exercises/{exercise.name}/{file.relative_to(exercise.folder)}", file
+    for file in sorted(exercise.folder.rglob("*")):
+        parts = file.relative_to(exercise.folder).parts
+        if file.is_file() and not any(part.startswith((".", "__pycache__")) for part in parts):
+            yield f"exercises/{exercise.name}/{'/'.join(parts)}", file
     yield f"solutions/{exercise.name}/solution.py", solution_file(exercise)
     course = exercise.folder.parent.parent / COURSE
     if course.is_file():
         yield course.name, course
-
-
-def _within(folder: Path, but: str = "") -> list[Path]:
-    """Return the files below `folder`, without caches, hidden files and the folder `but` in it."""
-    files = [file for file in folder.rglob("*") if file.is_file() and file.suffix != ".pyc"]
-    parts = {file: file.relative_to(folder).parts for file in files}
-    kept = [file for file in files if parts[file][0] != but and not any(part.startswith(".") for part in parts[file])]
-    return sorted(file for file in kept if "__pycache__" not in file.parts)
-
-
-def _add(archive: zipfile.ZipFile, name: str, content: bytes, mode: int) -> None:
-    entry = zipfile.ZipInfo(name, DATE)
-    entry.external_attr = (0o100000 | mode) << 16
-    entry.compress_type = zipfile.ZIP_DEFLATED
-    archive.writestr(entry, content)
 
 
 #: The options of every platform's autograder command.
@@ -143,7 +79,7 @@ def author_errors() -> Iterator[None]:
     """End the command with the right exit code if an exercise can't be bundled: 2 wrong usage, 3 the exercise."""
     try:
         yield
-    except (NoExercise, NoSource) as error:
+    except (NoExercise, NoWheel, MiddlewareUnavailable) as error:
         raise click.UsageError(str(error)) from None
     except ExerciseError as error:
         click.echo(str(error), err=True)
@@ -171,33 +107,3 @@ def gradescope(exercise: str, out: Path | None, isolation: Isolation | None) -> 
     except OSError as error:
         raise click.UsageError(f"{file}: {error.strerror}") from None
     click.echo(f"{file}: upload it to Gradescope, under Configure Autograder.")
-
-
-#: The files that the installer adds to a wheel's own files.
-_INSTALLERS = ("INSTALLER", "REQUESTED", "direct_url.json", "RECORD")
-
-
-class NotInstalled(Exception):
-    """Raised if this software is not installed from a wheel; says what to do."""
-
-
-def installed_wheel() -> tuple[str, bytes]:
-    """Return the name and the content of the wheel that this software was installed from, rebuilt from its files.
-
-    A wheel is a zip whose RECORD lists every file with its hash (PEP 427, and "Recording installed projects"). Raises
-    `NotInstalled`.
-    """
-    try:
-        distribution = metadata.distribution(NAME)
-    except metadata.PackageNotFoundError:
-        raise NotInstalled(f"{NAME} is not installed here: pip install {NAME}") from None
-    files = {}
-    for file in distribution.files or ():
-        name = file.as_posix()
-        if not name.startswith("..") and "__pycache__" not in name and name.rpartition("/")[2] not in _INSTALLERS:
-            files[name] = Path(str(distribution.locate_file(file))).read_bytes()
-    if "grader/__init__.py" not in files:
-        raise NotInstalled(f"{NAME} is installed neither from a wheel nor in a checkout: pip install it from a wheel.")
-    listing = f"{NAME}-{distribution.version}.dist-info/RECORD"
-    files[listing] = record(files, listing)
-    return f"{NAME}-{distribution.version}-py3-none-any.whl", zipped(files, last=listing)

@@ -10,8 +10,11 @@ from pathlib import Path
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-#: The distribution that an autograder installs, with ROS 2 from PyPI, and what builds it from a checkout.
-NAME, EXTRA, BUILD_TOOL = "spinbook", "grade", "setuptools"
+#: The distribution that an autograder installs, with ROS 2 from PyPI.
+NAME, EXTRA = "spinbook", "grade"
+
+#: A checkout's pins, which hold for every Python.
+LOCKS = ("constraints.txt", "constraints-ros.txt")
 
 #: Needed only by ROS 2's own code generators, which do not run there.
 WITHOUT_WHEEL = {"empy"}
@@ -23,16 +26,17 @@ PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14")
 OF_OTHER_VERSIONS = {"python-dateutil": ("six",), "ipython": ("decorator",)}
 
 
-def pins() -> list[str]:
-    """Return the installed versions, such as `numpy==2.3.1`, of everything that is needed."""
-    found = {name: _installed(name) for name in needed() if name != NAME}
-    return sorted(f"{name}=={distribution.version}" for name, distribution in found.items() if distribution)
+def pins() -> str:
+    """Return the installed versions of everything that is needed, a line such as `numpy==2.3.1` for each."""
+    installed = {name: _installed(name) for name in sorted(needed()) if name != NAME}
+    return "".join(f"{name}=={distribution.version}\n" for name, distribution in installed.items() if distribution)
 
 
-def hashed_pins(*locks: Path) -> str:
-    """Return what these files of pins with hashes (pip, "Secure installs") say of everything that is needed."""
-    names = {*needed(), BUILD_TOOL} - WITHOUT_WHEEL
-    entries = (entry for lock in locks for entry in re.split(r"^(?=[A-Za-z0-9])", lock.read_text(), flags=re.MULTILINE))
+def hashed_pins(checkout: Path) -> str:
+    """Return what a checkout's pins with hashes (pip, "Secure installs") say of everything that is needed."""
+    names = needed() - WITHOUT_WHEEL
+    locks = [(checkout / lock).read_text() for lock in LOCKS]
+    entries = (entry for lock in locks for entry in re.split(r"^(?=[A-Za-z0-9])", lock, flags=re.MULTILINE))
     return "".join(entry for entry in entries if canonicalize_name(re.split("[=; ]", entry, maxsplit=1)[0]) in names)
 
 

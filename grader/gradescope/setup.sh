@@ -15,16 +15,16 @@ if [ "${#missing[@]}" -gt 0 ]; then
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
 fi
 
-# A checkout's pins have hashes, and nothing is built but the checkout itself, with the pinned setuptools. An installed
-# wheel only knows the versions that it ran with. The other wheels are what would have to be compiled: the grader's
-# middleware, the course's interfaces, and those that PyPI lacks. Python compiles what it runs.
+# Nothing is built. A checkout's pins have hashes; an installed Spinbook only knows the versions that it ran with. The
+# other wheels are what would have to be compiled: the grader's middleware, the course's interfaces, and those that PyPI
+# lacks. Python compiles what it runs.
 python3 -m venv "$here/venv"
 pip() { "$here/venv/bin/python" -m pip --quiet --disable-pip-version-check "$@"; }
 pins=$here/course/pins.txt
-software=$(ls "$here"/course/spinbook-*.whl 2>/dev/null || echo "$here/course")
-if [ "$software" = "$here/course" ]; then
+software=$(echo "$here"/course/spinbook-*.whl)
+if grep -q -e --hash= "$pins"; then
     pip install --no-compile --no-deps --require-hashes --only-binary :all: -r "$pins"
-    pip install --no-compile --no-deps --no-build-isolation "$software"
+    pip install --no-compile --no-deps "$software"
 else
     pip install --no-compile -c "$pins" "$software[grade]"
 fi

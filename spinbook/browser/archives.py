@@ -21,6 +21,7 @@ import rmw_lockstep
 import ros_in_python
 import spinbook
 from interface_compiler import prefixes
+from interface_compiler.wheel_file import zipped
 from ros_in_python.example_robots import EXAMPLES
 
 #: Modules of the environment that rclpy and `ros2` need, besides the interface packages.
@@ -157,16 +158,6 @@ def _type_hashes() -> dict[str, str]:
             for item in json.loads(file.read_text(encoding="utf-8")).get("type_hashes", ()):
                 hashes[item["type_name"]] = item["hash_string"]
     return hashes
-
-
-def zipped(files: Mapping[str, bytes]) -> bytes:
-    """Return an archive of these files: the same bytes for the same files."""
-    out = io.BytesIO()
-    with zipfile.ZipFile(out, "w") as archive:
-        for name in sorted(files):
-            # Level 9 takes three times as long and saves less than 1 %.
-            archive.writestr(zipfile.ZipInfo(name), files[name], zipfile.ZIP_DEFLATED, 6)
-    return out.getvalue()
 
 
 def sizes(archive: bytes) -> Iterable[tuple[str, int]]:

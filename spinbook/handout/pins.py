@@ -10,10 +10,8 @@ from pathlib import Path
 from packaging.utils import canonicalize_name
 
 import spinbook
-from grader.gradescope.pins import needed
+from grader.gradescope.pins import LOCKS, needed
 
-#: A checkout's pins, which hold for every Python.
-_LOCKS = ("constraints.txt", "constraints-ros.txt")
 #: Required by IPython and ipykernel, which do without: guesses at code that has not run, and a debugger (55 MB).
 _LEFT_OUT = {"jedi", "parso", "debugpy"}
 
@@ -44,7 +42,7 @@ def declared_pins(packages: Sequence[str], pinned: Sequence[str]) -> list[str]:
 
 def _pins(names: set[str]) -> Iterator[str]:
     root = Path(spinbook.__file__).parents[1]
-    for lock in _LOCKS:
+    for lock in LOCKS:
         text = (root / lock).read_text(encoding="utf-8") if (root / lock).is_file() else ""
         for line in re.findall(r"^[A-Za-z0-9][^\\\n]*", text, re.MULTILINE):
             if re.split("[=; ]", line, maxsplit=1)[0] in names - _LEFT_OUT:

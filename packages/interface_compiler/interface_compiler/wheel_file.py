@@ -14,6 +14,7 @@ import re
 import stat
 import zipfile
 from collections.abc import Iterable, Mapping
+from types import MappingProxyType
 
 #: PyPI's wheels of ROS 2 need glibc 2.28: wheels for use with them need not claim to fit older systems.
 _OLDEST_GLIBC = 28
@@ -78,10 +79,15 @@ def record(files: Mapping[str, bytes], listing: str) -> bytes:
 EARLIEST = (1980, 1, 1, 0, 0, 0)
 
 
-def zipped(files: Mapping[str, bytes], last: str = "", date: tuple[int, ...] = EARLIEST) -> bytes:
+def zipped(
+    files: Mapping[str, bytes],
+    last: str = "",
+    date: tuple[int, ...] = EARLIEST,
+    modes: Mapping[str, int] = MappingProxyType({}),
+) -> bytes:
     """Return an archive of `files`, sorted by name; `last` names one that goes to the end.
 
-    `date` is that of every file: year, month, day, hour, minute, second.
+    `date` is that of every file: year, month, day, hour, minute, second. `modes` are those of files that are not 0o644.
     """
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w") as archive:
@@ -89,6 +95,6 @@ def zipped(files: Mapping[str, bytes], last: str = "", date: tuple[int, ...] = E
             entry = zipfile.ZipInfo(name, date)  # type: ignore[arg-type]
             entry.create_system = 3
             entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = (stat.S_IFREG | 0o644) << 16
+            entry.external_attr = (stat.S_IFREG | modes.get(name, 0o644)) << 16
             archive.writestr(entry, files[name])
     return out.getvalue()

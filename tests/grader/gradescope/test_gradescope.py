@@ -18,12 +18,13 @@ from pathlib import Path
 import plain_grades as plain
 import pytest
 from click.testing import CliRunner
-from small_class import EXERCISE, ROOT, TEMPLATE
+from small_class import EXERCISE, TEMPLATE
 
 from grader.classroom50.command import classroom50
 from grader.classroom50.run import result, summary
 from grader.exercise import load
 from grader.gradescope.command import bundle
+from grader.gradescope.own_wheel import as_wheel, wheel_contents
 from grader.grading.grade import Adjustment
 from grader.report.as_json import gradescope_results as results
 from interface_compiler import activation, prefixes
@@ -58,7 +59,7 @@ def test_a_fault_of_ours_has_no_score() -> None:
     assert "not your fault" in shown["output"]
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture
 def no_cache_of_ours(monkeypatch: pytest.MonkeyPatch) -> None:
     """Keeps the solution's recordings in a folder of its own, as an autograder does."""
     monkeypatch.delenv("SPINBOOK_CACHE")
@@ -105,7 +106,6 @@ def test_what_the_container_installs_is_pinned_with_hashes_for_every_python(auto
     assert {
         "click",
         "numpy",
-        "setuptools",
         "six",
         "tomli",
         "ros-jazzy-rclpy",
@@ -147,6 +147,7 @@ def test_the_same_content_makes_the_same_zip() -> None:
     assert bundle(exercise) == bundle(exercise)
 
 
+@pytest.mark.usefixtures("no_cache_of_ours")
 def test_the_autograder_grades_what_was_uploaded(autograder: Path) -> None:
     right = (TEMPLATE / "solutions" / EXERCISE / "solution.py").read_text(encoding="utf-8")
     assert graded(autograder, right)["score"] == 20
@@ -169,7 +170,7 @@ def test_an_autograder_that_is_broken_gives_no_score(autograder: Path) -> None:
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder in which Spinbook is installed from a wheel, outside its checkout."""
     folder = tmp_path_factory.mktemp("installed")
-    name, content = as_wheel(folder)
+    name, content = as_wheel(wheel_contents())
     (folder / name).write_bytes(content)
     install(folder / name, folder / "site")
     return folder
@@ -178,20 +179,6 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def install(wheel: Path, into: Path) -> None:
     pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target"]
     subprocess.run([*pip, str(into), str(wheel)], check=True, timeout=280)
-
-
-def as_wheel(folder: Path) -> tuple[str, bytes]:
-    """Spinbook's wheel, as setuptools builds it."""
-    shutil.copytree(ROOT, folder / "source", ignore=shutil.ignore_patterns(*NOT_IN_A_WHEEL))
-    build = "import sys; from setuptools.build_meta import build_wheel; build_wheel(sys.argv[1])"
-    command = [sys.executable, "-c", build, str(folder / "out")]
-    subprocess.run(command, cwd=folder / "source", check=True, capture_output=True, timeout=280)
-    [wheel] = (folder / "out").iterdir()
-    return wheel.name, wheel.read_bytes()
-
-
-#: What else a checkout has, some of it large.
-NOT_IN_A_WHEEL = (".*", "build", "tests", "docs", "chapters", "benchmarks", "__pycache__", "humanoid_ws", "*.egg-info")
 
 
 def test_an_installed_wheel_makes_the_autograder_with_itself_and_its_versions_in_it(
@@ -252,6 +239,7 @@ def test_a_grade_is_a_result_of_classroom_50() -> None:
     assert result(plain.HALF, job)["review"] == "https://github.com/o/r/commit/abc"
 
 
+@pytest.mark.usefixtures("no_cache_of_ours")
 def test_classroom_50s_runner_gets_a_result_and_after_a_fault_of_ours_none(tmp_path: Path) -> None:
     done = CliRunner().invoke(classroom50, [str(TEMPLATE / "exercises" / EXERCISE), "--out", str(tmp_path / "grader")])
     assert done.exit_code == 0, done.output

@@ -18,9 +18,9 @@ import pytest
 import yaml
 from course_folder import CourseFolder
 
-import spinbook
 from grader.exercise import load
 from grader.exercise.mistakes import Mistake, mistake_of, mistakes_of
+from grader.gradescope import own_wheel
 from handout.conftest import NOTE, ROOT, HandedOut, append, copy_course, write_small_course
 from interface_compiler.wheel_file import zipped
 from spinbook.chapter.comments import without_comments
@@ -192,7 +192,7 @@ def tiny_checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (folder / "spinbook").mkdir(parents=True)
     (folder / "spinbook" / "__init__.py").write_text("first = 1\n")
     (folder / "pyproject.toml").write_text('[project]\nname = "spinbook"\nversion = "0.1.0"\n')
-    monkeypatch.setattr(spinbook, "__file__", str(folder / "spinbook" / "__init__.py"))
+    monkeypatch.setattr(own_wheel, "SOURCE", folder)
     monkeypatch.setenv("SPINBOOK_CACHE", str(tmp_path / "cache"))
     return folder
 
