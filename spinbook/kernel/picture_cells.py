@@ -7,7 +7,7 @@ import os
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -29,22 +29,38 @@ _GRAPH_LIMIT_S = 20.0
 
 def show_graph(seconds: float) -> None:
     """Look at the graph, count messages for this many seconds, and show it. Raises CellFailed."""
-    process = KeptProcess([sys.executable, "-m", "spinbook.graph.watcher", "now", str(seconds)], os.environ, Path.cwd())
-    try:
-        status = process.wait(seconds + _GRAPH_LIMIT_S)
-        output = process.read_all()[0].decode(errors="replace")
-    finally:
-        process.close()
+    argv = [sys.executable, "-m", "spinbook.graph.watcher", "now", str(seconds)]
+    exit_code, output = _run(argv, seconds + _GRAPH_LIMIT_S)
     try:
         graph = NodeGraph.from_json(output[output.index("{") :])
     except ValueError:
-        raise CellFailed(output.strip() or f"The graph could not be read (exit code {status.exit}).") from None
+        raise CellFailed(output or f"The graph could not be read (exit code {exit_code}).") from None
     if not graph.nodes:
         print("No nodes. Run a cell that begins with %%node.")
         return
-    words = in_words(drawings(graph))
-    bundle = {"image/svg+xml": node_graph_svg(graph, standalone=True), "text/plain": words}
-    display(bundle, raw=True, metadata={"image/svg+xml": {"alt": words}})
+    show_picture({"image/svg+xml": node_graph_svg(graph, standalone=True)}, in_words(drawings(graph)))
+
+
+def _run(argv: list[str], seconds: float) -> tuple[int | None, str]:
+    """Return a program's exit code and what it prints, within so many seconds."""
+    process = KeptProcess(argv, os.environ, Path.cwd())
+    try:
+        return process.wait(seconds).exit, process.read_all()[0].decode(errors="replace").strip()
+    finally:
+        process.close()
+
+
+def show_picture(pictures: Mapping[str, Any], words: str, handle: Any = None, **size: int) -> Any:
+    """Show a picture, given by media type, in place of the one with this handle if there is one. Return its handle.
+
+    `words` say what it shows, `size` is its width or height (px).
+    """
+    bundle = {**pictures, "text/plain": words}
+    metadata = {kind: {"alt": words, **size} for kind in pictures if kind.startswith("image/")}
+    if handle is None:
+        return display(bundle, raw=True, metadata=metadata, display_id=True)
+    handle.update(bundle, raw=True, metadata=metadata)
+    return handle
 
 
 #: How long the turtle may take to answer, listening to the real one's poses included (s).
@@ -56,19 +72,13 @@ def show_turtle() -> None:
     with tempfile.TemporaryDirectory(prefix="spinbook-") as folder:
         file, moving = Path(folder) / "turtle.png", Path(folder) / "turtle.svg"
         argv = [sys.executable, "-m", "ros_in_python.turtlesim", os.fspath(file), "--moving", os.fspath(moving)]
-        process = KeptProcess(argv, os.environ, Path.cwd())
-        try:
-            status = process.wait(_TURTLE_LIMIT_S)
-            output = process.read_all()[0].decode(errors="replace").strip()
-        finally:
-            process.close()
-        if status.exit != 0 or not file.exists():
+        exit_code, output = _run(argv, _TURTLE_LIMIT_S)
+        if exit_code != 0 or not file.exists():
             raise CellFailed(output or "turtlesim did not answer. Is it running? ros2 run turtlesim turtlesim_node")
-        alt = "turtlesim's window: the turtle and the trail it has drawn"
-        bundle = {"image/png": base64.b64encode(file.read_bytes()).decode("ascii"), "text/plain": alt}
+        pictures = {"image/png": base64.b64encode(file.read_bytes()).decode("ascii")}
         if moving.exists():
-            bundle["image/svg+xml"] = moving.read_text(encoding="utf-8")
-        display(bundle, raw=True, metadata={kind: {"alt": alt} for kind in bundle if kind != "text/plain"})
+            pictures["image/svg+xml"] = moving.read_text(encoding="utf-8")
+        show_picture(pictures, "turtlesim's window: the turtle and the trail it has drawn")
 
 
 #: The time between two drawings of a live plot (s).
@@ -138,12 +148,7 @@ def _follow(
 
 def _show(recording: PlotRecording, handle: Any, title: str) -> Any:
     """Show what has been recorded so far; as a moving picture, too, if nobody was watching."""
-    words = plot_in_words(recording)
-    bundle = {"image/png": as_png(draw(recording, title)), "text/plain": words}
+    pictures: dict[str, Any] = {"image/png": as_png(draw(recording, title))}
     if EXECUTING in os.environ and (moving := moving_plot(recording, title)) is not None:
-        bundle["image/svg+xml"] = moving
-    metadata = {kind: {"alt": words} for kind in bundle if kind != "text/plain"}
-    if handle is None:
-        return display(bundle, raw=True, metadata=metadata, display_id=True)
-    handle.update(bundle, raw=True, metadata=metadata)
-    return handle
+        pictures["image/svg+xml"] = moving
+    return show_picture(pictures, plot_in_words(recording), handle)

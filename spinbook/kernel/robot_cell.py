@@ -9,13 +9,12 @@ from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from IPython.display import display
 
 from ros_in_python.robot.description import description_text
 from ros_in_python.robot.drawing import KIND, RobotMotion, as_data, in_words
 from ros_in_python.robot.still import WIDTH, as_png
-from ros_in_python.robot.urdf import InvalidUrdf, RobotDescription, read
-from spinbook.kernel.picture_cells import record
+from ros_in_python.robot.urdf import InvalidUrdf, read
+from spinbook.kernel.picture_cells import record, show_picture
 from spinbook.kernel.process import CellFailed
 from spinbook.kernel.robot_recorder import RobotRecording
 
@@ -48,22 +47,15 @@ def _show_live(recording: RobotRecording, handle: Any) -> Any:
     if not recording.description:
         return handle
     robot, positions = read(recording.description), motion_of(recording).last
-    return _display(robot, positions, {"image/png": as_png(robot, positions, scale=1)}, handle)
+    picture = {"image/png": as_png(robot, positions, scale=1)}
+    return show_picture(picture, in_words(robot, positions), handle, width=WIDTH)
 
 
 def _show(recording: RobotRecording, handle: Any) -> None:
     robot, motion = read(recording.description), motion_of(recording)
     picture, data = as_png(robot, motion.last), as_data(robot, motion)
-    _display(robot, motion.last, {"image/png": picture, "text/html": _player(picture, data), KIND: data}, handle)
-
-
-def _display(robot: RobotDescription, positions: dict[str, float], bundle: dict[str, Any], handle: Any) -> Any:
-    words = in_words(robot, positions)
-    metadata = {"image/png": {"alt": words, "width": WIDTH}}
-    if handle is None:
-        return display({**bundle, "text/plain": words}, raw=True, metadata=metadata, display_id=True)
-    handle.update({**bundle, "text/plain": words}, raw=True, metadata=metadata)
-    return handle
+    pictures = {"image/png": picture, "text/html": _player(picture, data), KIND: data}
+    show_picture(pictures, in_words(robot, motion.last), handle, width=WIDTH)
 
 
 def motion_of(recording: RobotRecording) -> RobotMotion:

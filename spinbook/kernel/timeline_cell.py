@@ -7,8 +7,7 @@ import sys
 import time
 from pathlib import Path
 
-from IPython.display import display
-
+from spinbook.kernel.picture_cells import show_picture
 from spinbook.kernel.plot.picture import as_png
 from spinbook.kernel.process import CellFailed, KeptProcess
 from spinbook.kernel.timeline import RecordedEvents, in_words, lanes
@@ -89,10 +88,5 @@ def show(timeline: TimelineProcess, title: str) -> None:
     drawn = lanes(happenings)
     if not any(lane.marks for lane in drawn):
         raise CellFailed(f"Nothing has happened on {', '.join(timeline.names)} since `%timeline --record`.")
-    words = in_words(drawn, span_of(drawn)[0])
-    bundle = {
-        "image/png": as_png(still_timeline(drawn, title)),
-        "image/svg+xml": moving_timeline(drawn, title),
-        "text/plain": words,
-    }
-    display(bundle, raw=True, metadata={kind: {"alt": words} for kind in bundle if kind != "text/plain"})
+    pictures = {"image/png": as_png(still_timeline(drawn, title)), "image/svg+xml": moving_timeline(drawn, title)}
+    show_picture(pictures, in_words(drawn, span_of(drawn)[0]))

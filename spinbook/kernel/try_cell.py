@@ -11,8 +11,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from IPython.display import display
-
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.grading.grade import Grade
 from grader.grading.public import playable, read_public
@@ -25,6 +23,7 @@ from ros_in_python.robot import drawing, still
 from ros_in_python.robot.urdf import RobotDescription
 from spinbook.kernel.check_cell import exercise_of, notebook_file
 from spinbook.kernel.environment import EXECUTING
+from spinbook.kernel.picture_cells import show_picture
 from spinbook.kernel.plot.picture import as_png
 from spinbook.kernel.process import STOP_GRACE, CellFailed
 from spinbook.kernel.session import Session
@@ -74,7 +73,7 @@ def try_out(session: Session, shell: Any, name: str, scenario_name: str, course:
 
 def _scenario(exercise: Exercise, name: str) -> Scenario:
     try:
-        scenarios = {one.name: one for one in playable(exercise, seed=1)}
+        scenarios = {scenario.name: scenario for scenario in playable(exercise, seed=1)}
     except ExerciseError as error:
         raise CellFailed(f"The exercise is at fault, not your code.\n{error}") from None
     if name and name not in scenarios:
@@ -102,13 +101,8 @@ class TriedPicture:
 
     def _show(self, recording: Recording) -> None:
         png, words = self._picture(recording)
-        if png is None:
-            return
-        bundle = {"image/png": png, "text/plain": words}
-        if self.handle is None:
-            self.handle = display(bundle, raw=True, metadata={"image/png": {"alt": words}}, display_id=True)
-        else:
-            self.handle.update(bundle, raw=True, metadata={"image/png": {"alt": words}})
+        if png is not None:
+            self.handle = show_picture({"image/png": png}, words, self.handle)
 
     def _picture(self, recording: Recording) -> tuple[bytes | None, str]:
         """Return a robot, curves, or else what happened over time, as a PNG and in words; (None, "") if nothing did."""

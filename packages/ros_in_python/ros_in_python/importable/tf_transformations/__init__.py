@@ -11,6 +11,7 @@ from functools import reduce
 from typing import Any
 
 import numpy as np
+from tf2_py import rigid_motion
 
 
 def identity_matrix() -> Any:
@@ -68,15 +69,7 @@ def quaternion_about_axis(angle: float, axis: Any) -> Any:
 
 def quaternion_multiply(quaternion1: Any, quaternion0: Any) -> Any:
     """Return the rotation that does the second one first."""
-    (x1, y1, z1, w1), (x0, y0, z0, w0) = quaternion1, quaternion0
-    return np.array(
-        [
-            w1 * x0 + x1 * w0 + y1 * z0 - z1 * y0,
-            w1 * y0 - x1 * z0 + y1 * w0 + z1 * x0,
-            w1 * z0 + x1 * y0 - y1 * x0 + z1 * w0,
-            w1 * w0 - x1 * x0 - y1 * y0 - z1 * z0,
-        ]
-    )
+    return np.array(rigid_motion.multiply(quaternion1, quaternion0))
 
 
 def quaternion_conjugate(quaternion: Any) -> Any:
@@ -91,13 +84,8 @@ def quaternion_inverse(quaternion: Any) -> Any:
 
 def quaternion_matrix(quaternion: Any) -> Any:
     """Return a rotation as a 4×4 matrix."""
-    x, y, z, w = unit_vector(quaternion)
     matrix = np.identity(4)
-    matrix[:3, :3] = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
+    matrix[:3, :3] = rigid_motion.matrix(unit_vector(quaternion))
     return matrix
 
 
