@@ -43,6 +43,8 @@ _BY_TEXT = (
         r"with event CANCELED",
         "canceled() is only for a goal with a request to cancel; call abort() to give up any other.",
     ),
+    (r"with event EXECUTE\b", "The goal executes already when rclpy calls this callback: leave out execute()."),
+    (r"transition from state (?:SUCCEEDED|ABORTED|CANCELED)", "This goal has ended already: end each goal only once."),
     (r"no display|Cannot load backend|could not connect to display|No module named '_?tkinter'", _NO_SCREEN),
     (r"'Time' object has no attribute '(?:nano)?sec'", "A Time is not yet a stamp: its to_msg() is one."),
     (r"returned a result with an exception set", "A field has a value of another type: an integer field takes an int."),
@@ -233,6 +235,8 @@ def _of_its_own(last: LastError, sources: Mapping[str, str]) -> str:
     """Say what else there is than to raise an error in the callback of a service."""
     if not last.raised_there or "await_or_execute(srv.callback" not in last.traceback:
         return ""
+    if "_set_parameters" in last.traceback:
+        return "To refuse a value, return SetParametersResult(successful=False, reason='…'): an exception ends the node."
     return "An exception in a callback ends the whole node: say in the response what is wrong, and return it."
 
 

@@ -27,7 +27,7 @@ from spinbook.chapter.block import (
     unquoted,
 )
 from spinbook.chapter.components import unindented
-from spinbook.chapter.fence import Fence, directive, make_fence
+from spinbook.chapter.fence import Fence, directive, in_pieces, make_fence
 from spinbook.chapter.flavours import parser
 
 #: Reads a file that a chapter includes: its text, or None if there is no such file.
@@ -105,6 +105,8 @@ class _Reader:
             closed = closed or len(lines) == 1
             return self._directive(name, argument, lines, body, closed)
         fence = self._included(make_fence(token.info, token.content, lines[0].number))
+        if len(pieces := in_pieces(fence)) > 1:
+            return [Block(BlockKind.FENCE, lines, fence=piece, new=as_fence(piece, lines)) for piece in pieces]
         expanded = fence.code != token.content and "".join(f"{line.text}\n" for line in body) != fence.code
         new = as_fence(fence, lines) if expanded and not fence.skipped else None
         return [Block(BlockKind.FENCE, lines, fence=fence, closed=closed, new=new)]

@@ -1,16 +1,14 @@
-"""Finds callbacks of services and actions that can end without the answer that rclpy sends for them."""
+"""Finds callbacks of services, actions and parameters that can end without the answer that rclpy needs of them."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from spinbook.chapter.interface_fields import WrongField
 from spinbook.chapter.syntax import last_name, syntax_tree
-from spinbook.chapter.variable_types import Function, ProgramTypes, callback_argument, interface_argument
-
-#: What registers a callback -> the part of the interface that the callback must return.
-_ANSWERS = {"create_service": "Response", "ActionServer": "Result"}
+from spinbook.chapter.variable_types import Function, ProgramTypes, TypedValue, callback_argument, interface_argument
 
 
 def unanswered(program: str) -> list[WrongField]:
@@ -30,38 +28,61 @@ def unanswered(program: str) -> list[WrongField]:
 
 def missing_answers(call: ast.Call, function: Function, types: ProgramTypes) -> Iterator[WrongField]:
     """Yield that a callback that a call registers can end without an answer, or returns something else."""
-    part = _ANSWERS.get(last_name(call.func))
-    callback = callback_argument(call) if part else None
-    target = types.function_of(callback, function) if callback else None
-    if part is None or target is None or not isinstance(target.node, ast.FunctionDef | ast.AsyncFunctionDef):
+    for asked in _asked(call):
+        target = types.function_of(asked.callback, function)
+        if target is not None and isinstance(target.node, ast.FunctionDef | ast.AsyncFunctionDef):
+            yield from _without_answer(target, target.node, asked, types.class_of(asked.interface, function), types)
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What rclpy wants from a callback: `words` and `answer` say it; `part` is that of the interface, "" if none."""
+
+    callback: ast.expr
+    words: str
+    answer: str
+    interface: ast.expr
+    part: str = ""
+
+
+def _asked(call: ast.Call) -> Iterator[_Asked]:
+    """Yield the callbacks in a call whose answer rclpy needs."""
+    name, interface = last_name(call.func), interface_argument(call) or call.func
+    named = {keyword.arg: keyword.value for keyword in call.keywords}
+    callback = callback_argument(call) if name in {"create_service", "ActionServer"} else None
+    if callback and name == "create_service":
+        yield _Asked(callback, "the service's response", "response", interface, "Response")
+    elif callback:
+        yield _Asked(callback, "the action's result", f"{ast.unparse(interface)}.Result()", interface, "Result")
+    for key, kind in (("goal_callback", "GoalResponse"), ("cancel_callback", "CancelResponse")):
+        if name == "ActionServer" and key in named:
+            yield _Asked(named[key], f"a {kind}", f"{kind}.ACCEPT", interface)
+    if name == "add_on_set_parameters_callback" and (first := [*call.args, *named.values()]):
+        yield _Asked(first[0], "a SetParametersResult", "SetParametersResult(successful=True)", interface)
+
+
+def _without_answer(
+    callback: Function,
+    node: ast.FunctionDef | ast.AsyncFunctionDef,
+    asked: _Asked,
+    of: TypedValue | None,
+    types: ProgramTypes,
+) -> Iterator[WrongField]:
+    returns = [item for item in callback.own_nodes if isinstance(item, ast.Return)]
+    if node.decorator_list or any(isinstance(item, ast.Yield) for item in callback.own_nodes):
         return
-    name, returns = target.node.name, [item for item in target.own_nodes if isinstance(item, ast.Return)]
-    if target.node.decorator_list or any(isinstance(item, ast.Yield) for item in target.own_nodes):
-        return
+    answer = callback.arguments[1] if asked.part == "Response" and len(callback.arguments) > 1 else asked.answer
+    fix = f"End each way through it with `return {answer}`: otherwise its caller gets no answer."
     empty = [item for item in returns if item.value is None or ast.unparse(item.value) == "None"]
-    if empty or _falls_through(target.node.body):
-        line = empty[0].lineno if empty else target.node.lineno
-        yield WrongField(line, f"`{name}` can end without returning {_ASKED[part]}.", _fix(part, target, call))
-    interface = interface_argument(call)
-    of = types.class_of(interface, function) if interface else None
+    if empty or _falls_through(node.body):
+        line = empty[0].lineno if empty else node.lineno
+        yield WrongField(line, f"`{node.name}` can end without returning {asked.words}.", fix)
     for item in returns:
-        value = types.value_of(item.value, target) if item.value else None
-        is_other = value is not None and of is not None and (value.interface, value.part) != (of.interface, part)
+        value = types.value_of(item.value, callback) if item.value and asked.part else None
+        is_other = value is not None and of is not None and (value.interface, value.part) != (of.interface, asked.part)
         if item not in empty and (isinstance(item.value, ast.Constant) or is_other):
-            problem = f"`{name}` returns `{ast.unparse(item)[7:]}`, which is not {_ASKED[part]}."
-            yield WrongField(item.lineno, problem, _fix(part, target, call))
-
-
-_ASKED = {"Response": "the service's response", "Result": "the action's result"}
-
-
-def _fix(part: str, callback: Function, call: ast.Call) -> str:
-    if part == "Result":
-        interface = interface_argument(call)
-        answer = f"{ast.unparse(interface)}.Result()" if interface else "a Result"
-    else:
-        answer = callback.arguments[1] if len(callback.arguments) > 1 else "response"
-    return f"End each way through it with `return {answer}`: otherwise its caller gets no answer."
+            problem = f"`{node.name}` returns `{ast.unparse(item)[7:]}`, which is not {asked.words}."
+            yield WrongField(item.lineno, problem, fix)
 
 
 def _falls_through(statements: Sequence[ast.stmt]) -> bool:

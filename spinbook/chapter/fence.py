@@ -157,12 +157,24 @@ def make_fence(info: str, content: str, line: int) -> Fence:
 
 #: `cat > msg/Limits.msg <<EOF`, and the cell that Jupyter runs in a shell.
 _HERE_DOCUMENT = re.compile(
-    r"\s*(?:\$\s+)?cat\b(?=[^\n]*?>\s*(?P<file>[\w./~-]+))[^\n]*<<-?\s*(?P<quote>[\"']?)(?P<end>\w+)(?P=quote)[^\n]*\n"
+    r"^\s*(?:\$\s+)?cat\b(?=[^\n]*?>\s*(?P<file>[\w./~-]+))[^\n]*<<-?\s*(?P<quote>[\"']?)(?P<end>\w+)(?P=quote)[^\n]*\n"
     r"(?P<text>.*?)^(?P=end)\s*",
     re.DOTALL | re.MULTILINE,
 )
 _SHELL_CELL = re.compile(r"%%(?:bash|sh|script bash)[^\n]*\n")
 _FILE_CELL = re.compile(r"%%writefile +(?P<file>[\w./~-]+) *\n")
+
+
+def in_pieces(fence: Fence) -> list[Fence]:
+    """Return a fence for a terminal in pieces: each program or definition that it writes, and the commands between."""
+    written = [m for m in _HERE_DOCUMENT.finditer(fence.code) if m["file"].endswith(_FILES)] if fence.is_shell else []
+    cuts = sorted({0, len(fence.code), *(end for match in written for end in match.span())})
+    pieces = [(start, fence.code[start:end]) for start, end in itertools.pairwise(cuts)]
+    return [
+        _written(replace(fence, code=code, line=fence.line + fence.code[:start].count("\n")))
+        for start, code in pieces
+        if code.strip()
+    ]
 
 
 def _written(fence: Fence) -> Fence:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -11,7 +12,7 @@ from groundwork.problem import Problem, Severity
 from spinbook.chapter.classify import CellKind, ClassifiedFence, node_name
 from spinbook.chapter.complete_program import CompleteProgram, join, usual_import
 from spinbook.chapter.imports import MissingPackage, missing_imports
-from spinbook.chapter.node_classes import init_returns_nothing, needs_arguments, snake_case
+from spinbook.chapter.node_classes import init_returns_nothing, needs_arguments, node_attributes, snake_case
 from spinbook.chapter.node_versions import NodeVersions
 from spinbook.chapter.python_code import PythonCode, inspect
 from spinbook.chapter.syntax import syntax_tree
@@ -191,7 +192,9 @@ class Programs:
         line = code.lacking[name]
         severity = Severity.NOT_RUN if code.fails_at_once else Severity.WARNING
         problem = f"`self.{name}` is used but never set."
+        meant = difflib.get_close_matches(name, node_attributes() | code.defines, n=1, cutoff=0.8)
         fix = "Set it in `__init__`, or check its name: the node fails where it is used."
+        fix = f"Did you mean `self.{meant[0]}`? {fix}" if meant else fix
         at = item.fence.first_code_line + line - 1
         self.problems.append(Problem(self.file, at, problem, fix, severity))
 

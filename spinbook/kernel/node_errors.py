@@ -39,7 +39,7 @@ _CHAINED = ("During handling of the above exception", "The above exception was t
 #: callbacks that still run in other threads. If the program shuts it down, too, chance decides who is first, and so
 #: which of its calls fails.
 _ON_CTRL_C = re.compile(
-    r"(\w+\.)*(KeyboardInterrupt|ExternalShutdownException|InvalidHandle)\b"
+    r"(\w+\.)*(KeyboardInterrupt|ExternalShutdownException|InvalidHandle|CancelledError)\b"
     r"|.*(rcl_shutdown already|must be initialized before it can be shutdown|context is "
     r"|(publisher|subscription|service|client|node|implementation) is invalid)"
 )

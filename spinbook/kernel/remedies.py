@@ -14,6 +14,9 @@ _FROM_RCLPY = re.compile(
     r", in (send_response|_send_result_response)$|__(response|result)__convert_from_py", re.MULTILINE
 )
 
+#: How advice begins that only helps someone who has the chapter to compare with.
+_VAGUE = "The library that this line calls refused"
+
 
 def remedy(traceback: str, files: Sequence[str]) -> str:
     """Return what to do about an exception in the programs `files`, in a sentence or two; "" if it says enough."""
@@ -23,7 +26,8 @@ def remedy(traceback: str, files: Sequence[str]) -> str:
 
     sources = _sources(files)
     last = last_error(traceback, sources)
-    return advice_on(last, sources) if last else ""
+    advice = advice_on(last, sources) if last else ""
+    return "" if advice.startswith(_VAGUE) else advice
 
 
 def silent_callback(traceback: str, files: Sequence[str]) -> tuple[str, str, int] | None:

@@ -271,11 +271,24 @@ def test_a_program_that_a_launch_file_lacks_is_named_with_the_one_that_was_meant
     assert problem.fix.startswith(fix)
 
 
+MAKE = "ros2 pkg create --build-type ament_python bench"
+
+
+def test_files_that_a_terminal_writes_among_its_commands_are_programs_there(tmp_path: Path) -> None:
+    typed = f"{MAKE}\ncat > lamp.py <<'EOF'\n{node('lamp')}EOF\nchmod +x lamp.py\nros2 run bench lamp\n"
+
+    made, program, run = cells(read(tmp_path, shell(typed)))
+
+    assert made.commands[0].text == MAKE
+    assert (program.name, program.executables) == ("lamp", (("bench", "lamp"),))
+    assert run.commands[-1].text == "ros2 run bench lamp"
+
+
 def test_a_launch_file_starts_node_by_node_until_colcon_has_built_its_package(tmp_path: Path) -> None:
     whole = WHOLE.replace("bench", "robot")
     commands = shell("ros2 launch robot lamp.launch.py")
 
-    *_, unbuilt, _, built = cells(
+    *_, unbuilt, built = cells(
         read(tmp_path, named("lamp.py", node("lamp")), whole, commands, "# B\n", BUILD_AND_LAUNCH)
     )
     markup = '```xml title="launch/l.launch.xml"\n<launch/>\n```\n'

@@ -51,6 +51,7 @@ def fence(code: str, info: str = "") -> str:
         fence("%%writefile srv/Cosine.srv\n" + SERVICE, "python"),
         fence("cat > srv/Cosine.srv <<EOF\n" + SERVICE + "EOF\n", "bash"),
         fence("cat <<'END' >src/trig_interfaces/srv/Cosine.srv\n" + SERVICE + "END\n", "bash"),
+        fence("mkdir srv\ncat > srv/Cosine.srv <<EOF\n" + SERVICE + "EOF\n\nchmod +x x.py\n", "bash"),
         '=== "Cosine.srv"\n\n' + "".join(f"    {line}\n" for line in fence(SERVICE).split("\n")),
         fence(SERVICE, 'text filename="src/trig_interfaces/srv/Cosine.srv"'),
         "Create `Cosine.srv`:\n\n" + fence(SERVICE),

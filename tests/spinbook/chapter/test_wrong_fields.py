@@ -79,6 +79,17 @@ def node(setup: str, method: str) -> str:
             )
         ),
         (
+            f"{SRV}{ACTION}"
+            + node("ActionServer(self, F, 'x', f, goal_callback=self.go)", "def go(self, g):\n        1"),
+            "`go` can end without returning a GoalResponse.",
+            "End each way through it with `return GoalResponse.ACCEPT`",
+        ),
+        (
+            MSGS + node("self.add_on_set_parameters_callback(self.on)", "def on(self, p):\n        return True"),
+            "`on` returns `True`, which is not a SetParametersResult.",
+            "End each way through it with `return SetParametersResult(successful=True)`",
+        ),
+        (
             ACTION + node("ActionServer(self, Fibonacci, 'x', self.go)", "async def go(self, h):\n        h.succeed()"),
             "`go` can end without returning the action's result.",
             "End each way through it with `return Fibonacci.Result()`",
