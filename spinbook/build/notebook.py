@@ -7,7 +7,7 @@ import json
 import mimetypes
 import re
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -29,7 +29,12 @@ from spinbook.chapter.links import linked
 from spinbook.chapter.terminal import Command, CommandKind
 from spinbook.course.course import Course
 
-_ALERT = re.compile(r"\[!(NOTE|TIP|IMPORTANT|WARNING|CAUTION)\]\s*$", re.IGNORECASE)
+_ALERT = re.compile(r"\[!(\w+)\][+-]?\s*(?P<title>.*)$")
+#: MyST's roles that show their content: `{kbd}`Ctrl-C``, `{py:class}`~rclpy.node.Node``, `{term}`nodes <node>``.
+_ROLE = re.compile(
+    r"(?P<code>(?<![}`])(?P<mark>`+)(?!`).*?(?<!`)(?P=mark)(?!`))|\{(?P<role>[a-z][\w:.+-]*)\}(?P<ticks>`+)(?P<content>[^`]+)(?P=ticks)"
+)
+_TAGS_OF_ROLES = {"sub": "sub", "subscript": "sub", "sup": "sup", "superscript": "sup", "kbd": "kbd"}
 #: Larger pictures stay out of the notebook, which is read and written as a whole.
 _LARGEST_PICTURE = 4_000_000
 
@@ -78,6 +83,7 @@ class Location:
         return name
 
 
+_FENCES = ("```", "~~~")
 #: Without one of these, prose is plain Markdown: fences, alerts, containers.
 _OF_BOOK_TOOLS = ("```", "~~~", "[!", ":::")
 
@@ -90,7 +96,31 @@ def portable(prose: str, location: Location) -> str:
     """
     if any(mark in prose for mark in _OF_BOOK_TOOLS):
         prose = "\n".join(_plain(prose.split("\n")))
+    if "}`" in prose:
+        prose = "\n".join(_without_roles(prose.split("\n")))
     return linked(prose, location.target, location.references)
+
+
+def _without_roles(lines: Iterable[str]) -> Iterator[str]:
+    """Yield the lines with the content of MyST's roles in place of them, outside fences and code in a line."""
+    is_code = False
+    for line in lines:
+        is_code ^= line.lstrip(" >").startswith(_FENCES)
+        yield line if is_code else _ROLE.sub(_in_words, line)
+
+
+def _in_words(role: re.Match[str]) -> str:
+    """Return a role's content as plain Markdown, maths between dollar signs; code as it is."""
+    if role["code"]:
+        return role[0]
+    content, name = role["content"].strip(), role["role"]
+    if name == "math":
+        return f"${content}$"
+    if tag := _TAGS_OF_ROLES.get(name):
+        return f"<{tag}>{content}</{tag}>"
+    if name in {"term", "abbr", "eq", "cite", "download"}:
+        return content.partition(" <")[0]
+    return f"`{content.lstrip('~!')}`"
 
 
 def _joined(folder: str, path: str) -> str:
@@ -129,7 +159,8 @@ def _edit(token: Token, lines: Sequence[str]) -> tuple[int, int, list[str]] | No
         before, bracket, rest = lines[start].partition("[")
         alert = _ALERT.match(bracket + rest)
         if alert and not before.strip(" >"):
-            return start, start + 1, [f"{before}**{alert[1].capitalize()}**", before.rstrip()]
+            title = alert["title"].strip() or alert[1].capitalize()
+            return start, start + 1, [f"{before}**{title}**", before.rstrip()]
     if token.type == "container_any_open":
         first = lines[start].partition(":")[0]
         end += end < len(lines) and _is_end(lines[end], first)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from html import unescape
 
 import yaml
@@ -127,6 +128,9 @@ def container_name(info: str) -> tuple[str, str]:
         words = inside.strip().split(" ")
         title = pairs(inside).get("title", "")
         return words[0].lstrip(".").lower(), (title or rest).strip()
+    name, bar, title = info.partition(" | ")
+    if bar and " " not in name:
+        return name.lower(), title.strip()
     name, bracket, rest = info.partition("[")
     if bracket and " " not in name.strip():
         return name.strip().lower(), rest.rpartition("]")[0].strip()
@@ -196,6 +200,24 @@ def paired(name: str, properties: dict[str, str], words: str) -> tuple[str, str,
         if name == "comment"
         else ("group", "", title if name[:1].isupper() or name == "code" else "")
     )
+
+
+def part_of_file(text: str, options: Mapping[str, str]) -> str:
+    """Return the lines of a file that a `literalinclude` asks for: `lines`, `start-after`, `end-before` and so on."""
+    lines = text.splitlines()
+    numbers = [number for part in options.get("lines", "").split(",") for number in _numbers(part, len(lines))]
+    lines = [lines[number - 1] for number in numbers if number <= len(lines)] if numbers else lines
+    for key, end, extra in (("start-after", 0, 1), ("start-at", 0, 0), ("end-before", 1, 0), ("end-at", 1, 1)):
+        if words := options.get(key, ""):
+            at = next((i for i, line in enumerate(lines) if words in line), None)
+            lines = lines if at is None else lines[: at + extra] if end else lines[at + extra :]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _numbers(part: str, last: int) -> range:
+    """Return the line numbers of `3`, `3-5` or `3-`."""
+    first, dash, end = part.strip().partition("-")
+    return range(int(first or 1), int(end or (last if dash else first)) + 1) if (first + end).isdigit() else range(0)
 
 
 def in_words(name: str) -> str:

@@ -6,6 +6,7 @@ Each level of the tree is parsed on its own, without its container's indentation
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -35,6 +36,7 @@ Include = Callable[[str], str | None]
 _DEEPEST = 12
 
 #: Containers of plain Markdown. They stay as they are unless a block inside is not plain Markdown.
+_CONTAINERS = frozenset({"container_any_open", "container_slash_open"})
 _HOLDERS = frozenset({"blockquote_open", "bullet_list_open", "ordered_list_open"})
 _MARKDOWN = _HOLDERS | {"heading_open", "paragraph_open"}
 
@@ -57,7 +59,7 @@ class _Reader:
             start, end = token.map
             if start > at:
                 blocks.append(Block(BlockKind.TEXT, tuple(lines[at:start])))
-            if token.type == "container_any_open" and end < len(lines) and set(lines[end].text.strip()) == {":"}:
+            if token.type in _CONTAINERS and end < len(lines) and set(lines[end].text.strip()) == {token.markup[0]}:
                 end += 1
             at = min(max(end, start + 1), len(lines))
             if token.type in _HOLDERS and not any(map(self._is_block, _inside(tokens, index))):
@@ -143,12 +145,39 @@ class _Reader:
     def _literal(self, directive: Directive) -> list[Block]:
         file, lines = directive.argument, directive.lines
         text = self.include(file)
-        if text is None:
-            return [Block(BlockKind.FENCE, lines, fence=make_fence("text", "", lines[0].number))]
         language = directive.options.get("language", "python" if file.endswith(".py") else "text")
-        title = f' title="{file.rsplit("/", 1)[-1]}"' if file.endswith(".py") else ""
+        if text is None:
+            fence = make_fence(language, f'--8<-- "{file}"\n', lines[0].number)
+            return [Block(BlockKind.FENCE, lines, fence=fence, new=as_fence(fence, lines))]
+        piece = attributes.part_of_file(text, directive.options)
+        title = f' title="{file.rsplit("/", 1)[-1]}"' if file.endswith(".py") and piece == text else ""
+        text = piece
         fence = make_fence(language + title, text.rstrip("\n") + "\n", lines[0].number)
         return [Block(BlockKind.FENCE, lines, fence=fence, new=as_fence(fence, lines))]
+
+    def _prompt(self, directive: Directive) -> list[Block]:
+        """Return the fence of sphinx-prompt's `{prompt} bash $`, whose lines stand for what follows the prompt."""
+        fence = make_fence(directive.argument.split(" ")[0], directive.code, directive.lines[0].number)
+        fence = replace(fence, skipped=directive.skipped)
+        return [Block(BlockKind.FENCE, directive.lines, fence=fence, new=as_fence(fence, directive.lines))]
+
+    def _list_table(self, directive: Directive) -> list[Block]:
+        rows: list[list[str]] = []
+        for line in directive.body:
+            item = re.match(r"\s*(?P<row>[*-] +)?(?P<cell>[*-])( +|$)(?P<text>.*)", line.text)
+            if item and (item["row"] or not rows or not line.text[:1].isspace()):
+                rows.append([item["text"]])
+            elif item:
+                rows[-1].append(item["text"])
+            elif rows and line.text.strip():
+                rows[-1][-1] += f" {line.text.strip()}"
+        if not rows:
+            return self._holding(directive)
+        table = [rows[0], ["---"] * len(rows[0]), *rows[1:]]
+        title = [f"**{directive.argument}**", ""] if directive.argument else []
+        texts = [*title, *(f"| {' | '.join(row)} |" for row in table), ""]
+        new = tuple(SourceLine(text, directive.lines[0].number) for text in texts)
+        return [Block(BlockKind.TEXT, directive.lines, title=directive.argument, new=new)]
 
     def _include(self, directive: Directive) -> list[Block]:
         text, number = self.include(directive.argument), directive.lines[0].number
@@ -198,8 +227,10 @@ class _Reader:
 
     def _container_any_open(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         name, argument = attributes.container_name(token.info)
-        ends = set(lines[-1].text.strip()) == {":"} and len(lines) > 1
+        ends = set(lines[-1].text.strip()) in ({":"}, {"/"}) and len(lines) > 1
         inner = list(lines[1:-1] if ends else lines[1:])
+        while token.markup.startswith("/") and inner and re.match(r" {4}\w+:", inner[0].text):
+            inner.pop(0)
         options, skipped = attributes.options([line.text for line in inner])
         if name in _DIRECTIVES:
             return self._directive(name, argument, lines, inner, ends)
@@ -210,6 +241,8 @@ class _Reader:
             inner[:skipped] = [SourceLine(argument, lines[0].number), SourceLine("", lines[0].number)]
             skipped = 0
         return [Block(BlockKind(kind or "group"), lines, self.inside(inner[skipped:]), title, style)]
+
+    _container_slash_open = _container_any_open
 
     def _admonition_open(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         style, title = attributes.admonition(token.info)
@@ -332,6 +365,8 @@ _DIRECTIVES: dict[str, Callable[[_Reader, Directive], list[Block]]] = {
     **dict.fromkeys(attributes.UNSEEN, _Reader._unseen),
     "literalinclude": _Reader._literal,
     "include": _Reader._include,
+    "prompt": _Reader._prompt,
+    "list-table": _Reader._list_table,
     "image": _Reader._image,
     "figure": _Reader._image,
     "mermaid": _Reader._mermaid,

@@ -3,7 +3,7 @@
 Each addition is a block rule of markdown-it, so fences and code in a line are never mistaken for one:
 
 - containers `:::note[Title]`, `::: tip`, `:::{warning}` (Docusaurus, VitePress, MyST, Quarto): mdit-py-plugins
-- `!!! note "Title"`, `??? tip` (MkDocs): mdit-py-plugins, and tabs `=== "Title"` (pymdownx.tabbed)
+- `!!! note "Title"`, `??? tip` (MkDocs): mdit-py-plugins, tabs `=== "Title"` (pymdownx.tabbed), and `/// note | Title`
 - tags of MDX on lines of their own, `<Tabs>`, `<TabItem label="Python">`, and `import …`, `export …`, `{/* … */}`
 - `{% tab %}`, `{% hint %}` (Jekyll, GitBook), Hugo's `{{< tab >}}`, kramdown's `{: .note }`
 - docsify's `!> text`, MyST's `(label)=` and `+++`
@@ -54,6 +54,7 @@ def parser() -> MarkdownIt:
     md.core.ruler.enableOnly(["normalize", "block"])
     md.use(admon_plugin)
     md.use(container_plugin, "any", validate=lambda params, *_: bool(params.strip()))
+    md.use(container_plugin, "slash", marker="/", validate=lambda params, *_: bool(params.strip()))
     md.block.ruler.before("container_any", "spinbook_line", _line, _ALT)
     md.block.ruler.before("container_any", "spinbook_tab", _tab, _ALT)
     md.block.ruler.before("html_block", "spinbook_tag", _tag, _ALT)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import os
 import sys
 import time
@@ -168,10 +169,15 @@ class Session:
         return file
 
     def instance(self, name: str) -> str:
-        """Return the name of a node that `ros2 run` starts: a second instance in one cell has a name of its own."""
-        self.run_here.append(name)
-        count = self.run_here.count(name)
-        return f"{name}_{count}" if count > 1 else name
+        """Return the name of a node that `ros2 run` starts: one of its own if the cell has one that still runs."""
+        names = (name if count == 1 else f"{name}_{count}" for count in itertools.count(1))
+        free = next(name for name in names if name not in self.run_here or not self._runs(name))
+        self.run_here.append(free)
+        return free
+
+    def _runs(self, name: str) -> bool:
+        node = self.nodes.get(name)
+        return node is not None and node.process.status.running
 
     def new_errors(self) -> list[NodeError]:
         """Return what has newly gone wrong in nodes, or silently in cells; meant if its commands expected it."""

@@ -144,10 +144,10 @@ def test_figures_have_their_captions_and_other_places_the_heading_above(course: 
     assert "More. See [here](#Call-one)." in shown
 
 
-def test_code_and_other_roles_stay_as_they_are(course: Course) -> None:
+def test_code_stays_as_it_is_and_other_roles_show_their_content(course: Course) -> None:
     assert "Not here: `{ref}` is code, and so is `[](my-setup)`." in prose(course, "first")
     assert "{ref}`my-setup` in a fence" in prose(course, "first")
-    assert "{sub}`other`" in prose(course, "second")
+    assert "<sub>other</sub>" in prose(course, "second")
 
 
 def test_on_the_site_they_lead_to_the_headings_ids(course: Course) -> None:

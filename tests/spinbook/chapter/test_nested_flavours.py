@@ -38,6 +38,7 @@ FLAVOURS = {
     "hugo-notice": (('{{% notice tip "Dry" %}}', "WORDS", "{{% /notice %}}"), "Dry"),
     "hugo-folded": (('{{< expand "More" >}}', "WORDS", "{{< /expand >}}"), None),
     "docsify": (("?> WORDS",), "Tip"),
+    "mkdocs-blocks": (("/// tip | Calm", "    open: true", "", "WORDS", "///"), "Calm"),
     "mkdocs-folded": (("??? tip", "    WORDS"), None),
     "mkdocs-tab": (('=== "Python"', "    WORDS"), None),
     "mdx-tabs": (("<Tabs>", '<TabItem label="Python">', "", "WORDS", "", "</TabItem>", "</Tabs>"), None),

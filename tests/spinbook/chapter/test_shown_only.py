@@ -190,3 +190,32 @@ def test_an_executor_needs_init_too(tmp_path: Path) -> None:
     (problem,) = reading(tmp_path, f'```python title="a.py"\n{code}```\n').problems
 
     assert (problem.line, problem.problem) == (12, "nothing calls `rclpy.init` before this, so the program would fail.")
+
+
+@pytest.mark.parametrize(
+    ("options", "code"),
+    [
+        (":lines: 1,3-", "a = 1\nc = 3\n"),
+        (":start-after: a =\n:end-before: c", "b = 2\n"),
+        (":start-at: b\n:end-at: b", "b = 2\n"),
+        ("", "a = 1\nb = 2\nc = 3\n"),
+    ],
+)
+def test_a_literalinclude_shows_the_lines_that_it_asks_for(tmp_path: Path, options: str, code: str) -> None:
+    (tmp_path / "values.py").write_text("a = 1\nb = 2\nc = 3\n")
+
+    (cell,) = cells(read(tmp_path, f"```{{literalinclude}} values.py\n{options}\n```\n"))
+    missing = reading(tmp_path, "```{literalinclude} none.py\n```\n").problems
+
+    assert cell.source.endswith(code)
+    assert [item.problem for item in missing] == ["the fence includes `none.py`, and there is no such file."]
+
+
+def test_prompts_and_tables_of_sphinx_are_read(tmp_path: Path) -> None:
+    table = "```{list-table} Two\n* - a\n  - b\n* - long\n    text\n  - d\n```\n"
+
+    chapter = read(tmp_path, "```{prompt} bash $\nros2 node list\n```\n" + table)
+
+    (prompt,) = cells(chapter)
+    assert [command.text for command in prompt.commands] == ["ros2 node list"]
+    assert "**Two**\n\n| a | b |\n| --- | --- |\n| long text | d |" in chapter.cells[-1].source

@@ -132,12 +132,14 @@ def test_a_program_of_an_earlier_chapter_is_saved_for_ros2_run(kernel: Kernel) -
 
 
 def test_a_node_of_the_course_s_package_runs_by_name_before_it_is_built(kernel: Kernel) -> None:
-    kernel.run("%%node greeting\nprint('hello')\n")
+    kernel.run("%%node greeting\nimport time\nprint('hello')\ntime.sleep(60)\n")
 
-    twice = kernel.run("%ros2 run robot greeting\n%ros2 run robot greeting").text
+    run = "%ros2 --until hello run robot greeting"
+    twice, again = kernel.run(f"{run}\n{run}").text, kernel.run(run).text
 
-    assert "hello" in twice
-    assert "greeting_2 has ended (exit code 0)" in twice
+    assert "greeting continues in the background" in twice
+    assert "greeting_2 continues in the background" in twice
+    assert "(restarting greeting)\n" in again
 
 
 def test_the_method_of_a_class_that_spins_is_called_and_its_answer_printed(kernel: Kernel) -> None:
