@@ -236,7 +236,7 @@ def _of_its_own(last: LastError, sources: Mapping[str, str]) -> str:
     if not last.raised_there or "await_or_execute(srv.callback" not in last.traceback:
         return ""
     if "_set_parameters" in last.traceback:
-        return "To refuse a value, return SetParametersResult(successful=False, reason='…'): an exception ends the node."
+        return "To refuse a value, return SetParametersResult(successful=False, reason='…'): an error ends the node."
     return "An exception in a callback ends the whole node: say in the response what is wrong, and return it."
 
 
