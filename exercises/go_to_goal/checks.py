@@ -12,22 +12,52 @@ from grader.checking import Run, check
 POSE, COMMANDS = "/turtle1/pose", "/turtle1/cmd_vel"
 
 
+def distances_of(ahead: Run) -> list[float]:
+    """Return how far the turtle is from the goal at each pose (m)."""
+    return [math.dist(point, (8.5, 7.0)) for _, point in ahead.trajectory(POSE, "x", "y")]
+
+
+def comes_closer(ahead: Run) -> bool:
+    """Return whether the turtle leaves most of its way behind."""
+    distances = distances_of(ahead)
+    return min(distances) <= 0.4 * distances[0]
+
+
 @check(
-    points=10,
-    hint="What does on_pose publish for each pose, and do the numbers depend on the goal?",
+    points=3,
+    hint="What does on_pose publish for each pose, once there is a goal?",
     todo="Two callbacks work together. on_goal keeps the goal in an attribute of the node. on_pose is called for "
-    "each pose: it compares the pose with the goal, makes a new Twist, fills in linear.x (how fast ahead) and "
-    "angular.z (how fast it turns), and publishes it. A command holds for one second, so the turtle stands "
-    "still if no more come. Both numbers are floats. Log them, with the pose, for the first poses after a "
-    "goal: are they other than zero, and do they change?",
+    "each pose: with a goal, it makes a new Twist, fills in linear.x (how fast ahead) and angular.z (how fast "
+    "it turns), and publishes it. Both numbers are floats. Log them for the first poses after a goal: are "
+    "they other than zero?",
     rule=("pose", "goal", "command"),
 )
 def test_drives(ahead: Run) -> None:
-    """It reads /goal and /turtle1/pose, and its Twist messages on /turtle1/cmd_vel bring the turtle closer."""
+    """It reads /goal and /turtle1/pose, and a goal makes it publish Twist messages on /turtle1/cmd_vel that move."""
     ahead.must_have_interface()
     ahead.must_publish(COMMANDS)
-    distances = [math.dist(point, (8.5, 7.0)) for _, point in ahead.trajectory(POSE, "x", "y")]
-    if min(distances) > 0.4 * distances[0]:
+    moves = [at for at, command in ahead.trajectory(COMMANDS, "linear.x", "angular.z") if any(command)]
+    if not moves:
+        ahead.wrong_at(None, "linear.x and angular.z are 0 in every command.", "", "commands that move", "zeros")
+    if moves[0] < 0.5 and not comes_closer(ahead):
+        text = f"your node drives at {moves[0]:.2f} s, before the first goal, and not to the goal later."
+        ahead.wrong_at(None, text, "", "a goal that makes it drive", "a node that drives anyway")
+
+
+@check(
+    points=7,
+    hint="Do the numbers that on_pose publishes depend on the goal and on the pose?",
+    todo="on_pose compares the pose with the goal. A command holds for one second, so the turtle stands still if "
+    "no more come: publish one for each pose. Log linear.x and angular.z, with the pose, for the first poses "
+    "after a goal. Does the turtle turn towards the goal, or away from it? A positive angular.z turns left, and "
+    "atan2 takes the difference in y first.",
+    depends=[test_drives],
+    rule="reach",
+)
+def test_comes_closer(ahead: Run) -> None:
+    """Its commands bring the turtle closer to the goal."""
+    distances = distances_of(ahead)
+    if not comes_closer(ahead):
         text = f"the goal was {distances[0]:.2f} m away, and the turtle never got closer than {min(distances):.2f} m."
         if (count := len(ahead.messages_on(COMMANDS))) < len(distances) / 50:
             text += f" Commands that your node published in 11 s: {count}. Each holds for 1 s only."
@@ -46,7 +76,7 @@ def test_drives(ahead: Run) -> None:
     "if that is positive. Bring the difference back to between -pi and pi: without that, the turtle turns the "
     "long way round, or for ever. Drive ahead only while the goal is in front. The plot of your check shows "
     "the path: does it start in the right direction, does it circle, or does it end too early?",
-    depends=[test_drives],
+    depends=[test_comes_closer],
     rule="reach",
 )
 def test_reaches_the_goal(ahead: Run) -> None:
@@ -61,7 +91,7 @@ def test_reaches_the_goal(ahead: Run) -> None:
     "for a while. When the distance to the goal is small enough, publish a new Twist() without setting "
     "anything: all its numbers are 0.0. Do it once, and then forget the goal, so that the turtle does not "
     "turn on the spot for ever: very close to the goal, the direction to it is chance.",
-    depends=[test_drives],
+    depends=[test_comes_closer],
     misconception="never stops",
     rule="stop",
 )
@@ -83,7 +113,7 @@ def test_stops_at_the_goal(ahead: Run) -> None:
     "away with a factor of 1 is 10 m/s. Limit each number just before you publish it, in both directions: "
     "a turn to the right is negative, and -5 is too fast as well. Log the largest values that you "
     "publish. Limit after all factors and sums, not before.",
-    depends=[test_drives],
+    depends=[test_comes_closer],
     misconception="too fast",
     rule="speed",
 )

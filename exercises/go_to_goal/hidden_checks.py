@@ -8,7 +8,8 @@ import math
 from grader.checking import Run, check, fail
 
 POSE, COMMANDS = "/turtle1/pose", "/turtle1/cmd_vel"
-DRIVES = ["test_drives"]
+#: What shows that it works at all, and what shows that it steers.
+DRIVES, COMES_CLOSER = ["test_drives"], ["test_comes_closer"]
 CARRIED, AGAIN = 11.0, 12.5  # s after the start: somebody carries the turtle away, and publishes the same goal again
 
 #: The goal counts as reached here (m). Whether the turtle gets within 0.1 m is judged by the checks of reaching alone.
@@ -45,7 +46,7 @@ def test_stands_still_without_a_goal(no_goal: Run) -> None:
     "-2 pi and 2 pi: from 3.0 to -3.0 it is -6.0, nearly a whole turn to the right, where 0.28 to the "
     "left would do. Bring the difference back, not the two angles: subtract first, then take "
     "atan2(sin(difference), cos(difference)), or add or subtract 2 pi while it is outside.",
-    depends=DRIVES,
+    depends=COMES_CLOSER,
     misconception="angle not wrapped",
     rule="shorter_way",
 )
@@ -70,7 +71,7 @@ def test_turns_the_shorter_way(short_way: Run) -> None:
     "sign change with each pose? Then it needs enough speed: 10 s for up to 10 m. A speed that is "
     "proportional to the distance alone may become very small near the goal; is it inside 0.1 m when you "
     "stop?",
-    depends=DRIVES,
+    depends=COMES_CLOSER,
     rule="reach",
 )
 def test_reaches_a_goal_behind(behind: Run) -> None:
@@ -86,7 +87,7 @@ def test_reaches_a_goal_behind(behind: Run) -> None:
     "distance, so that it is slow when it gets there. Driving and turning at once makes curves: drive "
     "ahead only while the angle to the goal is small, for example with a factor of cos(angle) that is "
     "never negative.",
-    depends=DRIVES,
+    depends=COMES_CLOSER,
     rule="not_past",
 )
 def test_does_not_go_past_the_goal(ahead: Run) -> None:
@@ -102,7 +103,7 @@ def test_does_not_go_past_the_goal(ahead: Run) -> None:
     "become false again in on_goal, or the second goal is never driven to. Simplest is one attribute: "
     "self.goal, which on_goal sets and which becomes None at the goal. Do not end the program, destroy "
     "the subscription or stop the timer at the first goal.",
-    depends=DRIVES,
+    depends=COMES_CLOSER,
     rule=("stop", "newest", "reach"),
 )
 def test_reaches_the_next_goal(next_goal: Run) -> None:
@@ -117,7 +118,7 @@ def test_reaches_the_next_goal(next_goal: Run) -> None:
     "with the very next pose. If your node computes something once per goal, such as a direction, a start "
     "or a state (turn, then drive), compute it again in on_goal. A loop in on_goal that drives until the "
     "turtle is there keeps the next goal waiting.",
-    depends=DRIVES,
+    depends=COMES_CLOSER,
     misconception="sticks to the first goal",
     rule=("newest", "reach"),
 )
@@ -134,7 +135,7 @@ def test_takes_a_new_goal_on_its_way(new_goal: Run) -> None:
 @check(
     points=3,
     hint="Every message on /goal is a new goal, whatever it says.",
-    depends=DRIVES,
+    depends=COMES_CLOSER,
     rule=("newest", "reach"),
 )
 def test_same_goal_again(short_way: Run) -> None:
@@ -149,7 +150,7 @@ def test_same_goal_again(short_way: Run) -> None:
     "the old goal, it drives back. When the turtle is there, publish the zeros, and set self.goal to "
     "None: on_pose then returns at once until on_goal gets another one. A flag does it, too, if on_goal "
     "resets it.",
-    depends=DRIVES,
+    depends=COMES_CLOSER,
     misconception="a goal is never done",
     rule="done",
 )
@@ -164,7 +165,7 @@ def test_forgets_a_goal_that_was_reached(short_way: Run) -> None:
 @check(
     points=3,
     hint="Compare with the newest pose for each command.",
-    depends=DRIVES,
+    depends=COMES_CLOSER,
     misconception="drives blind",
     rule=("newest_pose", "reach"),
 )
@@ -194,7 +195,7 @@ def test_keeps_steering(new_goal: Run) -> None:
 @check(
     points=2,
     hint="Turn on the spot as long as the goal is behind the turtle.",
-    depends=DRIVES,
+    depends=COMES_CLOSER,
     rule="not_away",
 )
 def test_turns_before_it_drives(behind: Run) -> None:
@@ -208,7 +209,7 @@ def test_turns_before_it_drives(behind: Run) -> None:
 @check(
     points=2,
     hint="Let the speed depend on the distance.",
-    depends=DRIVES,
+    depends=COMES_CLOSER,
     rule="slow_down",
 )
 def test_slows_down(ahead: Run) -> None:

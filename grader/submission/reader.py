@@ -132,7 +132,16 @@ def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:
     versions = upload.record.get("versions")
     python = versions.get("python", "") if isinstance(versions, dict) else ""
     newer = newer_than_this(python) if isinstance(python, str) else ""
-    return replace(read, warning=warning, newer_python=newer or read.newer_python)
+    notes = (*read.notes, *_hints_taken(upload, exercise))
+    return replace(read, warning=warning, notes=notes, newer_python=newer or read.newer_python)
+
+
+def _hints_taken(upload: Upload, exercise: Exercise) -> tuple[str, ...]:
+    """Return how many further hints the record counts, if the exercise counts them."""
+    hints = upload.record.get("hints")
+    if not exercise.count_hints or not isinstance(hints, dict):
+        return ()
+    return (f"Hints taken: {sum(steps for steps in hints.values() if isinstance(steps, int) and 0 < steps < 10)}.",)
 
 
 def _code(upload: Upload, exercise: Exercise) -> Code:

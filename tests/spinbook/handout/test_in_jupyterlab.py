@@ -49,7 +49,11 @@ def works_through(
         check.wait_for(state="attached", timeout=timeout_ms)
         expect(check).to_contain_text(re.compile(r"\b0 of \d+ public checks, 0 of \d+ points"))
         expect(check.locator(".sb-failed")).to_have_count(1)
-        expect(check).to_contain_text("Where to look")
+        for step in ("Where to look", "What to do"):
+            unfolds = check.locator("details").filter(has_text=step).first
+            expect(unfolds.locator(":scope > :not(summary)").first).to_be_hidden()
+            unfolds.locator("summary").click()
+            expect(unfolds.locator(":scope > :not(summary)").first).to_be_visible()
         check.screenshot(path=pictures / "2-starter.png")
         finding = check.locator(".sb-failed").first
         assert finding.evaluate("it => getComputedStyle(it).textAlign") in ("left", "start"), (

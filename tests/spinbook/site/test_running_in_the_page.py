@@ -172,6 +172,7 @@ def test_an_exercise_is_checked_in_its_page(reader: BrowserContext, address: str
         expect(page.locator(".check-result")).to_contain_text("Each hint that you unfold is counted.")
         failed.get_by_text("Where to look").click()
         expect(failed.get_by_text("Which line turns")).to_be_visible()
+        failed.get_by_text("What to do").click()
         assert shown.violations() == []
         assert not shown.scrolls_sideways()
         check(solutions / "solution.py", "9 of 9 public checks, 37 of 37 points")
@@ -193,7 +194,7 @@ def test_an_exercise_is_checked_in_its_page(reader: BrowserContext, address: str
         downloaded = Path(download.value.path()).read_text()
         assert downloaded.startswith((solutions / "solution.py").read_text())
         title = "Each joint's velocity is its change of position over the time between the two stamps."
-        assert taken_in_page(downloaded) == {title: 1}
+        assert taken_in_page(downloaded) == {title: 2}
 
         page.reload()
         page.get_by_role("button", name="Edit and check the starter here").click()

@@ -72,6 +72,8 @@ def test_hints_are_counted_if_the_exercise_says_so(folder: Path) -> None:
     declaration.write_text(declaration.read_text().replace("points = 100\n", "points = 100\ncount_hints = true\n"))
     assert submitted("--no-check").exit_code == 0
     assert upload().record["hints"] == {"It answers.": 2}
+    read_back = read(UPLOAD, load("exercises/joint_velocity"))
+    assert read_back.notes == ("Hints taken: 2.",), "these are in the grade's message, which the instructor reads"
 
 
 def test_a_notebook_is_handed_in_with_its_cell_and_as_a_whole(folder: Path) -> None:
