@@ -6,6 +6,7 @@ Each fixture is a scenario of scenarios.py; hidden_checks.py goes through the se
 from __future__ import annotations
 
 import itertools
+import math
 
 from grader.checking import Run, check
 
@@ -40,17 +41,30 @@ def must_report_every_end(run: Run) -> None:
 
 
 @check(
-    points=8,
-    hint="Where is send_goal_async() called, and which position does the goal hold then?",
-    todo="An ActionClient(self, MoveJoint, '/move_joint') in __init__, a MoveJoint.Goal with the target as its "
-    "position, and send_goal_async(goal) are all that is needed. The target is the field data of the "
-    "message on /targets. Log it just before you send: does the line appear? If server_is_ready() is "
-    "false, keep the target, and let the timer try again. Do not use send_goal(), which waits.",
+    points=3,
+    hint="Where is send_goal_async() called?",
+    todo="An ActionClient(self, MoveJoint, '/move_joint') in __init__, a MoveJoint.Goal, and send_goal_async(goal) "
+    "are all that is needed. Log a line just before you send: does it appear, once for each target? If "
+    "server_is_ready() is false, keep the target, and let the timer try again. Do not use send_goal(), which "
+    "waits.",
     rule=("targets", "action"),
 )
 def test_sends_a_goal(succeeds: Run) -> None:
-    """It sends a goal for /move_joint with the position that it received on /targets."""
+    """It sends a goal for /move_joint when a position arrives on /targets."""
     succeeds.must_have_interface("/targets", "/move_joint")
+    succeeds.must_match_goals("position", tolerance=math.inf)
+
+
+@check(
+    points=5,
+    hint="Which position does the goal hold when it is sent?",
+    todo="The target is the field data of the message on /targets, in radians, as the goal's position is. Log both "
+    "just before you send: are they the same? A MoveJoint.Goal that nobody fills in has the position 0.0.",
+    depends=[test_sends_a_goal],
+    rule="goal",
+)
+def test_goal_is_the_target(succeeds: Run) -> None:
+    """The goal's position is the one that arrived on /targets."""
     succeeds.must_match_goals("position")
 
 
@@ -96,7 +110,7 @@ def test_publishes_progress(succeeds: Run) -> None:
     "deque.popleft(). Something must send the next goal: call the method that sends in the callback of "
     "/targets, and again when a goal has ended, in whatever way. If only the timer sends, targets wait "
     "too long; if nothing but the callback of /targets sends, the last ones wait for ever.",
-    depends=[test_sends_a_goal],
+    depends=[test_goal_is_the_target],
     misconception="loses targets",
     rule=("order", "one", "goal", "never_wait"),
 )

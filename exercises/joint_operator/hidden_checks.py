@@ -150,7 +150,7 @@ def test_canceled(never_ends: Run) -> None:
     "target arrived or the goal was sent: the server may take a while. Use self.get_clock().now(), and "
     "set the time anew for every goal: one that is left over from the goal before comes too early for "
     "this one.",
-    depends=SENDS,
+    depends=["test_asks_to_cancel"],
     misconception="cancels too early",
     rule=("cancel", "clock"),
 )

@@ -122,7 +122,7 @@ HUB_CPU_S, LEAST_HUB_CPU_S, HUB_CPU_S_PER_MESSAGE = 10.0, 1.0, 0.002
 
 #: The same for what the submission itself computes. The course's solutions need 0.1 s per scenario; the least is more
 #: than a program may take to start.
-CPU_S, LEAST_CPU_S, CPU_S_PER_MESSAGE = 100.0, 7.0, 0.001
+CPU_S, LEAST_CPU_S, CPU_S_PER_MESSAGE = 100.0, 10.0, 0.001
 
 
 @dataclass(frozen=True)
