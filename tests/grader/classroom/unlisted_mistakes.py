@@ -192,11 +192,12 @@ UNLISTED: dict[str, dict[str, Unlisted]] = {
         "three_ms": Unlisted({"FASTEST = 2.0": "FASTEST = 3.0"}, ("too_fast",)),
         "turn_4": Unlisted({"FASTEST_TURN = 2.0": "FASTEST_TURN = 4.0"}, ("turns_too_fast",)),
         "slowest": Unlisted({"min(distance": "min(0.1 * distance"}, ("too_slow",)),
-        "turns_wrong_way": Unlisted({"min(4.0 * turn": "min(-4.0 * turn"}),
+        "turns_wrong_way": Unlisted({"min(4.0 * turn": "min(-4.0 * turn"}, ("turns_away",)),
         "swaps_xy": Unlisted(
-            {"self.goal.x - pose.x, self.goal.y - pose.y": "self.goal.y - pose.x, self.goal.x - pose.y"}
+            {"self.goal.x - pose.x, self.goal.y - pose.y": "self.goal.y - pose.x, self.goal.x - pose.y"},
+            ("swaps_x_and_y",),
         ),
-        "backwards": Unlisted({"command.linear.x = min": "command.linear.x = -min"}),
+        "backwards": Unlisted({"command.linear.x = min": "command.linear.x = -min"}, ("drives_backwards",)),
     },
     "calibration": {
         "gives_up_2s": Unlisted({"seconds=5.0": "seconds=2.0"}, ("gives_up_too_early",)),
