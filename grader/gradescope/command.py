@@ -13,7 +13,7 @@ import click
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import COURSE, NoExercise, find, load
 from grader.gradescope.own_wheel import SOURCE, NoWheel, as_wheel, is_checkout, wheel_contents
-from grader.gradescope.pins import hashed_pins, pins
+from grader.gradescope.pins import LOCKS, hashed_pins, pins
 from grader.grading.reference import solution_file
 from grader.sandbox.middleware import MiddlewareUnavailable
 from grader.sandbox.program import Isolation
@@ -37,7 +37,10 @@ def bundle(exercise: Exercise, isolation: Isolation | None = None) -> bytes:
 def autograder_files(exercise: Exercise, isolation: Isolation | None = None) -> dict[str, bytes]:
     """Return the content of each file of an autograder, by name. Raises as `bundle` does."""
     name, wheel = as_wheel(wheel_contents())
-    course = {name: wheel, "pins.txt": (hashed_pins(SOURCE) if is_checkout() else pins()).encode()}
+    pinned = (
+        {file: hashed_pins(SOURCE / lock) for file, lock in LOCKS.items()} if is_checkout() else {"pins.txt": pins()}
+    )
+    course = {name: wheel, **{file: text.encode() for file, text in pinned.items()}}
     # The wheels of what is compiled fit every container that PyPI's ROS 2 fits.
     course |= {f"wheels/{name}": content for name, content in compiled_wheels().items()}
     if exercise.packages:

@@ -13,11 +13,11 @@ from packaging.utils import canonicalize_name
 #: The distribution that an autograder installs, with ROS 2 from PyPI.
 NAME, EXTRA = "spinbook", "grade"
 
-#: A checkout's pins, which hold for every Python.
-LOCKS = ("constraints.txt", "constraints-ros.txt")
+#: File of pins -> a checkout's, for every Python. Two, so that one is installed while the other is downloaded.
+LOCKS = {"pins.txt": "constraints.txt", "pins-ros.txt": "constraints-ros.txt"}
 
-#: Needed only by ROS 2's own code generators, which do not run there.
-WITHOUT_WHEEL = {"empy"}
+#: Needed only by ROS 2's own code generators, and to build packages: neither is done there.
+NOT_USED = {"empy", "setuptools"}
 
 #: The versions of Python that its container may have.
 PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14")
@@ -32,11 +32,10 @@ def pins() -> str:
     return "".join(f"{name}=={distribution.version}\n" for name, distribution in installed.items() if distribution)
 
 
-def hashed_pins(checkout: Path) -> str:
-    """Return what a checkout's pins with hashes (pip, "Secure installs") say of everything that is needed."""
-    names = needed() - WITHOUT_WHEEL
-    locks = [(checkout / lock).read_text() for lock in LOCKS]
-    entries = (entry for lock in locks for entry in re.split(r"^(?=[A-Za-z0-9])", lock, flags=re.MULTILINE))
+def hashed_pins(lock: Path) -> str:
+    """Return what a file of pins with hashes (pip, "Secure installs") says of everything that is needed."""
+    names = needed() - NOT_USED
+    entries = re.split(r"^(?=[A-Za-z0-9])", lock.read_text(), flags=re.MULTILINE)
     return "".join(entry for entry in entries if canonicalize_name(re.split("[=; ]", entry, maxsplit=1)[0]) in names)
 
 

@@ -100,7 +100,7 @@ def test_the_zip_holds_the_two_scripts_and_of_the_solutions_only_one(autograder:
 
 
 def test_what_the_container_installs_is_pinned_with_hashes_for_every_python(autograder: Path) -> None:
-    pins = (autograder / "source" / "course" / "pins.txt").read_text()
+    pins = "".join((autograder / "source" / "course" / name).read_text() for name in ("pins.txt", "pins-ros.txt"))
     entries = re.split(r"^(?=[a-z])", pins, flags=re.MULTILINE)[1:]
     names = {entry.partition("==")[0] for entry in entries}
     assert {
@@ -111,7 +111,16 @@ def test_what_the_container_installs_is_pinned_with_hashes_for_every_python(auto
         "ros-jazzy-rclpy",
         "ros-test-msgs",
     } <= names
-    assert not names & {"sphinx", "mypy", "jupyterlab", "empy", "spinbook", "ros-fastrtps", "ros-rmw-fastrtps-cpp"}
+    assert not names & {
+        "sphinx",
+        "mypy",
+        "jupyterlab",
+        "empy",
+        "setuptools",
+        "spinbook",
+        "ros-fastrtps",
+        "ros-rmw-fastrtps-cpp",
+    }
     assert all("--hash=sha256:" in entry for entry in entries)
 
 
