@@ -92,15 +92,17 @@ def test_offset_of_zero(again: Run) -> None:
     misconception="mixes joints up",
     rule=("order", "success", "offsets"),
 )
-def test_answers_in_another_order(several: Run) -> None:
+def test_answers_in_another_order(several: Run, appears: Run) -> None:
     """Each offset is published with the name of its own joint, whatever the order of the answers."""
     several.must_publish(OFFSETS, count=5)
-    offsets = {call.request["joint"]: call.response["offset"] for call in several.calls(by="node") if call.response}
-    for message in several.messages_on(OFFSETS):
-        got = dict(zip(message.fields["name"], message.fields["position"], strict=False))
-        if len(got) != 1 or not got.items() <= offsets.items():
-            text = f"expected the offset of one joint, one of {offsets}, got {got}."
-            several.wrong_at(message.at, text, "", f"one of {offsets}", got)
+    for run in (several, appears):
+        offsets = {call.request["joint"]: call.response["offset"] for call in run.calls(by="node") if call.response}
+        run.must_publish(OFFSETS, count=len(offsets))
+        for message in run.messages_on(OFFSETS):
+            got = dict(zip(message.fields["name"], message.fields["position"], strict=False))
+            if len(got) != 1 or not got.items() <= offsets.items():
+                text = f"expected the offset of one joint, one of {offsets}, got {got}."
+                run.wrong_at(message.at, text, "", f"one of {offsets}", got)
 
 
 @check(

@@ -77,7 +77,7 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
             three,
             duration=4.0,
             rate=20.0,
-            servers=server(found(0.01, 0.5), appears=2.02),
+            servers=server(found(0.01, 0.5), found(0.02, 0.5), found(0.03, 0.5), appears=2.02),
         ),
         Scenario(
             "appears_very_late",
