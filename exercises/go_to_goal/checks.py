@@ -64,6 +64,10 @@ def test_comes_closer(ahead: Run) -> None:
         way = [item for item in ahead.trajectory(POSE, "x", "y", "theta") if item[0] >= 0.5]
         turns = [(at, math.remainder(math.atan2(7.0 - y, 8.5 - x) - theta, math.tau)) for at, (x, y, theta) in way]
         cause = ahead.steers_away(COMMANDS, "angular.z", turns)
+        fastest, (speed, _) = max(ahead.trajectory(COMMANDS, "linear.x", "angular.z"), key=lambda item: item[1][0])
+        off = next((angle for at, angle in turns if at >= fastest), 0.0)
+        if speed > 0.01 and abs(off) > 0.3:
+            text += f" While it drives, the goal is {abs(off):.2f} rad to its {'left' if off > 0 else 'right'}."
         closest = ahead.trajectory(POSE, "x", "y")[distances.index(min(distances))][0]
         ahead.wrong_at(closest, text, "", "a turtle that comes closer to the goal", f"{min(distances):.2f} m", cause)
 

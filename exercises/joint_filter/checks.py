@@ -9,6 +9,7 @@ import math
 from dataclasses import replace
 
 from grader.checking import Exchange, Run, check, each
+from grader.checking.answers import pattern
 from grader.recording.recording import ReceivedMessage
 
 #: By how much a position may differ (rad).
@@ -40,7 +41,8 @@ def must_be_between(run: Run) -> None:
                 if not lowest - TOLERANCE <= got <= highest + TOLERANCE:
                     between = f"{lowest:.3f} to {highest:.3f} rad"
                     text = f"a smooth position is between those that arrived, {between}; got {got:.3f} rad."
-                    run.wrong(exchange, text, name, between, f"{got:.3f} rad")
+                    cause = pattern(run, "position", "name", "rad")
+                    run.wrong(exchange, text, name, between, f"{got:.3f} rad", cause)
 
     each(run, judge)
 
@@ -157,7 +159,7 @@ def test_gain_of_the_start(started: Run) -> None:
 
 @check(
     points=8,
-    hint="Which gain does the formula use for the next message? Read the parameter for each one.",
+    hint="Which gain does the formula use for the next message, and do the smooth positions stay as they are?",
     todo="get_parameter('gain').value is the gain as it is now. Read it in the callback for each message, "
     "rather than once in __init__. If you would rather keep it in an attribute, change that in a post-set "
     "callback, when the new value counts: the on-set callback runs before it is set, and get_parameter() "

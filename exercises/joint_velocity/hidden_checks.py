@@ -193,7 +193,7 @@ def test_joint_that_comes_back(missing_joint: Run) -> None:
 
 @check(
     points=3,
-    hint="Publish nothing when dt is 0.",
+    hint="Publish nothing when dt is 0, but remember the message for the next one.",
     depends=PUBLISHES,
     misconception="divides by dt = 0",
     rule=("same_stamp", "clock"),
@@ -205,7 +205,7 @@ def test_repeated_stamp(repeated_stamp: Run) -> None:
 
 @check(
     points=2,
-    hint="Publish nothing when dt is negative.",
+    hint="Publish nothing when dt is negative, but remember the message for the next one.",
     depends=PUBLISHES,
     misconception="negative dt",
     rule=("same_stamp", "clock", "both_parts"),
@@ -258,7 +258,7 @@ def test_not_finite(not_finite: Run) -> None:
 
 @check(
     points=1,
-    hint="After an empty message every joint is new.",
+    hint="Remember an empty message, too: after it, every joint is new.",
     depends=PUBLISHES,
     rule=("empty", "nothing_left", "missing", "remember", "new"),
 )

@@ -48,7 +48,7 @@ def test_publishes_the_description(started: Run, changed: Run) -> None:
         got = started.messages_on()[0].fields["data"]
         text = "the text is not the one that the parameter holds, neither at the start nor after a change: "
         text += f"expected {started.messages_on(reference=True)[0].fields['data']}, got {got}."
-        started.wrong_at(None, text, "", "the parameter's text", got)
+        changed.wrong_at(None, text, "", "the parameter's text", got)
 
 
 @check(

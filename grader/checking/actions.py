@@ -42,7 +42,7 @@ _TOO_LATE = Cause(
 )
 _NEVER = Cause("The goal never ended.", *hints("never_ends"))
 _STUCK = Cause(
-    "The goal never ended. Your node did nothing after it began to execute the goal. Does execute wait for the node's "
+    "The goal never ended. Your node did nothing more while it executed the goal. Does execute wait for the node's "
     "clock, with one thread? That thread then reads no clock: run the node in a MultiThreadedExecutor.",
     *hints("one_thread"),
 )
@@ -277,18 +277,21 @@ def _why(run: RecordedRun, goal: Goal, expected: str) -> Cause:
         return _why_not_canceled(goal, cancel, got)
     if expected == "succeeded" and got == "aborted":
         return _FORGOT if _NO_STATE in run.recording.log else _GAVE_UP
-    if _ended_at(goal) is not None:
+    if _ended_at(goal) is not None or expected == "aborted":
         return UNKNOWN
     return _STUCK if _does_nothing_after(run, goal) else _NEVER
 
 
 def _does_nothing_after(run: RecordedRun, goal: Goal) -> bool:
-    """Return whether the goal is executed, and the node does nothing after that."""
+    """Return whether the goal is executed, and the node does nothing after that, or after some feedback."""
     begun = next((state.at for state in goal.states if state.state == "executing"), None)
-    if begun is None or goal.feedback:
+    if begun is None:
         return False
-    answers = [other.at for other in run.recording.goals if other.accepted is not None and other.at > begun]
-    return not answers and not any(message.at > begun for message in run.recording.received)
+    last = max([begun, *(feedback.at for feedback in goal.feedback)])
+    if goal.feedback and not any(item.at > last for item in _solutions(run, goal.number).feedback):
+        return False
+    answers = [other.at for other in run.recording.goals if other.accepted is not None and other.at > last]
+    return not answers and not any(message.at > last for message in run.recording.received)
 
 
 def _solutions(run: RecordedRun, number: int) -> Goal:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
@@ -144,16 +145,23 @@ def must_steer(run: RecordedRun, topic: str, field: str, errors: Errors) -> None
 
 
 def steers_away(run: RecordedRun, topic: str, field: str, errors: Errors) -> Cause:
-    """Explain that every value of `field` on `topic` leads away from the goal; UNKNOWN if not every one does.
+    """Explain that every value of `field` on `topic` leads away from the goal, or that it turns to and fro; UNKNOWN if
+    neither.
 
     `errors` are as in `must_steer`. Give what this returns to `run.wrong_at(…, cause=…)`.
 
     Example: `run.steers_away("/out", "data", [(0.0, 2.0)])`
     """
-    telling = [error * value for _, error, value in _steering(run, topic, field, errors) if abs(value) > SMALLEST]
-    if len(telling) < FEWEST or max(telling) > 0:
+    pairs = [(error, value) for _, error, value in _steering(run, topic, field, errors) if abs(value) > SMALLEST]
+    if len(pairs) < FEWEST:
         return UNKNOWN
-    return Cause(f"Every {field} leads away from the goal: it has the wrong sign.", *_SIGN)
+    if max(error * value for error, value in pairs) <= 0:
+        return Cause(f"Every {field} leads away from the goal: it has the wrong sign.", *_SIGN)
+    changes = sum(before * after < 0 for (_, before), (_, after) in itertools.pairwise(pairs))
+    if changes < len(pairs) / 4:
+        return UNKNOWN
+    text = f"{field} changes its sign {changes} times in {len(pairs)} commands: it turns to and fro, past the goal."
+    return Cause(text, *hints("to_and_fro", field=field))
 
 
 def _steering(run: RecordedRun, topic: str, field: str, errors: Errors) -> list[tuple[float, float, float]]:
@@ -212,7 +220,8 @@ def _of_way(way: Way, goal: tuple[float, ...]) -> Cause:
     length = math.dist(begin, goal)
     if all(math.dist(point, begin) < 1e-6 for _, point in way):
         return Cause("It never moved.", *hints("never_moved"))
-    if math.dist(end, goal) > length and min(math.dist(point, goal) for _, point in way) > 0.99 * length:
+    travelled = sum(math.dist(before, after) for (_, before), (_, after) in itertools.pairwise(way))
+    if math.dist(end, goal) - length > 0.95 * travelled:
         return Cause("It only moves away from there, as with a wrong sign.", *_SIGN)
     last = [point for at, point in way if at >= way[-1][0] - 1.0]
     if len(last) > 1 and all(math.dist(point, end) < 1e-6 for point in last):

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import builtins
+import difflib
 import re
 import sys
 
+from grader.checking.hint_texts import hints
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Ending
 from grader.submission.python_version import newer_name
@@ -36,6 +39,51 @@ ADVICE = (
 )
 
 
+#: Modules of ROS 1, and what ROS 2 has for them.
+ROS_1 = {"rospy": "rclpy", "roslib": "rclpy", "actionlib": "rclpy.action", "tf": "tf2_ros"}
+
+
+def _instead(module: str, exercise: Exercise) -> str:
+    """Return what to import in place of a module that is not available."""
+    top = module.partition(".")[0]
+    if top in ROS_1:
+        return (
+            f"{top} belongs to ROS 1. The course uses ROS 2, where it is {ROS_1[top]}, and other calls differ, too: "
+            "begin with a program of the chapter."
+        )
+    types = [*(topic.type for topic in exercise.topics), *(end.type for end in exercise.endpoints)]
+    own = {name.partition("/")[0]: name for name in types}
+    if top in own and top != module:
+        kind, name = own[top].split("/")[1:]
+        return f"{top} has no module {module.partition('.')[2]}: write from {top}.{kind} import {name}."
+    close = difflib.get_close_matches(top, [*exercise.packages, *own], n=1)
+    meant = f" Is it a misspelling of {close[0]}?" if close else ""
+    available = ", ".join([AVAILABLE, *exercise.packages])
+    return f"The module {module} is not available here. Available are Python's own modules, {available}.{meant}"
+
+
+#: What a program without an exception does, by how its run ended.
+_DOES = {
+    "did-not-start": "does not start",
+    "crashed": "ends",
+    "timed-out": "stops responding",
+    "over-limit": "does something without end",
+}
+
+
+def hints_of_ending(outcome: str, message: str = "", line: int | None = None) -> tuple[str, str]:
+    """Return where to look and what to do if a program ended, which a student may read even of a hidden check.
+
+    Of an exception in `message`, they have the line, and the class if that is Python's own.
+    """
+    if not (message or line):
+        return hints("ended", does=_DOES.get(outcome, "ends"))
+    number = line or next(iter(re.findall(r" in line (\d+)\b", message)), "")
+    known = (name for name in re.findall(r"\b[A-Z]\w+", message) if isinstance(getattr(builtins, name, None), type))
+    error = f"Line {number} ends with {next(known, 'an exception')}." if number else "Which line raises this exception?"
+    return hints("exception", error=error)
+
+
 def message_of(ending: Ending, exercise: Exercise) -> str:
     """Return how a run ended, with advice if there is any; empty when all went well.
 
@@ -48,10 +96,7 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
     if newer := newer_name(message):
         return f"{message} {newer}"
     if (missing := MISSING.search(message)) and missing[1].partition(".")[0] not in sys.stdlib_module_names:
-        available = ", ".join([AVAILABLE, *exercise.packages])
-        return (
-            f"{message} The module {missing[1]} is not available here. Available are Python's own modules, {available}."
-        )
+        return f"{message} {_instead(missing[1], exercise)}"
     if no_name := NO_NAME.search(message):
         name = no_name[1][:1].upper() + no_name[1][1:]
         case = f"It may have {name}: capital letters count." if name != no_name[1] else "Is the name spelled right?"

@@ -7,10 +7,11 @@ from itertools import pairwise
 from typing import Any
 
 from grader.checking.cause import UNKNOWN, Cause
+from grader.checking.ending_message import hints_of_ending
 from grader.checking.hint_texts import hints
 from grader.exercise.exercise import Exercise, Topic
 from grader.recording.arrays import LongArray
-from grader.recording.recording import Recording
+from grader.recording.recording import EndPointKind, Recording
 from grader.recording.types import CHANGE_STATE
 from ros_in_python.field_path import NoSuchField, field_of
 
@@ -21,12 +22,15 @@ _TINY = 64 * 5e-324
 
 def observed(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
     """Return the first cause that the run shows, in this order: an exception, messages that are never sent because a
-    lifecycle node is not active, ints in float fields, values without names, lists that pile up, only zeros, only
-    false.
+    lifecycle node is not active, a parameter that is missing or that nobody serves, messages that the node sends to
+    itself, ints in float fields, values without names,
+    lists that pile up, only zeros, only false.
     """
     seers: tuple[Callable[[Exercise, Recording, Recording], Cause], ...] = (
         _exception,
         _lifecycle,
+        _no_parameter,
+        _hears_itself,
         _int_as_float,
         _without_names,
         _never_filled,
@@ -40,8 +44,8 @@ def observed(exercise: Exercise, recording: Recording, reference: Recording) -> 
 def _exception(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
     ending = recording.ending
     if ending.survived or ending.line:
-        return Cause(ending.survived, *hints("exception"))
-    return UNKNOWN if ending.outcome == "completed" else Cause("", *hints("ended"))
+        return Cause(ending.survived, *hints_of_ending(ending.outcome, ending.message or ending.survived, ending.line))
+    return UNKNOWN if ending.outcome == "completed" else Cause("", *hints_of_ending(ending.outcome))
 
 
 def _lifecycle(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
@@ -55,6 +59,43 @@ def _lifecycle(exercise: Exercise, recording: Recording, reference: Recording) -
         "nothing.",
         *hints("lifecycle"),
     )
+
+
+def _no_parameter(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    changes = recording.parameters
+    unknown = next((change.name for change in changes if "undeclared" in change.reason), "")
+    if unknown:
+        return Cause(f"Your node has no parameter {unknown}.", *hints("undeclared", parameter=unknown))
+    silent = changes and not any(change.taken is not None for change in changes)
+    seen = "Your node does not answer when somebody sets a parameter."
+    return Cause(seen, *hints("does_not_spin")) if silent else UNKNOWN
+
+
+def otherwise(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    """Return what the whole run shows that may be the cause of a failure, if nothing else is known of it: several
+    publishers on a topic, or a number that is always 0 next to one that is not.
+    """
+    return _several_publishers(exercise, recording) or _some_zeros(exercise, recording, reference)
+
+
+def _several_publishers(exercise: Exercise, recording: Recording) -> Cause:
+    for topic in exercise.outputs:
+        nodes = [end.node for end in recording.end_points if (end.kind, end.topic) == ("publisher", topic.name)]
+        if len(nodes) > 1:
+            seen = f"Your program has {len(nodes)} publishers on {topic.name}, in {', '.join(sorted(set(nodes)))}."
+            return Cause(seen, *hints("several_publishers", topic=topic.name))
+    return UNKNOWN
+
+
+def _hears_itself(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    ends = {(end.kind, end.topic) for end in recording.end_points}
+    own = (topic.name for topic in exercise.inputs if {(kind, topic.name) for kind in _BOTH} <= ends)
+    name = next(own, "")
+    seen = f"Your program also has a publisher on {name}: it hears its own messages."
+    return Cause(seen, *hints("hears_itself", topic=name)) if name else UNKNOWN
+
+
+_BOTH: tuple[EndPointKind, ...] = ("publisher", "subscription")
 
 
 def _int_as_float(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
@@ -140,13 +181,34 @@ def _lengths(recording: Recording, topic: Topic, *fields: str) -> list[tuple[int
 
 
 def _only_zeros(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
-    for topic in exercise.outputs:
-        for field in topic.units:
-            mine, its = (_values(run, topic, field) for run in (recording, reference))
-            if len(mine) > 1 and not any(mine) and any(its):
-                seen = f"{field} is 0 in all {len(mine)} messages on {topic.name}."
-                return Cause(seen, *hints("only_zeros", field=field))
+    for topic, zeros in _zeros(exercise, recording, reference):
+        if not any(value for name, _, value in _numbers(recording) if name == topic.name):
+            seen = f"{zeros[0]} is 0 in all {_count(recording, topic)} messages on {topic.name}."
+            return Cause(seen, *hints("only_zeros", field=zeros[0]))
     return UNKNOWN
+
+
+def _some_zeros(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    for topic, zeros in _zeros(exercise, recording, reference):
+        other = next((path for name, path, value in _numbers(recording) if name == topic.name and value), "")
+        if other:
+            which = f"{' and '.join(zeros)} {'are' if len(zeros) > 1 else 'is'} 0"
+            seen = f"{which} in all {_count(recording, topic)} messages on {topic.name}, and {other} is not."
+            return Cause(seen, *hints("some_zeros", field=zeros[0], other=other))
+    return UNKNOWN
+
+
+def _zeros(exercise: Exercise, recording: Recording, reference: Recording) -> Iterator[tuple[Topic, list[str]]]:
+    """Yield each topic with those of its fields that are always 0, but not in the solution's messages."""
+    for topic in exercise.outputs:
+        fields = {field: [_values(run, topic, field) for run in (recording, reference)] for field in topic.units}
+        zeros = [field for field, (mine, its) in fields.items() if len(mine) > 1 and not any(mine) and any(its)]
+        if zeros:
+            yield topic, zeros
+
+
+def _count(recording: Recording, topic: Topic) -> int:
+    return sum(message.topic == topic.name for message in recording.received)
 
 
 def _values(recording: Recording, topic: Topic, field: str) -> list[float]:

@@ -9,6 +9,7 @@ from typing import Any
 from grader.checking.cause import UNKNOWN, Cause
 from grader.checking.comparator import equal
 from grader.checking.hint_texts import hints
+from groundwork.words import counted
 
 #: The factor in a speed whose time is measured with the computer's clock: see `grader.runner.grader_side`.
 COMPUTER_CLOCK = 0.8
@@ -70,6 +71,9 @@ def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "") -> 
         return _constant(field, telling[0][1]) if 2 * right < len(telling) else UNKNOWN
     if any(e < 0 for e, _ in telling) and all(math.isclose(g, abs(e), rel_tol=1e-6) for e, g in telling):
         return Cause(f"No {field} is negative: the sign is lost.", *hints("wrong_sign"))
+    if (digits := _digits(telling)) is not None:
+        so = f"rounded to {counted(digits, 'decimal')}" if digits else "a whole number"
+        return Cause(f"Every {field} is {so}.", *hints("rounded"))
     ratio = telling[0][1] / telling[0][0]
     if all(math.isclose(g, ratio * e, rel_tol=1e-3, abs_tol=1e-9) for e, g in telling):
         return _ratio(ratio, field, unit)
@@ -77,6 +81,14 @@ def common(pairs: Sequence[tuple[float, float]], field: str, unit: str = "") -> 
     if all(math.isclose(g - e, offset, rel_tol=1e-3, abs_tol=1e-9) for e, g in telling):
         return _offset(offset, field)
     return UNKNOWN
+
+
+def _digits(telling: Sequence[tuple[float, float]]) -> int | None:
+    """Return to how many decimals every value is rounded; None if they are not."""
+    for digits in range(5):
+        if all(abs(got - round(expected, digits)) < 1e-9 for expected, got in telling):
+            return digits
+    return 0 if all(got == math.trunc(expected) for expected, got in telling) else None
 
 
 def _degrees(telling: Sequence[tuple[float, float]], field: str, unit: str) -> Cause:

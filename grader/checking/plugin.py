@@ -15,11 +15,15 @@ import pytest
 
 from grader.checking import doubts
 from grader.checking.ending_message import message_of
+from grader.checking.hint_texts import hints
 from grader.checking.run import Run
 from grader.checking.verdict import CheckOptions, Finding, Verdict, Wrong, check_options
 from grader.exercise.computing_limit import computing_limit
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.modules import error_in
+
+#: How hints begin that are for a node which works nowhere: a check that depends on others knows better.
+_BASIC = tuple(hints(name)[0].partition("{")[0] for name in ("not_published", "only_zeros", "some_zeros"))
 
 #: Of a hint that says what to do: students don't read more.
 MOST_WORDS = 160
@@ -215,6 +219,8 @@ class Checks:
             text = str(error) or f"“{verdict.title}” is not so."  # an assert without a message
             wrong = error if isinstance(error, Wrong) else Wrong(Finding(text))
             finding = wrong.finding.shortened()
+            if mark.depends and finding.where.startswith(_BASIC):
+                finding = replace(finding, where="", todo="")
             return replace(verdict, status="failed", finding=finding, share=wrong.share, partial=mark.partial)
         return replace(verdict, status="error", error=_describe(error, item.path))
 

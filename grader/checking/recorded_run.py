@@ -13,7 +13,7 @@ from grader.checking.cause import UNKNOWN, Cause, as_cause
 from grader.checking.comparator import difference, shown, shown_apart
 from grader.checking.hint_texts import hints
 from grader.checking.message import Exchange, Message, WorldState, exchanges
-from grader.checking.observed import observed
+from grader.checking.observed import observed, otherwise
 from grader.checking.patterns import COMPUTER_CLOCK, common, other_text
 from grader.checking.verdict import Finding, Wrong, with_values
 from grader.exercise.exercise import Exercise, Role, ServiceOrAction, Topic
@@ -21,8 +21,8 @@ from grader.recording.recording import Ending, ReceivedMessage, Recording, SentM
 from ros_in_python.field_path import NoSuchField, field_of, steps_of
 
 _WAITS = (
-    "Your node sent {request} to {name} at {at:.2f} s, and did nothing from then on. Does a callback wait for the "
-    "answer, with call(), get_result(), await or spin_until_future_complete()? No other callback runs meanwhile, not "
+    "Your node sent {request} to {name} at {at:.2f} s, and did nothing from then on. Does a callback wait, with "
+    "call(), get_result(), await, spin_until_future_complete() or time.sleep()? No other callback runs meanwhile, not "
     "even the one that takes the answer. Don't wait: give the future a callback with add_done_callback()."
 )
 
@@ -154,9 +154,10 @@ class RecordedRun:
         self._end(replace(finding, scenario=self.scenario, at=at), cause)
 
     def _end(self, finding: Finding, cause: str | Cause) -> NoReturn:
-        known = self.observed or as_cause(cause)
+        known = self.observed or as_cause(cause) or otherwise(self.exercise, self.recording, self.reference)
         text = f"{finding.text} {known.seen}".strip()
-        raise Wrong(replace(finding, text=text, cause=known.seen, where=known.where, todo=known.todo))
+        same = known.seen or (known.where if self.recording.ending.line else "")
+        raise Wrong(replace(finding, text=text, cause=same, where=known.where, todo=known.todo))
 
     def compare_at(
         self,
@@ -287,9 +288,13 @@ def _finding(place: str, text: str, part: str, expected: object, got: object) ->
 
 
 def _requests(recording: Recording) -> list[tuple[float, str, str]]:
-    """Return when the node sent a request or a goal, to which service or action, and which of the two."""
+    """Return when the node sent a request or a goal, to which service or action, and which of the two.
+
+    A goal that was rejected is over.
+    """
     calls = [(call.at, call.service, "a request") for call in recording.calls if call.by == "node"]
-    return calls + [(goal.at, goal.action, "a goal") for goal in recording.goals if goal.by == "node"]
+    goals = [goal for goal in recording.goals if goal.by == "node" and goal.accepted is not False]
+    return calls + [(goal.at, goal.action, "a goal") for goal in goals]
 
 
 def _number(fields: dict[str, Any], path: str) -> float | None:

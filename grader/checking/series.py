@@ -95,7 +95,7 @@ def must_keep_rate(run: RecordedRun, hz: float, topic: str = "", tolerance: floa
     if len(got) < 2:
         _never(run, name, f"{hz:g} messages per second") if not got else None
         text = f"only one message was published on {name}."
-        run.wrong_at(got[0].at, text, "", f"{hz:g} Hz", "one message", run.waits())
+        run.wrong_at(got[0].at, text, "", f"{hz:g} Hz", "one message", run.waits() or Cause("", *hints("only_one")))
     if got[0].at_ns == got[-1].at_ns:
         at_once = f"all {len(got)} messages on {name} were published at one moment, {hz:g} per second were expected."
         run.wrong_at(got[0].at, at_once, "", f"{hz:g} Hz", f"{len(got)} at once", _at_one_moment(got[0].at_ns))
@@ -164,7 +164,7 @@ def _never(run: RecordedRun, topic: str, expected: str, subscriber: str = "") ->
     if not mine:
         names = ", ".join(sorted({end.topic for end in ends} - {"/rosout", "/parameter_events"})) or "none"
         text = f"your node does not publish on {topic}. It publishes on: {names}."
-        run.wrong_at(None, text, "", expected, "none", lacking("publisher"))
+        run.wrong_at(None, text, "", expected, "none", _IN_INIT if names == "none" else lacking("publisher"))
     if subscriber and run.published_on(topic):
         text = f"the subscriber “{subscriber}” got nothing on {topic}."
         run.wrong_at(None, text, "", expected, "none", _VOLATILE if any(map(_is_volatile, mine)) else UNKNOWN)
@@ -175,6 +175,8 @@ def _never(run: RecordedRun, topic: str, expected: str, subscriber: str = "") ->
 def _is_volatile(end: Endpoint) -> bool:
     return end.durability == "volatile"
 
+
+_IN_INIT = Cause("Does __init__ come to its end?", *hints("in_init"))
 
 _NOT_CALLED = Cause("", *hints("not_published"))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, NoReturn
 
-from grader.checking.cause import UNKNOWN, Cause
+from grader.checking.cause import Cause
 from grader.checking.comparator import TOLERANCE, shown
 from grader.checking.graph import lacking
 from grader.checking.hint_texts import hints
@@ -116,14 +116,16 @@ def _reference_calls(run: RecordedRun, service: str, by: By) -> tuple[Call, ...]
 
 def _no_response(run: RecordedRun, number: int, call: Call) -> NoReturn:
     servers = sorted({end.topic for end in run.recording.end_points if end.kind == "server"})
-    same = [other for other in calls(run, call.service) if other.answered is not None]
+    every = calls(run, call.service)
+    answered = sum(other.answered is not None for other in every)
     if not call.served or call.service not in servers:
         names = ", ".join(servers) or "none"
         text = f"your node has no service {call.service}. Its services are: {names}."
         run.wrong_at(call.at, text, "", call.service, names, lacking("server"))
-    never = UNKNOWN if same else _NEVER_RESPONDS
+    some = f"Your node responds to {answered} of {len(every)} requests. Does its callback wait or sleep?"
+    cause = Cause(some, *hints("gap")) if answered else _NEVER_RESPONDS
     text = "a response was expected, got none."
-    run.wrong_at(call.at, text, _part(number, call), "a response", "none", never)
+    run.wrong_at(call.at, text, _part(number, call), "a response", "none", cause)
 
 
 def _all_late(run: RecordedRun, call: Call) -> str:

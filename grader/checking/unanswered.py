@@ -50,20 +50,21 @@ def _only_some(run: RecordedRun) -> Cause:
     if not answered or len(expected) < FEWEST:
         return UNKNOWN
     text = f"Your node answers {len(answered)} of {len(expected)} messages"
-    if _only_when_seconds_change(run):
-        seen = f"{text}: those whose stamp has another sec than the message before."
-        return Cause(seen, *hints("stamp_fields"))
+    for answers, which in ((True, "those"), (False, "all but those")):
+        if _only_when_seconds_change(run, answers):
+            seen = f"{text}: {which} whose stamp has another sec than the message before."
+            return Cause(seen, *hints("stamp_fields"))
     return Cause(f"{text}.", *_CONDITION)
 
 
-def _only_when_seconds_change(run: RecordedRun) -> bool:
-    """Return whether the answered messages are those in whose stamp not only the nanoseconds are new."""
+def _only_when_seconds_change(run: RecordedRun, answers: bool) -> bool:
+    """Return whether the messages with (or without) `answers` are those in whose stamp the seconds are new."""
     pairs = [
         (before.sent, exchange)
         for before, exchange in zip(run.exchanges, run.exchanges[1:], strict=False)
         if exchange.expected and "header" in exchange.sent._fields
     ]
-    answered = [bool(exchange.answers) for _, exchange in pairs]
+    answered = [bool(exchange.answers) is answers for _, exchange in pairs]
     changed = [before.header.stamp.sec != exchange.sent.header.stamp.sec for before, exchange in pairs]
     return any(answered) and not all(answered) and answered == changed
 

@@ -14,7 +14,7 @@ class Finding:
     `at` is in seconds after the scenario's start, `message` is the number of the message sent, counted from 1.
     `shortened` limits the length of the texts, which may repeat what the student's program printed or published.
 
-    `cause` is what the recording shows to be behind it, which is also in `text`: all findings with one cause are one
+    `cause` is what the recording shows to be behind it, which `text` says, too: all findings with one cause are one
     mistake. `where` and `todo` are the hints that belong to the cause.
     """
 

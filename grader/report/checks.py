@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checking.hint_texts import hints
+from grader.checking.ending_message import hints_of_ending
 from grader.checking.verdict import Finding, Status, Verdict
 
 if TYPE_CHECKING:
@@ -91,9 +91,8 @@ def first_hints(grade: Grade) -> tuple[str, tuple[tuple[str, str], ...]]:
     If the program ended early, there is no such check: then the hints are about that.
     """
     if grade.outcome in _ENDED:
-        return "Your program ended early.", tuple(
-            zip(LABELS, hints("exception" if grade.line else "ended"), strict=True)
-        )
+        steps = hints_of_ending(grade.outcome, grade.message if grade.line else "", grade.line)
+        return "Your program ended early.", tuple(zip(LABELS, steps, strict=True))
     first = next((check for check in shown_checks(grade) if check.hints), None)
     return (first.title, first.labelled_hints) if first else ("", ())
 

@@ -66,18 +66,19 @@ def advice(grade: Grade, exercise: Exercise) -> Advice | None:
     line = f" Look at line {grade.line} first." if grade.line else ""
     printed = " What your program printed is shown below." if grade.log.strip() else ""
     again = f"Run it yourself: python3 {exercise.file_name}"
+    fed = ", with a publisher in another terminal" if exercise.inputs else ""
     steps: dict[Outcome, tuple[str, ...]] = {
         "did-not-start": (f"Read the message above.{line}{printed}", f"{again}. It must start without an error."),
         "crashed": (
             f"Read the message above.{line}{printed}",
-            f"{again}, with a publisher in another terminal.",
+            f"{again}{fed}.",
         ),
         "timed-out": (
             "Look for an endless loop, for a sleep in a callback, and for a missing rclpy.spin(node).",
-            f"{again}, with a publisher in another terminal. It must answer each message at once.",
+            f"{again}{fed}. It must answer each message at once." if fed else f"{again}.",
         ),
         "over-limit": (
-            "Look for things that are created again and again: messages, list items, files, threads, processes.",
+            "Look for things that are created again and again: timers, messages, files, threads, processes.",
             f"{again}, and watch it with top.",
         ),
         "host-error": ("There is nothing for you to do: it will be graded again.",),

@@ -8,6 +8,7 @@ from __future__ import annotations
 import difflib
 import os
 import re
+import sys
 from collections.abc import Callable, Mapping
 
 from grader.recording.types import message_class
@@ -21,7 +22,18 @@ _NO_SCREEN = (
 )
 
 #: Packages whose messages' fields are named. What a student's file imports is not imported otherwise.
-_PACKAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs", "turtlesim", "builtin_interfaces")
+_PACKAGES = ("std_msgs", "std_srvs", "geometry_msgs", "sensor_msgs", "nav_msgs", "turtlesim", "builtin_interfaces")
+
+#: Fields of common messages that are messages themselves, and what these have.
+_PARTS = {
+    "stamp": ("sec", "nanosec"),
+    "header": ("stamp", "frame_id"),
+    "linear": ("x", "y", "z"),
+    "angular": ("x", "y", "z"),
+    "position": ("x", "y", "z"),
+    "orientation": ("x", "y", "z", "w"),
+    "pose": ("position", "orientation"),
+}
 
 #: What to do about an error, by a pattern of its last line.
 _BY_TEXT = (
@@ -65,7 +77,40 @@ _BY_TEXT = (
         "The class of the messages comes before the name: create_publisher(String, '/name', 10), ActionClient(self, "
         "Type, '/name').",
     ),
+    (
+        r"no running event loop",
+        "rclpy runs callbacks without asyncio, so asyncio.sleep() and the like can't be used in one. To continue "
+        "later, create a timer; to wait for an answer, await the future of call_async() or send_goal_async() itself.",
+    ),
+    (
+        r"module '[\w.]+' has no attribute",
+        "Is the name spelled right? If it is a module itself, it must be imported as a whole: import xml.etree.",
+    ),
+    (
+        r"'list' object has no attribute '(?:name|value|type_)'",
+        "The callback gets a list of parameters, even if only one is set: loop over it.",
+    ),
+    (
+        r"multiply sequence by non-int|only concatenate (?:str|list)|unsupported operand type\(s\) for .*'str'",
+        "A value of this line is a text or a list, and no number: where does it come from? '0.5' is a text.",
+    ),
+    (r"required positional argument: 'qos_profile'", "The last argument is the queue depth, such as 10."),
+    (r"ParameterAlreadyDeclaredException", "Declare it once, in __init__, and not in a callback."),
+    (
+        r"UnboundLocalError",
+        "A function that assigns to a name has a variable of its own with this name. What a node remembers is an "
+        "attribute: self.name, set in __init__.",
+    ),
+    (
+        r"FileNotFoundError",
+        "Your node runs on another computer, which has none of your files but the ones that you hand in.",
+    ),
     (r"callback should be either be callable", "The callback takes the message: def on_message(self, message)."),
+    (
+        r"'ServerGoalHandle' object has no attribute",
+        "A goal handle has request, which is the goal, and is_cancel_requested, succeed(), canceled(), abort() and "
+        "publish_feedback().",
+    ),
     (
         r"_Result' object has no attribute 'status'",
         "What get_result_async() brings has two fields: status, and result, which is the message.",
@@ -150,7 +195,7 @@ def _of_a_callback(last: LastError, sources: Mapping[str, str]) -> str:
         return (
             "A callback is None. Give the method itself, such as self.on_timer: with parentheses, it is called at once."
         )
-    if error.startswith("TypeError") and ", in send_response" in block:
+    if error == "TypeError" and ", in send_response" in block:
         return "A service's callback has to return the response: end each way through it with `return response`."
     if ", in publish_feedback" in block:
         return f"publish_feedback() takes a whole message: {_action(sources)}.Feedback(…), with the value in its field."
@@ -165,7 +210,7 @@ def _of_a_callback(last: LastError, sources: Mapping[str, str]) -> str:
 
 _ARGUMENTS = (
     "The arguments of a callback: self, and then the message for a subscription, nothing for a timer, the request and "
-    "the response for a service."
+    "the response for a service, the future for add_done_callback(), the goal handle for an action."
 )
 
 
@@ -194,10 +239,10 @@ def _of_an_attribute(last: LastError, sources: Mapping[str, str]) -> str:
     if not match:
         return ""
     if match[1] in ("float", "int", "str", "list") and "publish(" in last.text:
-        return f"A field of the message holds a {match[1]}, but is a message of its own: set its field {match[2]}."
-    fields = _fields(match[1], sources)
-    if fields:
-        return f"The fields of a {match[1]} are: {', '.join(fields)}."
+        return _of_a_part(match[1], match[2], sources)
+    if match[2] != "status" and (fields := _fields(match[1], sources)):
+        swapped = _swapped(match[1], match[2], sources)
+        return f"The fields of a {match[1].replace('_', '.')} are: {', '.join(fields)}.{swapped}"
     if "Did you mean" in last.error:
         return ""
     if not re.search(rf"^\s*class {match[1]}\b", sources.get(last.file, ""), re.MULTILINE):
@@ -214,12 +259,37 @@ def _of_an_attribute(last: LastError, sources: Mapping[str, str]) -> str:
     )
 
 
+def _swapped(name: str, attribute: str, sources: Mapping[str, str]) -> str:
+    """Explain that a service's callback takes the response for the request, if it does."""
+    if not name.endswith("_Response") or attribute not in _fields(name.replace("_Response", "_Request"), sources):
+        return ""
+    return f" {attribute} is a field of the request, which is the callback's argument before the response."
+
+
+def _of_a_part(kind: str, part: str, sources: Mapping[str, str]) -> str:
+    """Explain that a field which is a message itself holds a plain value. `part` is what such a message has."""
+    code = "\n".join(sources.values())
+    fields = [name for name, parts in _PARTS.items() if part in parts and re.search(rf"\.{name} = ", code)]
+    if part in _PARTS["stamp"]:
+        return f"A stamp is a message of its own, and holds a {kind} here: self.get_clock().now().to_msg() makes one."
+    if len(fields) != 1:
+        return f"A field of the message holds a {kind}, but is a message of its own: set its field {part}."
+    return f"{fields[0]} holds a {kind}, but is a message of its own: set {fields[0]}.{part}."
+
+
 def _fields(name: str, sources: Mapping[str, str]) -> list[str]:
-    """Return the fields of the message class that the student's files import by this name; empty if there is none."""
-    pattern = rf"^\s*from ({'|'.join(_PACKAGES)})\.msg import [^\n]*\b{name}\b"
+    """Return the fields of the message class that the student's files import by this name; empty if there is none.
+
+    That of a service's request or response is `SetBool_Request` or `SetBool_Response`.
+    """
+    whole, _, part = name.partition("_")
+    loaded = (module.partition(".")[0] for module in sys.modules if module.endswith((".srv", ".action")))
+    pattern = rf"^\s*from ({'|'.join((*_PACKAGES, *loaded))})\.(msg|srv|action) import [^\n]*\b{whole}\b"
     imported = re.search(pattern, "\n".join(sources.values()), re.MULTILINE)
     try:
-        return list(message_class(f"{imported[1]}/msg/{name}").get_fields_and_field_types()) if imported else []
+        found = message_class(f"{imported[1]}/{imported[2]}/{whole}") if imported else None
+        message = getattr(found, part) if part else found
+        return list(message.get_fields_and_field_types()) if message else []
     except (ImportError, AttributeError):
         return []
 
@@ -233,7 +303,7 @@ def _by_text(last: LastError, sources: Mapping[str, str]) -> str:
 
 def _of_its_own(last: LastError, sources: Mapping[str, str]) -> str:
     """Say what else there is than to raise an error in the callback of a service."""
-    if not last.raised_there or "await_or_execute(srv.callback" not in last.traceback:
+    if not last.text.startswith("raise ") or "await_or_execute(srv.callback" not in last.traceback:
         return ""
     if "_set_parameters" in last.traceback:
         return "To refuse a value, return SetParametersResult(successful=False, reason='…'): an error ends the node."

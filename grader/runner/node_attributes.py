@@ -42,9 +42,10 @@ _CHOOSE = "Choose another name, such as `my_{name}`."
 
 def advice_on_node_attribute(last: LastError, sources: Mapping[str, str]) -> str:
     """Return which attribute of Node the program replaces, if that is the cause of its last error; "" otherwise."""
-    if not last.error.startswith(("AttributeError", "TypeError")):
+    undeclared = "ParameterNotDeclared" in last.error
+    if not undeclared and not last.error.startswith(("AttributeError", "TypeError")):
         return ""
-    told = f"{last.error}\n{last.text}\n" + "\n".join(last.traceback.splitlines()[-3:])
+    told = "_parameters" if undeclared else f"{last.error}\n{last.text}\n" + "\n".join(last.traceback.splitlines()[-3:])
     for name, meaning in {**PUBLIC, **PRIVATE}.items():
         if re.search(rf"\b{name}\b", told) and _is_replaced(name, sources):
             return f"Every Node already has an attribute `{name}`: {meaning}. {_CHOOSE.format(name=name.lstrip('_'))}"

@@ -32,7 +32,7 @@ OTHER_CLASS = re.compile(r'__convert_from_py: Assertion .strncmp\("(?:\w+\.)+(?P
 OTHER_VALUE = re.compile(r"\b(?P<name>\w+)__convert_from_py: Assertion .Py(?P<kind>Float|Long|Unicode|Bool)_Check")
 
 _VALUES = {
-    "Float": "a float field of it needs a float: 2.0 instead of 2, or float(value)",
+    "Float": "a float field of it needs a float: 2.0 instead of 2, float(value), or the data of a message",
     "Long": "an integer field of it needs an int",
     "Unicode": "a text field of it needs a str",
     "Bool": "a bool field of it needs True or False",
@@ -149,7 +149,7 @@ _MESSAGES = {
     "messages": "Your node sent more than {limit:,} messages in one scenario.",
     "at once": (
         "Your node sent more than {limit:,} messages or requests at one moment, on {text}. Is there a loop that never "
-        "waits, or does each answer lead to the next one?"
+        "waits, a callback that creates a timer each time, or does each answer lead to the next one?"
     ),
     "own messages": (
         "Your node sent more than {limit:,} messages at one moment, on {text}, to which it also subscribes. Does it "

@@ -163,13 +163,20 @@ def test_what_execute_raised_is_said_by_each_check() -> None:
 def test_a_node_whose_only_thread_waits_in_execute() -> None:
     stuck = changed(goal(*BEGIN), feedback=())
     assert says(lambda: run(stuck, RIGHT).must_end("succeeded")).endswith("run the node in a MultiThreadedExecutor.")
+    once = changed(goal(*BEGIN), feedback=goal().goals[0].feedback[:1])
+    assert says(lambda: run(once, RIGHT).must_end("succeeded")).endswith("run the node in a MultiThreadedExecutor.")
     assert says(lambda: run(goal(*BEGIN), RIGHT).must_end("succeeded")).endswith("The goal never ended.")
+    assert says(lambda: run(goal(*BEGIN), RIGHT).must_end("aborted")).endswith("got no end, but executing.")
 
 
 def test_goals_of_a_client() -> None:
     right = changed(RIGHT, by="node")
     run(right, exercise=CLIENT).must_match_goals("order")
     run(right, exercise=CLIENT).must_ask_only_for_accepted()
+    later = replace(right, goals=(*right.goals, replace(right.goals[0], at_ns=ns(9.0))))
+    for accepted in (True, False):
+        asked = run(changed(goal(), by="node", accepted=accepted, feedback=()), later, CLIENT)
+        assert bool(asked.waits()) == accepted, "a goal that was rejected is over"
     other = changed(right, goal={"order": 4})
     assert "its goal: expected order 3, got 4." in says(lambda: run(other, right, CLIENT).must_match_goals())
     none = replace(right, goals=())

@@ -110,3 +110,25 @@ def test_no_answer_at_all_is_explained_by_the_subscription(durability: Durabilit
     with pytest.raises(Wrong) as caught:
         Run(EXERCISE, unheard, REFERENCE).must_match("data")
     assert message in caught.value.finding.text
+
+
+@pytest.mark.parametrize(
+    ("answered", "which"),
+    [
+        ((3, 6), "2 of 8 messages: those whose stamp has another sec than the message before."),
+        ((1, 2, 4, 5, 7, 8), "6 of 8 messages: all but those whose stamp has another sec than the message before."),
+        ((1, 2, 3, 4), "4 of 8 messages."),
+    ],
+)
+def test_messages_that_lack_an_answer_are_told_by_the_seconds_of_their_stamps(
+    answered: tuple[int, ...], which: str
+) -> None:
+    def stamped(run: Recording) -> Recording:
+        stamps = [{"sec": (number + 1) // 3, "nanosec": 0} for number in range(COUNT)]
+        sent = zip(run.sent, stamps, strict=True)
+        return replace(run, sent=tuple(replace(one, fields={"header": {"stamp": stamp}}) for one, stamp in sent))
+
+    mine = stamped(recording(*(answer(number, right(number)) for number in answered)))
+    with pytest.raises(Wrong) as caught:
+        Run(EXERCISE, mine, stamped(REFERENCE)).must_answer()
+    assert caught.value.finding.cause == f"Your node answers {which}"

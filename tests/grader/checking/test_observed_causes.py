@@ -13,7 +13,7 @@ from made_up import EMPTY, ENDS, EXERCISE, FLOAT, STAMPED, finding, ns, publishe
 from grader.checking import doubts, observed
 from grader.checking.hint_texts import texts
 from grader.exercise.exercise import Elements, Topic
-from grader.recording import Ending, Endpoint, ReceivedMessage, Recording, SentMessage
+from grader.recording import Ending, Endpoint, ParameterChange, ReceivedMessage, Recording, SentMessage
 
 RIGHT = published((0.1, 0.2, 0.3), (1.0, 2.0, 3.0))
 
@@ -31,7 +31,47 @@ def test_an_exception_comes_before_what_follows_from_it() -> None:
 
     assert found.text.endswith(f"never published anything. {raised}")
     assert found.cause == raised
-    assert found.where.startswith("The message names the line of your file.")
+    assert found.where.startswith("Line 3 ends with KeyError. Which values")
+
+
+def sets(**answer: Any) -> Recording:
+    return replace(published((), ()), parameters=(ParameterChange(ns(1), "/worker", "gain", 0.2, **answer),))
+
+
+def with_publisher(topic: str, values: tuple[float, ...]) -> Recording:
+    end = Endpoint("/other", "publisher", topic, FLOAT, "reliable", "volatile")
+    return replace(published((0.1, 0.2, 0.3), values), end_points=(*ENDS, end))
+
+
+@pytest.mark.parametrize(
+    ("mine", "cause", "todo"),
+    [
+        (sets(taken=False, reason="is undeclared"), "Your node has no parameter gain.", "declare_parameter('gain',"),
+        (sets(), "Your node does not answer when somebody sets a parameter.", "only while rclpy.spin(node)"),
+        (sets(taken=True), "", ""),
+        (with_publisher("/in", (1.0, 2.0, 4.0)), "Your program also has a publisher on /in: it hears its", "on /in"),
+        (with_publisher("/out", (1.0, 5.0, 4.0)), "Your program has 2 publishers on /out, in /other, /worker.", "one"),
+        (with_publisher("/out", (-1.0, -2.0, -3.0)), "Every value has the wrong sign.", ""),
+        (published((0.1, 0.2, 0.3), (1.0, 5.0, 4.0)), "", ""),
+    ],
+)
+def test_what_the_graph_and_the_parameters_show(mine: Recording, cause: str, todo: str) -> None:
+    found = fails(mine)
+
+    assert found.cause.startswith(cause), found.cause
+    assert bool(cause) == bool(found.cause)
+    assert todo in found.todo
+
+
+def test_a_program_that_ends_is_one_cause_for_all_checks_and_named_without_its_words() -> None:
+    ended = Ending("crashed", "Your program ended at message 3: Mine: IndexError of 0.25 in line 7.", 7)
+
+    found = fails(replace(EMPTY, ending=ended))
+
+    assert found.where.startswith("Line 7 ends with IndexError.")
+    assert found.cause == found.where
+    hung = fails(replace(EMPTY, ending=Ending("timed-out", "It never responds.")))
+    assert hung.where.startswith("Here your node stops responding.")
 
 
 def test_an_int_in_a_float_field_is_recognized_by_the_number_that_arrives() -> None:
@@ -63,6 +103,25 @@ def test_values_without_names_are_not_called_missing() -> None:
     found = finding(lambda: run(robot([]), right, exercise).must_match_series("name"))
 
     assert found.cause == ("name is empty in every message on /out: nobody can know which wheel each speed belongs to.")
+
+
+def test_a_number_that_is_always_0_is_named_along_with_one_that_is_not() -> None:
+    out = Topic("/out", FLOAT, "publish", units={"ahead": "m/s", "turn": "rad/s"})
+    exercise = replace(EXERCISE, topics=(EXERCISE.topics[0], out))
+
+    def robot(**values: float) -> Recording:
+        fields = {"ahead": 0.0, "turn": 0.0, "roll": 0.0, **values}
+        return replace(EMPTY, received=tuple(ReceivedMessage(ns(i), i, "/out", FLOAT, fields) for i in range(3)))
+
+    right = robot(ahead=1.0, turn=2.0)
+    for mine, seen in (
+        (robot(turn=2.0), "ahead is 0 in all 3 messages on /out, and turn is not."),
+        (robot(roll=2.0), "ahead and turn are 0 in all 3 messages on /out, and roll is not."),
+        (robot(), "ahead is 0 in all 3 messages on /out."),
+    ):
+        assert finding(lambda mine=mine: run(mine, right, exercise).wrong_at(None, "x")).cause == seen
+    known = finding(lambda: run(robot(turn=2.0), right, exercise).wrong_at(None, "x", cause="Known."))
+    assert known.cause == "Known."
 
 
 def test_a_message_that_is_kept_and_filled_again_is_named() -> None:

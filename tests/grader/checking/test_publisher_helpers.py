@@ -142,6 +142,13 @@ def test_a_sign_that_is_lost_is_named() -> None:
     assert not common(wrong, "speed")
 
 
+def test_values_that_are_rounded_are_named() -> None:
+    exact = (0.1267, -1.7849, 2.5011)
+    for rounded, what in ((lambda v: round(v, 2), "rounded to 2 decimals"), (int, "a whole number"), (abs, "")):
+        cause = common([(value, float(rounded(value))) for value in exact], "speed")
+        assert cause.seen == (f"Every speed is {what}." if what else "No speed is negative: the sign is lost.")
+
+
 def test_a_value_at_its_limit_is_not_said_to_be_constant() -> None:
     assert not common([(1.0, 1.0), (0.9, 1.0), (1.0, 1.0)], "speed")
     assert common([(1.0, 1.0), (0.9, 1.0), (0.8, 1.0)], "speed").seen == "Every speed is 1."

@@ -84,7 +84,7 @@ def test_a_client_that_does_nothing_after_its_request_is_asked_whether_it_waits(
         return replace(asked, received=published(ticks, ticks).received)
 
     right, waits = client(4, 5.0), client(1, 0.9)
-    message = "Your node sent a request to /add at 1.00 s, and did nothing from then on. Does a callback wait"
+    message = "Your node sent a request to /add at 1.00 s, and did nothing from then on. Does a callback wait,"
     mine = run(waits, right, CLIENT)
     assert message in says(lambda: mine.must_match_requests("a"))
     assert message in says(lambda: mine.must_keep_rate(2.0, "/out"))

@@ -69,6 +69,13 @@ def test_a_command_with_the_wrong_sign(gain: float, message: str) -> None:
     assert found.where.startswith("Look at the line that computes it") == (gain < 0)
 
 
+def test_a_command_that_turns_to_and_fro_is_named() -> None:
+    errors = [(float(second), 4.0 * (-1) ** second) for second in range(8)]
+    mine = run(published([at for at, _ in errors], [2.0 if error > 0 else -2.0 for _, error in errors]))
+    cause = mine.steers_away("/out", "data", errors)
+    assert cause.seen == "data changes its sign 7 times in 8 commands: it turns to and fro, past the goal."
+
+
 def test_a_topic_without_messages_is_the_authors_fault() -> None:
     with pytest.raises(ValueError, match="there is no message on /poses in the scenario plain"):
         run(RIGHT).must_reach("/poses", PLACE, 0.1, 2.0)

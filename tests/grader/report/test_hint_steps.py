@@ -56,7 +56,7 @@ def test_a_later_check_keeps_the_count(exercise: Exercise, tmp_path: Path) -> No
 def test_a_program_that_ended_has_hints_too_and_one_that_passes_has_none(exercise: Exercise, tmp_path: Path) -> None:
     assert next_hint(exercise, tmp_path).startswith("Check your node first")
     remember(exercise, last_hints(replace(RESULT, outcome="crashed", line=3)), tmp_path)
-    assert "The message names the line of your file." in next_hint(exercise, tmp_path)
+    assert "Line 3 ends with an exception." in next_hint(exercise, tmp_path)
     remember(exercise, last_hints(replace(RESULT, verdicts=())), tmp_path)
     assert "nothing to give a hint for" in next_hint(exercise, tmp_path)
 

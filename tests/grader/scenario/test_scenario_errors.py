@@ -342,6 +342,12 @@ def test_packages_are_pinned_to_what_is_installed(tmp_path: Path) -> None:
     assert f'packages = ["PyYAML=={metadata.version("PyYAML")}"]' in to_toml(exercise)
     ending = Ending("did-not-start", "ModuleNotFoundError: No module named 'cv2'")
     assert message_of(ending, exercise).endswith(f", numpy, {exercise.packages[0]}.")
+    for module, advice in (
+        ("rospy", "ROS 1. The course uses ROS 2, where it is rclpy,"),
+        ("std_srv.srv", ""),
+    ):
+        ending = Ending("did-not-start", f"ModuleNotFoundError: No module named '{module}'")
+        assert (advice or "Is it a misspelling of std_srvs?") in message_of(ending, exercise)
 
 
 def test_an_interface_is_written_as_it_was_read(tmp_path: Path) -> None:
