@@ -1,4 +1,4 @@
-"""What can happen in a run besides messages: calls, goals, parameters, and programs that end.
+"""Simulated time, and what can happen in it besides messages: calls, goals, parameters, and programs that end.
 
 Each time is there twice: `at` in seconds after the start, and `at_ns` in ns of simulated time. None is "never".
 """
@@ -8,7 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from grader.recording.moments import RecordedMoment, RecordedRequest, seconds
+#: Simulated time counts nanoseconds.
+SECOND = 1_000_000_000
+
+#: Simulated time at which every scenario begins. Not 0, which means "no time yet" in ROS.
+START = 100 * SECOND
 
 #: A message's fields by name: numbers, texts, lists and nested dictionaries.
 Fields = dict[str, Any]
@@ -18,6 +22,33 @@ By = Literal["grader", "node"]
 
 #: The states of action_msgs/msg/GoalStatus, by their numbers.
 STATES = ("unknown", "accepted", "executing", "canceling", "succeeded", "canceled", "aborted")
+
+
+def seconds(moment: int) -> float:
+    """Return a moment of simulated time (ns) as seconds after the start."""
+    return (moment - START) / SECOND
+
+
+class RecordedMoment:
+    """What happened at a moment."""
+
+    at_ns: int
+
+    @property
+    def at(self) -> float:
+        """Return when it was, in seconds after the start."""
+        return seconds(self.at_ns)
+
+
+class RecordedRequest(RecordedMoment):
+    """What may be answered later."""
+
+    answered_ns: int | None
+
+    @property
+    def answered(self) -> float | None:
+        """Return when it was answered, in seconds after the start; None without an answer."""
+        return None if self.answered_ns is None else seconds(self.answered_ns)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ import difflib
 from collections.abc import Mapping
 from typing import Any
 
-from grader.recording.moments import SECOND
+#: A second of builtin_interfaces/msg/Time (ns).
+SECOND = 1_000_000_000
 
 
 class Part:
@@ -84,7 +85,7 @@ def field_called(fields: Mapping[str, Any], name: str) -> Any:
     if name in fields:
         value = fields[name]
         if isinstance(value, (list, tuple)) and value and isinstance(value[0], dict):
-            return [NestedMessage(one) for one in value]
+            return [NestedMessage(part) for part in value]
         return NestedMessage(value) if isinstance(value, dict) else value
     close = difflib.get_close_matches(name, fields, n=1)
     advice = f"Did you mean {close[0]}?" if close else f"Its fields are: {', '.join(fields) or 'none'}."

@@ -19,10 +19,10 @@ from grader.recording.events import (
     ParameterReading,
     ProgramExit,
     ProgramStart,
+    RecordedMoment,
     Truth,
 )
 from grader.recording.fields import WithFields
-from grader.recording.moments import RecordedMoment
 
 __all__ = ["Ending", "Endpoint", "Fields", "ReceivedMessage", "Recording", "RunOutcome", "SentMessage"]
 

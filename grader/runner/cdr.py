@@ -6,7 +6,7 @@ from typing import Any
 
 from rclpy.serialization import deserialize_message, serialize_message
 
-from grader.recording.recording import Fields
+from grader.recording.events import Fields
 from grader.runner.message import filled, to_fields
 from grader.runner.program import CannotContinue
 

@@ -11,7 +11,7 @@ from array import array
 from typing import Any
 
 from grader.recording.arrays import CODES, LONG, LongArray, plain_array
-from grader.recording.recording import Fields
+from grader.recording.events import Fields
 from grader.recording.types import message_class as message_class
 
 _LIST = re.compile(r"sequence<(?P<sequence>[^,>]+)(, \d+)?>|(?P<array>.+)\[\d+\]")

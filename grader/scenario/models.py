@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from grader.recording.recording import Fields
+from grader.recording.events import Fields
 
 #: The width and height of turtlesim's square (units), and how long a turtle follows a command (s).
 SIDE, COMMAND_HOLDS = 11.088889, 1.0

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
-from grader.recording.recording import Fields
+from grader.recording.events import Fields
 from grader.scenario.scenario import Message
 from grader.scenario.times import SECOND, START, later
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from grader.recording.recording import Fields
+from grader.recording.events import Fields
 
 FLOAT, FLOATS, JOINT_STATE = "std_msgs/msg/Float64", "std_msgs/msg/Float64MultiArray", "sensor_msgs/msg/JointState"
 

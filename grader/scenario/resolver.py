@@ -12,7 +12,7 @@ from grader.exercise.computing_limit import computing_limit
 from grader.exercise.exercise import Exercise, ExerciseError, ServiceOrAction
 from grader.exercise.imported_files import with_modules
 from grader.exercise.modules import error_in, see_that_students_have
-from grader.recording.recording import Fields
+from grader.recording.events import Fields
 from grader.recording.types import CHANGE_STATE, TRANSITIONS, message_class
 from grader.scenario.command_line import programs_of
 from grader.scenario.scenario import (

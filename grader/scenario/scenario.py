@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from grader.exercise.exercise import Qos
 from grader.recording.arrays import LongArray
-from grader.recording.recording import Fields
+from grader.recording.events import Fields
 from grader.scenario.code import AuthorCode, line_of_the_author
 from grader.scenario.servers import ActionServer, Server
 from grader.scenario.times import BEFORE_START as BEFORE_START

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import wraps
 from typing import Any, Literal, ParamSpec
 
-from grader.recording.recording import Fields
+from grader.recording.events import Fields
 from grader.scenario.code import AuthorCode, code_of, line_of_the_author
 
 #: How an action server reacts to a request to cancel. "ignore": it accepts, but continues anyway.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 
-from grader.recording.moments import SECOND, START
+from grader.recording.events import SECOND, START
 
 __all__ = ["BEFORE_START", "SECOND", "START", "every", "later", "uneven"]
 

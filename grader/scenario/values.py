@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 from grader.recording.arrays import CODES, LONG, LongArray, plain_array
-from grader.recording.recording import Fields
+from grader.recording.events import Fields
 from grader.recording.types import message_class
 
 _INTEGERS = {f"{sign}int{bits}": (bits, sign == "") for bits in (8, 16, 32, 64) for sign in ("", "u")}

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from grader.recording.recording import Fields
+from grader.recording.events import Fields
 from grader.scenario.code import AuthorCode, code_of, folder_of_the_author, line_of_the_author
 
 #: The duration of one step of a world, unless the author says otherwise (s).
