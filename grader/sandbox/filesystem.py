@@ -161,19 +161,25 @@ def system() -> tuple[Path, ...]:
 
 @cache
 def interpreter() -> tuple[Path, ...]:
-    """Return the folders of this Python, of its environment's base Python, of ROS 2, and of a course's interfaces."""
+    """Return the folders of this Python, of ROS 2, and of a course's interfaces."""
+    library = filter(None, (library_folder(),))
+    # tf2 and its kin, and what they import: in a checkout, they are not among the environment's libraries.
+    in_python = [Path(module.__file__).parent for module in (ros_in_python, interface_compiler) if module.__file__]
+    return tuple(
+        path
+        for path in (*python_folders(), *ros_prefixes(), *library, *in_python, *activation.active())
+        if path.exists()
+    )
+
+
+def python_folders() -> list[Path]:
+    """Return the folders of this Python, and of its environment's base Python."""
     prefixes: dict[Path, None] = {}
     for prefix in (sys.prefix, sys.exec_prefix, sys.base_prefix, sys.base_exec_prefix):
         prefixes[Path(prefix)] = None
         prefixes[Path(prefix).resolve()] = None
     prefixes[Path(sys.executable).resolve().parents[1]] = None
-    found = [prefix / part for prefix in prefixes for part in _PARTS if prefix != Path("/usr")]
-    library = filter(None, (library_folder(),))
-    # tf2 and its kin, and what they import: in a checkout, they are not among the environment's libraries.
-    in_python = [Path(module.__file__).parent for module in (ros_in_python, interface_compiler) if module.__file__]
-    return tuple(
-        path for path in (*found, *ros_prefixes(), *library, *in_python, *activation.active()) if path.exists()
-    )
+    return [prefix / part for prefix in prefixes for part in _PARTS if prefix != Path("/usr")]
 
 
 def closed_to_others() -> list[Path]:

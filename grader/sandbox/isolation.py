@@ -18,7 +18,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from grader.sandbox import filesystem
+from grader.sandbox import filesystem, landlock
 from grader.sandbox.environment import RUNTIME_VARIABLES, for_trusted
 from grader.sandbox.program import IN_DOCKER, OPEN_FILES, Isolation, SandboxUnavailable
 from groundwork.clean_environment import module_command
@@ -99,6 +99,11 @@ def refuse_what_students_can_not_read() -> None:
 
 def _reason_against(level: Isolation) -> str | None:
     """Return None if the level works, or has worked under the same circumstances; otherwise the reason."""
+    if level is Isolation.LANDLOCK:
+        try:  # a trial does not have this course's interfaces
+            landlock.student_user()
+        except OSError as error:
+            return f"the sandbox could not be made: {error}"
     if has_worked(level):
         return None
     reason = _tried(level)

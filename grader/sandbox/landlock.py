@@ -53,18 +53,28 @@ def student_user() -> int:
     """Return the user for a student's program. For root it is an unused one: the kernel limits no root processes.
 
     Raises:
-        OSError: as root, if that user cannot reach Python.
+        OSError: as root, if that user cannot reach Python, or other folders that programs need.
     """
     if os.geteuid() != 0:
         return os.geteuid()
-    for folder in sorted({folder for path in filesystem.interpreter() for folder in path.resolve().parents}):
-        if not folder.stat().st_mode & stat.S_IXOTH:
-            raise OSError(
-                f"as root it needs a Python that other users can read, and this one is in {folder}. "
-                "Set it up again with another one and elsewhere, as in: "
-                "make PYTHON=/usr/bin/python3 VENV=/opt/spinbook setup"
-            )
+    for path in filesystem.interpreter():
+        for folder in reversed(path.resolve().parents):
+            if not folder.stat().st_mode & stat.S_IXOTH:
+                raise OSError(_why_closed(path, folder))
     return dedicated_user()
+
+
+def _why_closed(path: Path, folder: Path) -> str:
+    if path in filesystem.python_folders():
+        return (
+            f"as root it needs a Python that other users can read, and this one is in {folder}. "
+            "Set it up again with another one and elsewhere, as in: "
+            "make PYTHON=/usr/bin/python3 VENV=/opt/spinbook setup"
+        )
+    return (
+        f"as root it starts programs as another user, who can't enter {folder}, and they need {path}. "
+        f"Move the course or the checkout that it belongs to elsewhere, or let others in: chmod o+x {folder}"
+    )
 
 
 def rules(readonly: Sequence[Path], hidden: Sequence[Path]) -> int:

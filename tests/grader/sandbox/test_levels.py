@@ -207,14 +207,19 @@ def test_the_names_are_those_of_the_command_line() -> None:
     assert f"{Isolation.NONE}" == "none"
 
 
-def test_as_root_landlock_names_the_folder_that_hides_python_from_others(
+def test_as_root_landlock_names_the_folder_that_hides_python_or_interfaces_from_others(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    (tmp_path / "root").mkdir(mode=0o700)
+    closed = tmp_path / "root"
+    closed.mkdir(mode=0o700)
     monkeypatch.setattr(os, "geteuid", lambda: 0)
-    monkeypatch.setattr(filesystem, "interpreter", lambda: (tmp_path / "root" / "bin" / "python",))
-
+    monkeypatch.setattr(filesystem, "interpreter", lambda: (closed / "bin", closed / "interfaces"))
+    monkeypatch.setattr(filesystem, "python_folders", lambda: [closed / "bin"])
     with pytest.raises(OSError, match=r"Python that other users can read, .* VENV=/opt/spinbook setup"):
+        landlock.student_user()
+    monkeypatch.setattr(filesystem, "python_folders", lambda: [])
+    monkeypatch.setattr(filesystem, "interpreter", lambda: (closed / "interfaces",))
+    with pytest.raises(OSError, match=rf"they need {closed}/interfaces\. Move the course .* chmod o\+x /"):
         landlock.student_user()
 
 
@@ -233,3 +238,14 @@ def test_as_root_what_other_users_can_not_read_is_named_before_a_student_misses_
     with pytest.raises(SandboxUnavailable, match=rf"chmod -R a\+rX {tmp_path}/modules/numpy$"):
         choose()
     assert choose(Isolation.NONE) is Isolation.NONE
+
+
+def test_as_root_interfaces_in_a_folder_that_others_can_not_enter_refuse_landlock(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, tried: list[Isolation]
+) -> None:
+    """A student's import of such a module failed, as if there were none."""
+    (tmp_path / "closed").mkdir(mode=0o700)
+    monkeypatch.setattr(os, "geteuid", lambda: 0)
+    monkeypatch.setattr(filesystem, "interpreter", lambda: (tmp_path / "closed" / "interfaces",))
+    assert "closed/interfaces" in (available()[Isolation.LANDLOCK] or "")
+    assert Isolation.LANDLOCK not in tried
