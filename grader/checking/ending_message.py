@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import builtins
 import difflib
 import re
 import sys
 
-from grader.checking.hint_texts import hints
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Ending
 from grader.submission.python_version import newer_name
@@ -60,28 +58,6 @@ def _instead(module: str, exercise: Exercise) -> str:
     meant = f" Is it a misspelling of {close[0]}?" if close else ""
     available = ", ".join([AVAILABLE, *exercise.packages])
     return f"The module {module} is not available here. Available are Python's own modules, {available}.{meant}"
-
-
-#: What a program without an exception does, by how its run ended.
-_DOES = {
-    "did-not-start": "does not start",
-    "crashed": "ends",
-    "timed-out": "stops responding",
-    "over-limit": "does something without end",
-}
-
-
-def hints_of_ending(outcome: str, message: str = "", line: int | None = None) -> tuple[str, str]:
-    """Return where to look and what to do if a program ended, which a student may read even of a hidden check.
-
-    Of an exception in `message`, they have the line, and the class if that is Python's own.
-    """
-    if not (message or line):
-        return hints("ended", does=_DOES.get(outcome, "ends"))
-    number = line or next(iter(re.findall(r" in line (\d+)\b", message)), "")
-    known = (name for name in re.findall(r"\b[A-Z]\w+", message) if isinstance(getattr(builtins, name, None), type))
-    error = f"Line {number} ends with {next(known, 'an exception')}." if number else "Which line raises this exception?"
-    return hints("exception", error=error)
 
 
 def message_of(ending: Ending, exercise: Exercise) -> str:

@@ -1,7 +1,8 @@
-"""The hints that belong to what a recording shows. Their texts are in hints.md."""
+"""The hints that belong to what a recording shows, and to how a run ended. Their texts are in hints.md."""
 
 from __future__ import annotations
 
+import builtins
 import pkgutil
 import re
 from functools import cache
@@ -16,6 +17,28 @@ def hints(name: str, **words: str) -> tuple[str, str]:
     for word, text in words.items():
         where, todo = where.replace(f"{{{word}}}", text), todo.replace(f"{{{word}}}", text)
     return where, todo
+
+
+#: What a program without an exception does, by how its run ended.
+_DOES = {
+    "did-not-start": "does not start",
+    "crashed": "ends",
+    "timed-out": "stops responding",
+    "over-limit": "does something without end",
+}
+
+
+def hints_of_ending(outcome: str, message: str = "", line: int | None = None) -> tuple[str, str]:
+    """Return where to look and what to do if a program ended, which a student may read even of a hidden check.
+
+    Of an exception in `message`, they have the line, and the class if that is Python's own.
+    """
+    if not (message or line):
+        return hints("ended", does=_DOES.get(outcome, "ends"))
+    number = line or next(iter(re.findall(r" in line (\d+)\b", message)), "")
+    known = (name for name in re.findall(r"\b[A-Z]\w+", message) if isinstance(getattr(builtins, name, None), type))
+    error = f"Line {number} ends with {next(known, 'an exception')}." if number else "Which line raises this exception?"
+    return hints("exception", error=error)
 
 
 @cache

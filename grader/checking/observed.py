@@ -7,8 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 from grader.checking.cause import UNKNOWN, Cause
-from grader.checking.ending_message import hints_of_ending
-from grader.checking.hint_texts import hints
+from grader.checking.hint_texts import hints, hints_of_ending
 from grader.exercise.exercise import Exercise, Topic
 from grader.recording.arrays import LongArray
 from grader.recording.recording import EndPointKind, Recording

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checking.ending_message import hints_of_ending
+from grader.checking.hint_texts import hints_of_ending
 from grader.checking.verdict import Finding, Status, Verdict
 
 if TYPE_CHECKING:
