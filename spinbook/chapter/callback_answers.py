@@ -10,6 +10,9 @@ from spinbook.chapter.interface_fields import WrongField
 from spinbook.chapter.syntax import last_name, syntax_tree
 from spinbook.chapter.variable_types import Function, ProgramTypes, TypedValue, callback_argument, interface_argument
 
+#: Calls that register a callback whose answer rclpy needs.
+_REGISTERING = frozenset({"create_service", "ActionServer", "add_on_set_parameters_callback"})
+
 
 def unanswered(program: str) -> list[WrongField]:
     """Return the callbacks of a program that can end without their answer; none if it is not Python."""
@@ -47,7 +50,10 @@ class _Asked:
 
 def _asked(call: ast.Call) -> Iterator[_Asked]:
     """Yield the callbacks in a call whose answer rclpy needs."""
-    name, interface = last_name(call.func), interface_argument(call) or call.func
+    name = last_name(call.func)
+    if name not in _REGISTERING:
+        return
+    interface = interface_argument(call) or call.func
     named = {keyword.arg: keyword.value for keyword in call.keywords}
     callback = callback_argument(call) if name in {"create_service", "ActionServer"} else None
     if callback and name == "create_service":

@@ -167,7 +167,9 @@ _FILE_CELL = re.compile(r"%%writefile +(?P<file>[\w./~-]+) *\n")
 
 def in_pieces(fence: Fence) -> list[Fence]:
     """Return a fence for a terminal in pieces: each program or definition that it writes, and the commands between."""
-    written = [m for m in _HERE_DOCUMENT.finditer(fence.code) if m["file"].endswith(_FILES)] if fence.is_shell else []
+    if "<<" not in fence.code or not fence.is_shell:
+        return [fence]
+    written = [match for match in _HERE_DOCUMENT.finditer(fence.code) if match["file"].endswith(_FILES)]
     cuts = sorted({0, len(fence.code), *(end for match in written for end in match.span())})
     pieces = [(start, fence.code[start:end]) for start, end in itertools.pairwise(cuts)]
     return [
