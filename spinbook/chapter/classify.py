@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import re
 from dataclasses import dataclass, replace
@@ -185,15 +186,27 @@ def with_language(fence: Fence) -> Fence:
     """Return the fence; one without a language gets the one that its content clearly is."""
     if fence.language in _SESSIONS and is_session(fence.code):
         return replace(fence, language="python")
+    if fence.language not in _ANY and not fence.is_python and _is_program(fence):
+        return replace(fence, language="python")
     if fence.language not in _ANY or fence.attributes:
         return fence
     if looks_like_shell(split_transcript(fence.code)[0] if SHOWN_PROMPT.match(fence.code.lstrip()) else fence.code):
         return Fence("bash", fence.code, fence.line, fence.attributes, fence.skipped)
-    if not fence.language and re.search(
-        r"^(import|from) (rclpy|\w+(_msgs|_srvs|_interfaces))\b", fence.code, re.MULTILINE
-    ):
+    if not fence.language and _IMPORTS_ROS.search(fence.code):
         return Fence("python", fence.code, fence.line, fence.attributes, fence.skipped)
     return fence
+
+
+_IMPORTS_ROS = re.compile(r"^(import|from) (rclpy|\w+(_msgs|_srvs|_interfaces))\b", re.MULTILINE)
+
+
+def _is_program(fence: Fence) -> bool:
+    """Return whether a fence of a language that nobody knows is a program for rclpy, such as `pyhton`."""
+    if "rclpy" not in fence.code or not _IMPORTS_ROS.search(fence.code):
+        return False
+    with contextlib.suppress(CodeError):
+        return not inspect(fence.code).fragment
+    return False
 
 
 def _unknown_attributes(fence: Fence, file: Path) -> list[Problem]:

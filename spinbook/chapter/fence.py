@@ -32,7 +32,8 @@ _DIRECTIVE = re.compile(r"\{([A-Za-z][\w:-]*)\}(.*)$")
 _FILES = (".py", ".msg", ".srv", ".action")
 
 PYTHON = frozenset({"python", "py", "py3", "python3", "ipython", "ipython3"})
-SHELL = frozenset({"bash", "sh", "shell", "zsh", "console", "shell-session", "terminal"})
+SHELL = frozenset({"bash", "sh", "shell", "zsh", "fish", "ksh", "console", "shell-session", "shellsession", "terminal"})
+SHELL |= {"bash-session", "sh-session", "shellscript", "shell-script", "commandline", "command-line", "cli"}
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,8 @@ def parse_info(info: str) -> tuple[str, dict[str, str]]:
     ('python', {'title': 'joint_publisher.py', 'raises': 'true'})
     >>> parse_info('{.python .annotate title="a.py"}')
     ('python', {'annotate': 'true', 'title': 'a.py'})
+    >>> parse_info('{#first .sourceCode .py}')
+    ('py', {'sourceCode': 'true'})
     """
     info = info.strip()
     myst = re.match(r"\{code-cell\}\s*(\S*)\s*(.*)$", info)
@@ -103,8 +106,11 @@ def parse_info(info: str) -> tuple[str, dict[str, str]]:
         language, rest = myst.group(1) or "python", myst.group(2)
     elif info.startswith("{"):
         # Pandoc's and MkDocs' `{.python title="…"}`, Quarto's `{python}`.
-        language, _, rest = info[1:].replace("}", " ").strip().partition(" ")
-        language, rest = language.lstrip("."), re.sub(r"(?<!\S)\.(?=\w)", "", rest)
+        inside = re.sub(r"(?<!\S)#[\w:.-]+", "", info[1:].replace("}", " ")).strip()
+        classes = re.findall(r"(?<!\S)\.?([\w+-]+)(?=,?(?:\s|$))", inside)
+        # `{.sourceCode .py}` is Python, too.
+        language = next((name for name in classes if name.lower() in PYTHON | SHELL), (classes or [""])[0])
+        rest = re.sub(r"(?<!\S)\.(?=\w)", "", re.sub(rf"(?<!\S)\.?{re.escape(language)}(?!\S)", "", inside, count=1))
     else:
         language, _, rest = info.partition(" ")
     # ```python{title=...} and ```python {1,3} are written by people who come from other tools; so is ```python:a.py.

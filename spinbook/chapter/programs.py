@@ -277,7 +277,10 @@ def _with_parts(items: list[ClassifiedFence], used: Mapping[int, Iterable[int]])
     for number in sorted(needed):
         item = out[number]
         if item.kind is CellKind.NODE and _goes_on(number, used, out):
-            out[number] = replace(item, kind=CellKind.PART, runs_in_kernel=False)
+            # `--after` names parts and earlier versions of nodes.
+            is_shared = any(other.name == item.name for other in items if other is not item)
+            name = f"{item.name}_part" if is_shared else item.name
+            out[number] = replace(item, kind=CellKind.PART, name=name, runs_in_kernel=False)
         elif item.kind is not CellKind.NODE:
             runs = item.kind is CellKind.SNIPPET
             name = _part_name(item, taken)

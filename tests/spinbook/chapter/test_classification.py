@@ -180,3 +180,10 @@ def test_options_of_a_quarto_cell_may_be_in_its_braces(tmp_path: Path) -> None:
     chapter = read(tmp_path, f"{skipped}```{{python}}\n#| filename: arm.py\n{NODE}```\n")
 
     assert [(cell.name, cell.tags) for cell in chapter.cells[1:]] == [(None, ("skip-execution",)), ("arm", ())]
+
+
+@pytest.mark.parametrize("info", ["{.sourceCode .py}", "{#first .sourceCode .python .numberLines}", "pyhton", "ros2"])
+def test_a_program_is_one_however_its_language_is_written(tmp_path: Path, info: str) -> None:
+    *_, cell = read(tmp_path, f"# C\n\n``` {info}\n{NODE}```\n").cells
+
+    assert (cell.kind, cell.name) == (CellKind.NODE, "talker")

@@ -16,8 +16,9 @@ from spinbook.chapter.surroundings import Surroundings
 def test_a_main_continues_the_class_above_which_does_not_run_by_itself(tmp_path: Path) -> None:
     part, node = cells(read(tmp_path, IMPORTS + TALKER, MAIN + GUARD))
 
-    assert (part.kind, part.name) == (CellKind.PART, "talker")
-    assert (node.kind, node.after, node.source) == (CellKind.NODE, ("talker",), MAIN + GUARD)
+    assert (part.kind, part.name) == (CellKind.PART, "talker_part")
+    assert (node.kind, node.name, node.after) == (CellKind.NODE, "talker", ("talker_part",))
+    assert node.source == MAIN + GUARD
     assert not inspect(node.whole).needs
 
 
@@ -319,3 +320,13 @@ def test_where_failing_is_the_lesson_it_may_fail(tmp_path: Path) -> None:
     chapter = read(tmp_path, *fences, "```python raises\nundefined\n```\n")
 
     assert [cell.raises for cell in cells(chapter)] == [True, True, True]
+
+
+def test_a_program_that_is_shown_again_line_by_line_runs(tmp_path: Path) -> None:
+    begin, rest = "rclpy.init()\nnode = rclpy.create_node('hand')\n", "while rclpy.ok():\n    print(node)\n"
+
+    _, part, spinning, printing = cells(read(tmp_path, "import rclpy\n", begin, "rclpy.spin(node)\n", rest))
+
+    assert (part.kind, part.name) == (CellKind.PART, "hand_part")
+    assert (spinning.kind, spinning.after) == (CellKind.NODE, ("hand_part",))
+    assert (printing.name, printing.after) == ("hand", ("hand_part",))
