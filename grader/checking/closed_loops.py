@@ -93,6 +93,8 @@ def must_stay_between(
 
     Example: `run.must_stay_between("/out", "data", 0.0, 2.0)`
     """
+    if lowest > highest:
+        raise ValueError(f"lowest={lowest:g} is more than highest={highest:g}.")
     unit = run.unit_of(field, topic)
     for at, (value,) in trajectory(run, topic, field):
         if at >= start - 1e-9 and not lowest - 1e-9 <= value <= highest + 1e-9:

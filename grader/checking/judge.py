@@ -139,6 +139,7 @@ class ListedCheck:
     points: float
     hidden: bool
     fixtures: tuple[str, ...]
+    depends: tuple[str, ...] = ()
 
 
 def listed(exercise: Exercise, scenarios: tuple[str, ...] = ()) -> tuple[ListedCheck, ...]:
@@ -150,7 +151,7 @@ def listed(exercise: Exercise, scenarios: tuple[str, ...] = ()) -> tuple[ListedC
     checks = Checks(run=False)
     run_pytest(exercise, dict.fromkeys(scenarios), checks)
     return tuple(
-        ListedCheck(verdict.name, verdict.points, verdict.hidden, checks.fixtures[verdict.name])
+        ListedCheck(verdict.name, verdict.points, verdict.hidden, *checks.names_in(verdict.name))
         for verdict in checks.verdicts.values()
     )
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from grader.checking import known_names
+from grader.checking.argument_slips import argument_slips
 from grader.checking.closed_loops import TRUTH
 from grader.checking.graph import Kind
 from grader.checking.known_names import KnownNames
@@ -19,8 +20,8 @@ from grader.checking.message import Message
 from grader.checking.run import Run
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.imported_files import with_modules
-from grader.recording.events import STATES, Call, Goal
-from grader.recording.recording import Endpoint, ReceivedMessage, SentMessage
+from grader.recording.events import STATES, Call, Goal, ParameterChange, ParameterReading
+from grader.recording.recording import Endpoint, ReceivedMessage, Recording, SentMessage
 from grader.scenario.scenario import Scenario
 from ros_in_python.field_path import steps_of
 
@@ -38,6 +39,9 @@ _OF_RUNS = {*(name for name in dir(Run) if not name.startswith("_")), *(one.name
 
 #: Methods that return lists of records.
 _LISTS = {"calls": Call, "goals": Goal, "end_points": Endpoint, "publishers": Endpoint, "subscriptions": Endpoint}
+
+#: The lists of a recording whose records have the same attributes in every exercise.
+_IN_RECORDINGS = {"calls": Call, "goals": Goal, "parameters": ParameterChange, "readings": ParameterReading}
 
 #: Functions that return the same items in a list.
 _SAME_ITEMS = ("sorted", "list", "tuple", "reversed")
@@ -59,7 +63,7 @@ def misspellings(exercise: Exercise, scenarios: tuple[Scenario, ...]) -> Iterato
 
 def _parsed(file: Path) -> ast.Module:
     try:
-        return ast.parse(file.read_text(encoding="utf-8"))
+        return ast.parse(file.read_text(encoding="utf-8-sig"))
     except (OSError, SyntaxError, ValueError):
         return ast.Module(body=[], type_ignores=[])
 
@@ -118,6 +122,8 @@ class _Function:
                 yield from self._key(node, node.value)
             if isinstance(node, ast.Call) and self._is_method(node.func):
                 yield from self._call(node)
+            elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Attribute) and self._is_method(node.value):
+                yield from self._not_called(node.value)
 
     # --- variables
 
@@ -147,6 +153,8 @@ class _Function:
             return self._values.get(node.id)
         if isinstance(node, ast.Subscript) and not isinstance(node.slice, ast.Slice):
             return self._items(node.value)
+        if isinstance(node, ast.Attribute) and self._is_method(node) and node.attr in ("recording", "reference"):
+            return "record", Recording
         if isinstance(node, ast.Attribute) and (owner := self._value(node.value)) and owner[0] == "message":
             nested = known_names.nested(owner[1], node.attr)
             return ("message", nested) if nested and node.attr not in _OF_MESSAGES else None
@@ -161,6 +169,8 @@ class _Function:
         if isinstance(node, ast.Attribute) and self._is_method(node) and node.attr in ("sent", "received"):
             types = self._known.sent if node.attr == "sent" else self._known.received
             return ("message", types[0]) if len(types) == 1 else None
+        if isinstance(node, ast.Attribute) and self._value(node.value) == ("record", Recording):
+            return ("record", _IN_RECORDINGS[node.attr]) if node.attr in _IN_RECORDINGS else None
         if isinstance(node, ast.Attribute) and (owner := self._value(node.value)) and owner[0] == "message":
             element = known_names.element(owner[1], node.attr)
             return ("message", element) if element else None
@@ -222,6 +232,11 @@ class _Function:
             if known and name not in known:
                 yield self._error(node, f"{value[1]} has no field {name!r}", name, known)
 
+    def _not_called(self, node: ast.Attribute) -> Iterator[ExerciseError]:
+        if callable(getattr(Run, node.attr, None)):
+            written = ast.unparse(node)
+            yield ExerciseError(self._file, f"{written} is not called", f"Write {written}(…).", node.lineno)
+
     def _arguments(self, node: ast.Call, method: str) -> dict[str, Any] | None:
         """Return the arguments of a call by the names of the parameters; None if the source does not say."""
         function = getattr(Run, method, None)
@@ -241,15 +256,16 @@ class _Function:
         if method not in _OF_RUNS or not callable(getattr(Run, method, None)):
             return
         parameters = set(inspect.signature(getattr(Run, method)).parameters) - {"run", "self"}
-        for keyword in node.keywords:
-            if keyword.arg and keyword.arg not in parameters:
-                yield self._error(node, f"{method} has no argument {keyword.arg}", keyword.arg, parameters)
+        for keyword in (unknown := [one for one in node.keywords if one.arg and one.arg not in parameters]):
+            yield self._error(node, f"{method} has no argument {keyword.arg}", str(keyword.arg), parameters)
+        for problem, fix in () if unknown else argument_slips(method, getattr(Run, method), node):
+            yield ExerciseError(self._file, problem, fix, node.lineno)
         for name, argument in (self._arguments(node, method) or {}).items():
             yield from self._argument(node, method, name, argument)
 
     def _argument(self, node: ast.Call, method: str, name: str, argument: Any) -> Iterator[ExerciseError]:
         known, word = self._candidates(method, name)
-        for text in self._texts(argument) if known else ():
+        for text in self._texts(argument) if word else ():
             if text not in known:
                 yield self._error(node, f"there is no {word} {text!r}", text, known)
         yield from self._of_truth(node, method, name, argument)
@@ -286,7 +302,7 @@ class _Function:
         """Return what a parameter may be, and its word; nothing if it may be anything."""
         known = self._known
         anything: dict[str, tuple[Collection[str], str]] = {
-            "topic": (known.topics if known.complete else (), "topic"),
+            "topic": (known.topics, "topic" if known.complete else ""),
             "service": (known.services, "service"),
             "action": (known.actions, "action"),
             "subscriber": (known.subscribers, "subscriber"),

@@ -25,6 +25,9 @@ from grader.exercise.modules import error_in
 #: How hints begin that are for a node which works nowhere: a check that depends on others knows better.
 _BASIC = tuple(hints(name)[0].partition("{")[0] for name in ("not_published", "only_zeros", "some_zeros"))
 
+#: What a check may say in words.
+_TEXTS = ("hint", "todo", "misconception", "untested")
+
 #: Of a hint that says what to do: students don't read more.
 MOST_WORDS = 160
 
@@ -113,6 +116,10 @@ class Checks:
         if self.problem:
             items.clear()
 
+    def names_in(self, check: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """Return the fixtures that a check uses, and the checks on which it depends."""
+        return self.fixtures[check], tuple(self._marks[check].depends)
+
     def _mark(self, item: pytest.Item) -> CheckOptions:
         function = getattr(item, "function", None)
         line = inspect.unwrap(function).__code__.co_firstlineno if function else None
@@ -125,6 +132,9 @@ class Checks:
             problem, fix = f"{item.name} has no docstring", "Its docstring is the title that the student reads."
         elif isinstance(mark.points, bool) or not isinstance(mark.points, (int, float)) or not mark.points >= 0:
             problem, fix = f"{item.name} gives {mark.points!r} points", "Give points of 0 or more, such as points=5."
+        elif other := [name for name in _TEXTS if not isinstance(getattr(mark, name), str)]:
+            problem = f"the {other[0]} of {item.name} is {getattr(mark, other[0])!r}"
+            fix = "Write it as a text in quotes."
         elif (words := len(mark.todo.split())) > MOST_WORDS:
             problem, fix = f"the todo of {item.name} has {words} words", f"Say what to do in up to {MOST_WORDS} words."
         elif missing := self._unknown_scenario(item):

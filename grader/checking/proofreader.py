@@ -17,16 +17,17 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NoReturn
 
+from grader.checking import known_names
 from grader.checking.agreement import disagreements
 from grader.checking.judge import ListedCheck, listed
 from grader.checking.misspellings import misspellings
 from grader.checking.weak_checks import weak_checks
-from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.exercise import Exercise, ExerciseError, ServiceOrAction, Topic
 from grader.exercise.imported_files import with_modules
 from grader.exercise.loading import load
 from grader.exercise.mistakes import each_mistake
 from grader.exercise.modules import error_in, import_of
-from grader.exercise.rules import named_by, rules_of, without_markup
+from grader.exercise.rules import ids_used_twice, named_by, rules_of, without_markup
 from grader.exercise.starter import MarkerError, starter
 from grader.recording.arrays import ArrayEncoder
 from grader.scenario.declared import declared
@@ -81,12 +82,15 @@ def faults(folder: Path) -> Iterator[ExerciseError]:
     for file in exercise.check_files:
         yield from same_name_twice(file)
         yield from weak_checks(file, _parsed(file))
+    yield from _twice_in_the_task(exercise)
+    yield from _units_of_nothing(exercise)
     yield from rules_that_the_task_lacks(exercise.task, exercise.check_files)
     try:
         checks = listed(exercise, tuple(scenario.name for scenario in scenarios))
     except ExerciseError as error:
         yield error
         return
+    yield from _worth_nothing(exercise, checks)
     yield from points_that_do_not_add_up(exercise, [(check.hidden, check.points) for check in checks])
     yield from _of_mistakes(exercise, checks)
 
@@ -145,6 +149,34 @@ def _remedy_for(name: str, tree: ast.Module) -> str:
     return f"Did you mean {near[0]}?" if near else "Define it, or import it."
 
 
+def _twice_in_the_task(exercise: Exercise) -> Iterator[ExerciseError]:
+    for rule in ids_used_twice(rules_of(exercise.task)):
+        fix = "Give each rule an id of its own."
+        yield ExerciseError(exercise.folder / "task.md", f"another rule has the id {rule.id}, too", fix, rule.line)
+
+
+def _units_of_nothing(exercise: Exercise) -> Iterator[ExerciseError]:
+    """Yield units in exercise.toml of fields that a type does not have."""
+    file = exercise.folder / "exercise.toml"
+    ends: tuple[Topic | ServiceOrAction, ...] = (*exercise.topics, *exercise.endpoints)
+    for end in ends:
+        types = _types_with_fields(end)
+        for path in end.units:
+            if any(known_names.fields(one) for one in types) and not any(known_names.has(one, path) for one in types):
+                every = ", ".join(dict.fromkeys(name for one in types for name in known_names.fields(one)))
+                line = line_with(file, rf'\s*(?:topic|name)\s*=\s*"{re.escape(end.name)}"')
+                yield ExerciseError(
+                    file, f"{end.name} has a unit for {path}, and no such field", f"It has: {every}.", line
+                )
+
+
+def _types_with_fields(end: Topic | ServiceOrAction) -> list[str]:
+    if isinstance(end, Topic):
+        return [end.type]
+    parts = ("Goal", "Result", "Feedback") if end.role.startswith("action") else ("Request", "Response")
+    return [f"{end.type}.{part}" for part in parts]
+
+
 def rules_that_the_task_lacks(task: str, check_files: Iterable[Path]) -> Iterator[ExerciseError]:
     """Yield checks whose `rule` is neither a sentence of `task`, the text of task.md, nor the id of a rule there."""
     for file in check_files:
@@ -171,7 +203,7 @@ def _rules(file: Path) -> Iterator[tuple[int, str]]:
 def _parsed(file: Path) -> ast.Module:
     """Return a parsed file of checks; an empty one if it can't be read, because that fault is reported elsewhere."""
     try:
-        return ast.parse(file.read_text(encoding="utf-8"))
+        return ast.parse(file.read_text(encoding="utf-8-sig"))
     except (SyntaxError, ValueError, OSError):
         return ast.Module(body=[], type_ignores=[])
 
@@ -193,7 +225,7 @@ def points_that_do_not_add_up(exercise: Exercise, points: list[tuple[bool, float
 def line_with(file: Path, pattern: str) -> int | None:
     """Return the first line of a file that matches, counted from 1; None if none does or the file can't be read."""
     try:
-        lines = file.read_text(encoding="utf-8").splitlines()
+        lines = file.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError):
         return None
     return next((number for number, line in enumerate(lines, start=1) if re.match(pattern, line)), None)
@@ -207,15 +239,31 @@ def _of_solution(exercise: Exercise) -> Iterator[ExerciseError]:
         yield ExerciseError(file, "there is no such file", "The checks compare with the solution; write it here.")
         return
     try:
-        text = file.read_text(encoding="utf-8")
-        ast.parse(text)
+        text = file.read_text(encoding="utf-8-sig")
+        classes = {node.name for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ClassDef)}
         starter(text)
+        if exercise.class_name and not exercise.programs and exercise.class_name not in classes:
+            line = line_with(exercise.folder / "exercise.toml", r"\s*class\s*=")
+            problem, fix = f"the solution has no class {exercise.class_name}", "Make the two agree, or leave it out."
+            yield ExerciseError(exercise.folder / "exercise.toml", problem, fix, line)
     except SyntaxError as error:
         yield ExerciseError(file, f"it is not valid Python: {error.msg}", "Fix it, and grade it.", error.lineno)
     except MarkerError as error:
         yield ExerciseError(
             file, str(error).partition(": ")[2], "Fix the markers; the starter is made from them.", error.line
         )
+
+
+def _worth_nothing(exercise: Exercise, checks: tuple[ListedCheck, ...]) -> Iterator[ExerciseError]:
+    """Yield checks without points on which no other depends: nothing comes of them."""
+    needed = {name for check in checks for name in check.depends}
+    for check in checks:
+        if not check.points and check.name not in needed:
+            file = exercise.folder / ("hidden_checks.py" if check.hidden else "checks.py")
+            problem = f"{check.name} gives no points, and no check depends on it"
+            yield ExerciseError(
+                file, problem, "Give it points, or leave it out.", line_with(file, rf"def {check.name}\b")
+            )
 
 
 def _of_mistakes(exercise: Exercise, checks: tuple[ListedCheck, ...]) -> Iterator[ExerciseError]:

@@ -22,6 +22,7 @@ def weak_checks(file: Path, tree: ast.Module) -> Iterator[ExerciseError]:
 
 def _of_check(check: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[tuple[str, str, int]]:
     parts = [node for statement in check.body for node in ast.walk(statement)]
+    nested = [inner for node in parts if isinstance(node, ast.FunctionDef) for inner in ast.walk(node)]
     if isinstance(check, ast.AsyncFunctionDef):
         yield f"{check.name} is async", "Write def: when a check runs, the student's node has ended.", check.lineno
     if check.args.defaults:
@@ -32,6 +33,12 @@ def _of_check(check: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[tuple[s
     for node in parts:
         if isinstance(node, ast.Yield):
             yield f"{check.name} has yield, so it never runs", "Leave yield out.", node.lineno
+        elif isinstance(node, ast.Return) and node.value is not None and node not in nested:
+            yield (
+                f"nothing uses what {check.name} returns",
+                'Write assert in place of return: assert …, "…"',
+                node.lineno,
+            )
         elif isinstance(node, ast.Assert) and isinstance(node.test, ast.Tuple) and node.test.elts:
             yield "assert of a tuple always holds", 'Leave the parentheses out: assert …, "…"', node.lineno
         elif isinstance(node, ast.Expr) and isinstance(node.value, _THROWN_AWAY):

@@ -70,7 +70,7 @@ class Edit:
         """
         base = self.file.parent / self.base if self.base else base
         try:
-            lines = base.read_text(encoding="utf-8").splitlines()
+            lines = base.read_text(encoding="utf-8-sig").splitlines()
         except OSError:
             raise self._error(
                 f"it changes {base.name}, and there is no such file", "Name a file that exists."
@@ -108,7 +108,7 @@ def read_edits(file: Path) -> tuple[Edit, ...]:
     Raises:
         ExerciseError: if two have the same name, or a name is not valid.
     """
-    text = file.read_text(encoding="utf-8")
+    text = file.read_text(encoding="utf-8-sig")
     lines = text.splitlines()
     tokens = MarkdownIt().parse(text)
     headings = [token.map[0] for token in tokens if token.type == "heading_open" and token.tag == "h2" and token.map]

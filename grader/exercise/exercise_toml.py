@@ -318,7 +318,7 @@ def line_of(file: Path, kind: str, number: int, key: str) -> int | None:
     """
     header: int | None = None
     here, count = "", -1
-    for index, line in enumerate(file.read_text(encoding="utf-8").splitlines(), start=1):
+    for index, line in enumerate(file.read_text(encoding="utf-8-sig").splitlines(), start=1):
         if match := re.match(r"\s*\[\[?\s*([A-Za-z_]+)", line):
             here = match[1]
             if not kind and here == key:

@@ -54,7 +54,7 @@ def imported(file: Path, name: str) -> ModuleType:
 def imports_of(file: Path) -> Iterator[tuple[int, str]]:
     """Yield the line and the first part of the name of each module that a Python file imports, such as `maze`."""
     try:
-        tree = ast.parse(file.read_text(encoding="utf-8"))
+        tree = ast.parse(file.read_text(encoding="utf-8-sig"))
     except (OSError, SyntaxError, ValueError):
         return  # running the file will report it
     for node in ast.walk(tree):

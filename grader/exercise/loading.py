@@ -48,7 +48,7 @@ def load(folder: Path | str) -> Exercise:
         file_name=file_name,
         class_name=class_name,
         node_name=node_name,
-        task=task.read_text(encoding="utf-8"),
+        task=task.read_text(encoding="utf-8-sig"),
         topics=topics(entries, file),
         solution_folder=solutions if solutions.is_dir() else None,
         endpoints=endpoints(entries, file),
@@ -97,7 +97,7 @@ def _main_program(top: TomlTable, parts: tuple[ProgramFile, ...], launched: tupl
 
 def _read(file: Path) -> dict[str, Any]:
     try:
-        entries: dict[str, Any] = tomllib.loads(file.read_text(encoding="utf-8"))
+        entries: dict[str, Any] = tomllib.loads(file.read_text(encoding="utf-8-sig"))
         return entries
     except FileNotFoundError:
         raise ExerciseError(file, "there is no such file", "An exercise is a folder with an exercise.toml.") from None

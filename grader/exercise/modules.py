@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import importlib
+import inspect
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -67,6 +68,14 @@ def import_of(name: str) -> str:
     return f"from {home} import {name}" if home else ""
 
 
+def _of_argument(called: str, argument: str) -> str:
+    """Return what was probably meant by an argument that a class or a function of the grader's does not have."""
+    home = import_of(called).split()
+    names = inspect.signature(getattr(importlib.import_module(home[1]), called)).parameters if home else ()
+    near = difflib.get_close_matches(argument, names, n=1)
+    return f"Did you mean {near[0]}?" if near else f"Its arguments: {', '.join(names)}." if names else ""
+
+
 def _of_import(error: ImportError) -> str:
     """Return what to do about a name that a module of the grader does not have."""
     match = re.match(r"cannot import name '(\w+)' from '(grader[\w.]*)'", str(error))
@@ -86,8 +95,12 @@ def _remedy(error: BaseException, folder: Path) -> str:
         return f"Did you mean {near[0]}?" if near else f"Put {error.name}.py next to this file, or install it."
     if isinstance(error, ImportError):
         return _of_import(error)
+    if isinstance(error, SyntaxError) and "unicode error" in str(error):
+        return "Save the file as UTF-8."
     if isinstance(error, FileNotFoundError):
         return 'Is it there? Write its path from this file: Path(__file__).parent / "…".'
+    if match := re.search(r"(\w+)(?:\.__init__)?\(\) got an unexpected keyword argument '(\w+)'", str(error)):
+        return _of_argument(*match.groups())
     if isinstance(error, TypeError) and re.search(r"\bcheck\(\) (missing|takes)", str(error)):
         return 'Each check has points and a hint: @check(points=5, hint="…").'
     return ""
@@ -100,7 +113,8 @@ def error_in(
 
     `subject` says what failed, such as "the world Tank fails".
     """
-    text = (str(error).strip().splitlines() or [""])[0]
+    said = error.msg if isinstance(error, SyntaxError) else str(error)
+    text = (said.strip().splitlines() or [""])[0]
     problem = f"{type(error).__name__}: {text}" if text else type(error).__name__
     place, line = place_of(error, folder) or (file, line)
     fix = _remedy(error, folder) or fix

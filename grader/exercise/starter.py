@@ -28,7 +28,7 @@ def starter(source: str) -> str:
     kept: list[str] = []
     begun: tuple[int, str] | None = None
     markers = 0
-    for number, line in enumerate(source.splitlines(), start=1):
+    for number, line in enumerate(source.removeprefix("\ufeff").splitlines(), start=1):
         if match := BEGIN.match(line):
             if begun:
                 raise MarkerError(number, f"BEGIN SOLUTION inside the one of line {begun[0]}")
@@ -55,7 +55,7 @@ def starter(source: str) -> str:
 def hidden_blocks(source: str) -> Iterator[list[tuple[int, str]]]:
     """Yield the lines of each block between markers, with their numbers, counted from 1."""
     block: list[tuple[int, str]] | None = None
-    for number, line in enumerate(source.splitlines(), start=1):
+    for number, line in enumerate(source.removeprefix("\ufeff").splitlines(), start=1):
         if BEGIN.match(line):
             block = []
         elif END.match(line):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import reprlib
 from collections.abc import Iterable
 from pathlib import Path
 from types import FunctionType
@@ -53,7 +54,8 @@ def _returned(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
     if not several or not all(isinstance(scenario, Scenario) for scenario in several):
         line = module.scenarios.__code__.co_firstlineno if hasattr(module, "scenarios") else None
         other = next((one for one in several if not isinstance(one, Scenario)), found)
-        returned = f"{other!r}, which is no Scenario" if several else f"{found!r}, and not scenarios"
+        what = "one Scenario" if isinstance(other, Scenario) else reprlib.repr(other)
+        returned = f"{what}, which is no Scenario" if several else f"{what}, and not several"
         problem = f"scenarios(seed) returns {returned}" if line else "there is no scenarios(seed)"
         raise ExerciseError(file, problem, "Return a tuple of at least one: return (Scenario(…),)", line)
     return several

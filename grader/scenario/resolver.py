@@ -45,6 +45,9 @@ _NAMESPACE = re.compile(r"(/?[A-Za-z_][A-Za-z0-9_]*)+/?|/")
 _TYPE = re.compile(r"[a-z][a-z0-9_]*/(?P<kind>msg|srv|action)/[A-Z][A-Za-z0-9]*")
 _KINDS = {"msg": "message", "srv": "service", "action": "action"}
 
+#: How long a scenario may last, in seconds of simulated time. Later ends are slips, such as nanoseconds for seconds.
+LONGEST_S = 3600
+
 Typed = TypeVar("Typed", Message, Request, SendGoal, Subscribe, Server, ActionServer)
 
 
@@ -107,6 +110,11 @@ class Resolver:
             value = getattr(scenario, name)
             if value is not None and (isinstance(value, bool) or not isinstance(value, (int, float)) or value < 0):
                 self._fault(0, f"{name}={value!r}", "Give a number that is not negative.")
+        if scenario.rate == 0:
+            self._fault(0, "rate=0", "Give how often /clock is published, such as rate=20.0 (Hz), or leave it out.")
+        if scenario.seconds > LONGEST_S:
+            fix = f"Give at most {LONGEST_S} s of simulated time."
+            self._fault(0, f"the scenario {scenario.name} lasts {scenario.seconds:g} s", fix)
         if scenario.computer_time not in ("apart", "simulated"):
             self._fault(0, f"computer_time={scenario.computer_time!r}", 'Give "apart" or "simulated".')
 

@@ -45,6 +45,9 @@ class World:
 
     def __init__(self, model: Callable[..., Any] | AuthorCode, /, period: float = PERIOD, **arguments: Any) -> None:
         """Take the class itself, and the arguments for its constructor."""
+        if not callable(model) and not isinstance(model, AuthorCode):
+            name = type(model).__name__
+            raise ValueError(f"World({name}(…)): give the class itself, and its arguments after it: World({name}, …)")
         if with_files := getattr(model, "with_files", None):
             arguments = with_files(arguments, folder_of_the_author())
         fields = {"code": model if isinstance(model, AuthorCode) else code_of(model), "arguments": arguments}

@@ -39,6 +39,7 @@ Made from the docstrings; each example is run by a test. The [guide](writing-che
   nanoseconds of simulated time, in which the start is at 100 s: 2.5 s after it is 102_500_000_000.
 - **A field** is a name, `"data"`, or leads into nested messages and lists: `"pose.position.x"`, `"ranges[0]"`,
   `"transforms[0].transform.translation"`.
+- **Arguments** after a `*` are given by name: `check(points=5, hint="…")`.
 - **A topic, service or action** that you leave out is the only one of its kind in exercise.toml. If there are several,
   name it.
 - **Types**: `Place` is a dictionary from fields to values, `Way` and `Errors` are lists of (seconds, value), `By` is
@@ -129,7 +130,11 @@ def _documented(entry: Any) -> Any:
 def _function(name: str, function: Callable[..., Any]) -> Iterator[str]:
     parameters = [one for key, one in inspect.signature(function).parameters.items() if key not in ("self", "run")]
     returned = _returned(function) if name != "check" else ""
-    yield from _entry(f"{name}({', '.join(map(_parameter, parameters))}){returned}", function)
+    written = [_parameter(one) for one in parameters]
+    by_name = [place for place, one in enumerate(parameters) if one.kind is one.KEYWORD_ONLY]
+    if by_name and not any(one.kind is one.VAR_POSITIONAL for one in parameters):
+        written.insert(by_name[0], "*")
+    yield from _entry(f"{name}({', '.join(written)}){returned}", function)
 
 
 def _returned(function: Callable[..., Any]) -> str:

@@ -25,6 +25,7 @@ CHECK = '@check(points=1, hint="")\ndef test_it(near: Run) -> None:\n    """It w
         ("len(near.received) == 4", "nothing uses the result of this comparison"),
         ("assert (len(near.received) == 4, 'too few')", "assert of a tuple always holds"),
         ("yield near.must_answer()", "test_it has yield"),
+        ("return near.must_answer() and 4", "nothing uses what test_it returns"),
         ("near.must_answer()", ""),
         ("assert near.received, 'Nothing came.'", ""),
     ],

@@ -64,6 +64,7 @@ def test_a_missing_solution(course: Path, workers: WorkerPool) -> None:
         ("checks.py", "def test_answers_at_once", "def test_answers_each_message_once",
          "two checks called test_answers_each_message_once"),
         ("checks.py", "points=4,", "points='4',", "gives '4' points"),
+        ("checks.py", "points=4,", "points=4, misconception=3,", "the misconception of .* is 3"),
         ("checks.py", '    """It publishes one message for each message after the first."""\n', "", "no docstring"),
         ("checks.py", "from grader.checking import Run, check", "import no_such_module", "no_such_module"),
         ("checks.py", "depends=[test_publishes_velocities]", "depends=['test_later']", "test_later"),
@@ -72,8 +73,8 @@ def test_a_missing_solution(course: Path, workers: WorkerPool) -> None:
         ("scenarios.py", "arm_swing(10)", "arm_wing(10)", "arm_wing"),
         ("exercise.toml", 'topic = "/joint_commands"', 'topic = "joint_commands"', "joint_commands"),
     ],
-    ids=["points", "fails", "breaks", "fixture", "twice", "text", "title", "import", "depends", "mark", "scenario",
-         "topic"],
+    ids=["points", "fails", "breaks", "fixture", "twice", "text", "hint", "title", "import", "depends", "mark",
+         "scenario", "topic"],
 )  # fmt: skip
 def test_what_is_wrong_is_reported_with_its_file(
     course: Path, workers: WorkerPool, file: str, old: str, new: str, message: str

@@ -18,6 +18,7 @@ rcl_python.install()
 program_imports.watch()
 
 from grader.exercise import load  # noqa: E402
+from grader.recording.arrays import ArrayEncoder  # noqa: E402
 from grader.recording.recording import plain  # noqa: E402
 from spinbook.browser.in_page import check  # noqa: E402
 from spinbook.browser.in_page.runner import ProgramText  # noqa: E402
@@ -40,6 +41,7 @@ def found(folder: Path, file: Path) -> dict[str, Any]:
 with os.fdopen(os.dup(1), "w", encoding="utf-8") as answers:
     os.dup2(2, 1)
     for line in sys.stdin:
-        print(json.dumps(found(Path(sys.argv[1]), Path(line.rstrip("\n")))), file=answers, flush=True)
+        checked = found(Path(sys.argv[1]), Path(line.rstrip("\n")))
+        print(json.dumps(checked, cls=ArrayEncoder), file=answers, flush=True)
 # A program's thread that does not end keeps nobody waiting.
 os._exit(0)

@@ -25,6 +25,7 @@ from grader.exercise import Exercise, load
 from grader.grading.grade import Options
 from grader.grading.grading import Grading, grading_of
 from grader.recording import Recording
+from grader.recording.arrays import read_arrays
 from grader.recording.recording import from_plain
 from grader.submission import Submission, read
 from grader.workers import WorkerPool
@@ -66,7 +67,7 @@ class InThePage:
         if not answer:
             self.close()
             raise AssertionError("ended unexpectedly" if ready else f"no answer within {LIMIT_S} s")
-        found: dict[str, Any] = json.loads(answer)
+        found: dict[str, Any] = json.loads(answer, object_hook=read_arrays())
         return found
 
     def _start(self) -> subprocess.Popen[str]:
