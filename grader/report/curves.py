@@ -59,7 +59,8 @@ class Curve:
 
 def drawn_quantity(exercise: Exercise, grade: Grade, scenario: str) -> Quantity | None:
     """Return the first field that exercise.toml gives a unit for, and that the node publishes; without units, the first
-    number that changes. Topics that the first finding names come first; without topics, it is an action's feedback.
+    number that changes. Topics that the first finding names come first; without topics, it is an action's feedback. If
+    none of these changes, it is the first number that changes on a topic to which the node subscribes.
 
     In a closed loop, it is the first that the node moves: each node may do that with values of its own.
     """
@@ -80,7 +81,8 @@ def drawn_quantity(exercise: Exercise, grade: Grade, scenario: str) -> Quantity 
         if end.role == "action"
         for field, unit in end.units.items()
     ]
-    return next(iter([*_published(named, runs), *_published(exercise.outputs, runs), *served]), None)
+    published = itertools.chain(_published(named, runs), _published(exercise.outputs, runs))
+    return next(itertools.chain(published, served, _sent(exercise, runs)), None)
 
 
 def _published(topics: Sequence[Topic], runs: Sequence[Recording]) -> Iterator[Quantity]:
@@ -89,11 +91,21 @@ def _published(topics: Sequence[Topic], runs: Sequence[Recording]) -> Iterator[Q
         for field, unit in topic.units.items():
             called, named_by = (topic.elements.called, topic.elements.named_by) if topic.elements else ("value", "name")
             yield Quantity(field, unit, called, named_by, topic.name)
-    published = [message for run in runs for message in run.received]
     for topic in topics:
-        values = [dict(_numbers(message.fields)) for message in published if message.topic == topic.name]
-        if changing := [field for field in values[0] if len({v.get(field) for v in values}) > 1] if values else []:
-            yield Quantity(changing[0], "", "value", "name", topic.name)
+        for field in _changing([m.fields for run in runs for m in run.received if m.topic == topic.name]):
+            yield Quantity(field, "", "value", "name", topic.name)
+
+
+def _sent(exercise: Exercise, runs: Sequence[Recording]) -> Iterator[Quantity]:
+    for topic in exercise.inputs:
+        for field in _changing([m.fields for run in runs for m in run.sent if m.topic == topic.name]):
+            yield Quantity(field, topic.units.get(field, ""), "value", "name", "", topic.name)
+
+
+def _changing(messages: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return the numbers that are not the same in all messages, by their full names."""
+    values = [dict(_numbers(fields)) for fields in messages]
+    return [field for field in values[0] if len({v.get(field) for v in values}) > 1] if values else []
 
 
 def _numbers(fields: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, float]]:

@@ -19,7 +19,7 @@ from grader.report.path_plot import PlanePath, path_of
 from grader.report.printable import printable
 from groundwork.files import write_if_changed
 
-NOTHING = "--plot: there is nothing to draw, no number that changes on a topic under [[publish]]."
+NOTHING = "--plot: there is nothing to draw, no number that changes on a topic of exercise.toml."
 #: The same grade gives the same file: no date, and identifiers made from a fixed salt.
 SETTINGS: dict[Any, Any] = {"svg.hashsalt": "spinbook", "svg.fonttype": "none", "font.family": "sans-serif"}
 
