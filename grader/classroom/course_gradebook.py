@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from urllib.parse import quote
 
 from grader.classroom.overview import OUTCOMES, Distribution, Tally, distribution, tallies
 from grader.classroom.tables import Cell, csv_text
 from grader.grading.grade import Entry, Student
-from grader.report.as_json import STUDENTS, from_json
+from grader.report.as_json import STUDENTS, read_grade
 from grader.report.pages import render
 
 
@@ -59,17 +58,10 @@ def graded_exercises(
 
 
 def _graded_exercise(folder: Path, title: str) -> GradedExercise:
-    read = [_entry(file) for file in sorted(folder.glob(f"{STUDENTS}/*/grade.json"))]
-    entries = {entry.student.id: entry for entry in read if entry}
+    stored = filter(None, map(read_grade, sorted(folder.glob(f"{STUDENTS}/*/grade.json"))))
+    entries = {entry.student.id: entry for entry, _ in stored}
     points = max((entry.grade.points for entry in entries.values()), default=0.0)
     return GradedExercise(folder.name, title, points, entries)
-
-
-def _entry(file: Path) -> Entry | None:
-    try:
-        return from_json(file.read_text(encoding="utf-8"))[0]
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return None
 
 
 def course_rows(exercises: Sequence[GradedExercise]) -> tuple[CourseRow, ...]:
@@ -135,7 +127,7 @@ def course_page(title: str, exercises: Sequence[GradedExercise], rows: Sequence[
     columns = [column_of(exercise) for exercise in exercises]
     return render(
         "classroom/course.html",
-        script=_script(),
+        script="classroom/sort.js",
         title=title,
         columns=columns,
         rows=rows,
@@ -174,8 +166,3 @@ def struggles(columns: Sequence[Column]) -> tuple[Struggle, ...]:
 def feedback_of(exercise: GradedExercise, row: CourseRow) -> str:
     """Return the link from the course's page to a student's page for an exercise."""
     return f"{quote(exercise.name, safe='')}/{STUDENTS}/{quote(row.student.id, safe='')}/feedback.html"
-
-
-@cache
-def _script() -> str:
-    return (Path(__file__).parent / "sort.js").read_text(encoding="utf-8")

@@ -6,8 +6,6 @@ import statistics
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
 from urllib.parse import quote
 
 from grader.checking.verdict import Verdict
@@ -173,7 +171,7 @@ def overview_page(
     scores = [entry.final for entry in scored if entry.final is not None]
     return render(
         "classroom/overview.html",
-        script=_script(),
+        script="classroom/sort.js",
         exercise=exercise,
         rows=rows,
         distribution=distribution(scores, scored[0].grade.points) if scored else None,
@@ -187,8 +185,3 @@ def overview_page(
         page_of=page_of,
         several=sum(len(misconceptions.of(entry)) > 1 for entry in scored),
     )
-
-
-@cache
-def _script() -> str:
-    return (Path(__file__).parent / "sort.js").read_text(encoding="utf-8")

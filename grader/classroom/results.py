@@ -28,7 +28,7 @@ from grader.grading.reference import digest_of, versions
 from grader.recording.recording import Recording
 from grader.recording.recording import from_json as recordings_from_json
 from grader.recording.recording import to_json as recordings_to_json
-from grader.report.as_json import STUDENTS, folder_of, from_json, to_json
+from grader.report.as_json import STUDENTS, folder_of, read_grade, to_json
 from grader.report.feedback import feedback_page
 from grader.submission.submission import Submission
 from groundwork.files import remove_parts, try_lock, write_if_changed
@@ -68,10 +68,7 @@ class Results:
 
     def entry(self, student: str) -> tuple[Entry, str] | None:
         """Return a student's stored entry and the key of the grade; None if missing or unreadable."""
-        try:
-            return from_json((folder_of(self.folder, student) / "grade.json").read_text(encoding="utf-8"))
-        except (OSError, ValueError, KeyError, TypeError, AttributeError):
-            return None
+        return read_grade(folder_of(self.folder, student) / "grade.json")
 
     def check_exercise(self, exercise: str) -> None:
         """Raise `OtherExercise` if the folder has grades of another exercise than this one."""

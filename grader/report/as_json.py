@@ -71,21 +71,24 @@ def to_json(entry: Entry, key: str = "") -> str:
     return json.dumps(entries, indent=2, ensure_ascii=False) + "\n"
 
 
-def from_json(text: str) -> tuple[Entry, str]:
-    """Return the entry and the key that `to_json` wrote. Raises ValueError, KeyError or TypeError for any other
-    text.
+def read_grade(file: Path) -> tuple[Entry, str] | None:
+    """Return the entry and the key of what `to_json` wrote into this file; None if it is missing or holds anything
+    else.
     """
-    entries = json.loads(text)
-    submitted = entries["submitted"]
-    entry = Entry(
-        student=Student(**entries["student"]),
-        file=entries["file"],
-        grade=_grade(entries["grade"]),
-        submitted=datetime.fromisoformat(submitted) if submitted else None,
-        adjustments=tuple(Adjustment(**adjustment) for adjustment in entries["adjustments"]),
-        submitted_from=entries["submitted_from"],
-    )
-    return entry, str(entries["key"])
+    try:
+        entries = json.loads(file.read_text(encoding="utf-8"))
+        submitted = entries["submitted"]
+        entry = Entry(
+            student=Student(**entries["student"]),
+            file=entries["file"],
+            grade=_grade(entries["grade"]),
+            submitted=datetime.fromisoformat(submitted) if submitted else None,
+            adjustments=tuple(Adjustment(**adjustment) for adjustment in entries["adjustments"]),
+            submitted_from=entries["submitted_from"],
+        )
+        return entry, str(entries["key"])
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return None
 
 
 def _grade(entries: dict[str, Any]) -> Grade:

@@ -22,14 +22,14 @@ def render(page: str, script: str = "", **values: Any) -> str:
     """Return the page that the template `page` (a path below grader/) makes from `values`.
 
     Every text is escaped, loses its control and direction-changing characters, and is cut after 4000 characters. The
-    page contains the shared style sheet and `script`. Its policy forbids everything else: other scripts and styles,
-    every request, forms.
+    page contains the shared style sheet and `script` (a path, too). Its policy forbids everything else: other scripts
+    and styles, every request, forms.
     """
-    style = _style()
+    style, code = _style(), _source(script) if script else ""
     policy = {
         "default-src": "'none'",
         "style-src": _allowed(style),
-        "script-src": _allowed(script) if script else "'none'",
+        "script-src": _allowed(code) if code else "'none'",
         "img-src": "data:",
         "base-uri": "'none'",
         "form-action": "'none'",
@@ -37,7 +37,7 @@ def render(page: str, script: str = "", **values: Any) -> str:
     return template(page).render(
         **values,
         style=Markup(style),
-        script=Markup(script),
+        script=Markup(code),
         policy="; ".join(f"{name} {value}" for name, value in policy.items()),
     )
 
