@@ -82,7 +82,10 @@ def test_late_subscriber(late: Run, changed: Run) -> None:
     for run, name, seconds in ((late, "late at 1 s", 1.0), (late, "late at 2 s", 2.0), (changed, "late at 1.6 s", 1.6)):
         before = [message for message in run.messages_on() if message.at < seconds]
         if before and not run.messages_on(subscriber=name):
-            text = f"the subscriber “{name}” got nothing. A volatile publisher keeps nothing for it."
+            volatile = any(end.durability == "volatile" for end in run.publishers("/robot_description"))
+            best_effort = "It asks for reliable, and your publisher is not."
+            why = "A volatile publisher keeps nothing for it." if volatile else best_effort
+            text = f"the subscriber “{name}” got nothing. {why}"
             run.wrong_at(None, text, "", "the newest description", "nothing")
 
 

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any
 
-from grader.checking.cause import Cause
+from grader.checking.cause import UNKNOWN, Cause
 from grader.checking.comparator import TOLERANCE, difference, equal, shown, shown_apart
 from grader.checking.doubts import note
 from grader.checking.hint_texts import hints
 from grader.checking.late_answers import AT_ONCE, delay, how_late, in_general, is_late, is_one_late
 from grader.checking.message import Exchange, Message
 from grader.checking.partial import each
-from grader.checking.patterns import ORDER, common, fixed_step
+from grader.checking.patterns import FEWEST, ORDER, common, fixed_step
 from grader.checking.recorded_run import RecordedRun
 from grader.checking.unanswered import why_unanswered
 from grader.recording.arrays import LongArray
@@ -225,7 +226,29 @@ def pattern(run: RecordedRun, field: str, per: str = "", unit: str = "") -> Caus
             expected, got = _values(exchange.expected[0], field, per), _values(exchange.answers[0], field, per)
             pairs += [(expected[name], got[name]) for name in expected if name in got]
             elapsed += [_elapsed(before, exchange) for name in expected if name in got]
-    return fixed_step(pairs, elapsed, field, unit) or common(pairs, field, unit)
+    return (
+        fixed_step(pairs, elapsed, field, unit) or _since_the_first(run, field, per, unit) or common(pairs, field, unit)
+    )
+
+
+def _since_the_first(run: RecordedRun, field: str, per: str, unit: str) -> Cause:
+    """Explain that every rate is the mean since the first message."""
+    if not unit.endswith("/s"):
+        return UNKNOWN
+    ways: dict[str, list[tuple[float, float]]] = {}
+    telling: list[tuple[float, float]] = []
+    for before, exchange in pairwise(run.exchanges):
+        if exchange.expected and exchange.answers:
+            expected, got = _values(exchange.expected[0], field, per), _values(exchange.answers[0], field, per)
+            dt = _elapsed(before, exchange)
+            for name, rate in expected.items():
+                way = ways.setdefault(name, [])
+                way.append((rate * dt, dt))
+                if name in got and len(way) > 1 and sum(time for _, time in way) > 0:
+                    telling.append((sum(part for part, _ in way) / sum(time for _, time in way), got[name]))
+    if len(telling) < FEWEST or not all(math.isclose(*pair, rel_tol=1e-3, abs_tol=1e-6) for pair in telling):
+        return UNKNOWN
+    return Cause(f"Every {field} is the change since the first message, and not since the last.", *hints("since_first"))
 
 
 def _elapsed(before: Exchange | None, exchange: Exchange) -> float:

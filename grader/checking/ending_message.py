@@ -67,7 +67,7 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
     """
     message = ending.message
     for exception, advice in exercise.advice.items():
-        if re.search(rf"\b{re.escape(exception)}\b", message):
+        if re.search(rf"\b{re.escape(exception)}\b", message) and "assignment index" not in message:
             return f"{message} {advice}"
     if newer := newer_name(message):
         return f"{message} {newer}"
@@ -78,6 +78,6 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
         case = f"It may have {name}: capital letters count." if name != no_name[1] else "Is the name spelled right?"
         return f"{message} The module {no_name[2]} has no {no_name[1]}. {case}"
     for pattern, advice in ADVICE:
-        if pattern.search(message):
+        if pattern.search(message) and not re.search(r"Every Node already has|assignment index", message):
             return f"{message} {advice}"
     return message

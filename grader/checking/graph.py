@@ -235,7 +235,22 @@ def _has_no_others(run: RecordedRun, declared: list[tuple[Kind, str]]) -> None:
 def _lacks(run: RecordedRun, kind: Kind, name: str) -> NoReturn:
     does, others = _WORDS[kind]
     names = ", ".join(sorted({end.topic for end in end_points(run, kind)} - {*OF_EVERY_NODE})) or "none"
-    _wrong(f"your node does not {does} {name}. {others}: {names}.", name, names, _of_launched(run) or lacking(kind))
+    text = f"your node does not {does} {name}. {others}: {names}."
+    other = _OTHER_SIDE[kind]
+    if end_points(run, other, name):
+        text += f" It has only the other side of {name}, a{'n' * other.startswith('a')} {other}."
+    _wrong(text, name, names, _of_launched(run) or lacking(kind))
+
+
+#: Kind of endpoint -> the kind at the other end of the connection.
+_OTHER_SIDE: dict[Kind, Kind] = {
+    "publisher": "subscription",
+    "subscription": "publisher",
+    "server": "client",
+    "client": "server",
+    "action server": "action client",
+    "action client": "action server",
+}
 
 
 def _of_launched(run: RecordedRun) -> Cause:

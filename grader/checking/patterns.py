@@ -143,6 +143,14 @@ def shift(expected: Sequence[Any], got: Sequence[Any], tolerance: float) -> Caus
 ORDER = hints("order")
 
 
+def always(pairs: Sequence[tuple[str, str]], field: str) -> Cause:
+    """Explain that a text is the same every time, although several were expected."""
+    expected, got = ({pair[side] for pair in pairs} for side in (0, 1))
+    if len(pairs) < FEWEST or len(got) > 1 or len(expected) < 2 or not any(got):
+        return UNKNOWN
+    return Cause(f"{field} is {got.pop()!r} every time.", *hints("constant", field=field))
+
+
 def other_text(got: Any, expected: Any, task: str) -> Cause:
     """Explain that a short text is not the one that was expected, and none that the task has as code either."""
     if not isinstance(got, str) or not isinstance(expected, str) or not got or len(expected) > LONGEST_WORDS:

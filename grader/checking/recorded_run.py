@@ -14,7 +14,7 @@ from grader.checking.comparator import difference, shown, shown_apart
 from grader.checking.hint_texts import hints
 from grader.checking.message import Exchange, Message, WorldState, exchanges
 from grader.checking.observed import observed, otherwise
-from grader.checking.patterns import COMPUTER_CLOCK, common, other_text
+from grader.checking.patterns import COMPUTER_CLOCK, always, common, other_text
 from grader.checking.verdict import Finding, Wrong, with_values
 from grader.exercise.exercise import Exercise, Role, ServiceOrAction, Topic
 from grader.recording.recording import Ending, ReceivedMessage, Recording, SentMessage
@@ -185,8 +185,10 @@ class RecordedRun:
         expected_text, got_text = shown_apart(differing.expected, differing.got, unit)
         numbers = [(_number(e, differing.path), _number(g, differing.path)) for e, g in pairs]
         known = [(e, g) for e, g in numbers if e is not None and g is not None]
-        general = common(known, differing.path, unit) or other_text(
-            differing.got, differing.expected, self.exercise.task
+        general = (
+            common(known, differing.path, unit)
+            or other_text(differing.got, differing.expected, self.exercise.task)
+            or always([(_text(e, differing.path), _text(g, differing.path)) for e, g in pairs], differing.path)
         )
         self.wrong_at(
             at,
@@ -295,6 +297,14 @@ def _requests(recording: Recording) -> list[tuple[float, str, str]]:
     calls = [(call.at, call.service, "a request") for call in recording.calls if call.by == "node"]
     goals = [goal for goal in recording.goals if goal.by == "node" and goal.accepted is not False]
     return calls + [(goal.at, goal.action, "a goal") for goal in goals]
+
+
+def _text(fields: dict[str, Any], path: str) -> str:
+    try:
+        value = field_of(fields, path)
+    except (NoSuchField, IndexError):
+        return ""
+    return value if isinstance(value, str) else ""
 
 
 def _number(fields: dict[str, Any], path: str) -> float | None:

@@ -95,6 +95,14 @@ _BY_TEXT = (
         "A value of this line is a text or a list, and no number: where does it come from? '0.5' is a text.",
     ),
     (r"required positional argument: 'qos_profile'", "The last argument is the queue depth, such as 10."),
+    (r"required positional argument: 'node_name'", "The node's name goes in here: super().__init__('name')."),
+    (r"float\(\) argument must be .*, not 'method'", "The period comes first: create_timer(period, self.on_timer)."),
+    (
+        r"assignment index out of range",
+        "The list is shorter than that: a new one is empty, and append() makes it longer.",
+    ),
+    (r"for -: 'Time' and 'Time'", "A stamp is no number: stamp.sec + stamp.nanosec * 1e-9 is its time in seconds."),
+    (r"EOFError", "Nobody types anything while a node is graded: leave out input()."),
     (r"ParameterAlreadyDeclaredException", "Declare it once, in __init__, and not in a callback."),
     (
         r"UnboundLocalError",
@@ -243,11 +251,18 @@ def _of_an_attribute(last: LastError, sources: Mapping[str, str]) -> str:
     if match[2] != "status" and (fields := _fields(match[1], sources)):
         swapped = _swapped(match[1], match[2], sources)
         return f"The fields of a {match[1].replace('_', '.')} are: {', '.join(fields)}.{swapped}"
+    source = sources.get(last.file, "")
+    if not re.search(rf"^\s*class {match[1]}\b", source, re.MULTILINE):
+        return ""
+    if re.search(rf"^def {match[2]}\(self", source, re.MULTILINE):
+        return f"def {match[2]} is outside of the class: indent it like the other methods."
+    if re.search(rf"^\s+{match[2]} = ", source, re.MULTILINE):
+        return (
+            f"{match[2]} = … in a method is a local variable, which the others don't have: write self.{match[2]} = …."
+        )
     if "Did you mean" in last.error:
         return ""
-    if not re.search(rf"^\s*class {match[1]}\b", sources.get(last.file, ""), re.MULTILINE):
-        return ""
-    names = re.findall(r"\bself\.(\w+)\s*(?::[^=\n]+)?=(?!=)|^\s*def (\w+)\(self", sources[last.file], re.MULTILINE)
+    names = re.findall(r"\bself\.(\w+)\s*(?::[^=\n]+)?=(?!=)|^\s*def (\w+)\(self", source, re.MULTILINE)
     assigned = sorted({name for pair in names for name in pair if name})
     if match[2] in assigned:
         return f"self.{match[2]} is set only later: set it in __init__, before anything can use it."

@@ -108,7 +108,10 @@ def survived_by(log: str, sources: Mapping[str, str]) -> str:
         last = last_error(log, sources)
         return f"A program of your launch file ended with an error: {died[1]}. {last.error if last else ''}".rstrip()
     match = _IN_EXECUTE.search(log)
-    return f"Your execute callback raised an exception: {match[1]}." if match else silently_replaced(sources)
+    if not match:
+        return silently_replaced(sources)
+    takes = " It gets the goal handle: def execute(self, goal_handle)." if "positional argument" in match[1] else ""
+    return f"Your execute callback raised an exception: {match[1]}.{takes}"
 
 
 _ALLOWANCE = Allowance("", "", MAY_TAKE_S, MAY_TAKE_S)

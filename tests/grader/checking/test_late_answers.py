@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from statistics import mean
 
 import pytest
 
@@ -132,3 +133,12 @@ def test_messages_that_lack_an_answer_are_told_by_the_seconds_of_their_stamps(
     with pytest.raises(Wrong) as caught:
         Run(EXERCISE, mine, stamped(REFERENCE)).must_answer()
     assert caught.value.finding.cause == f"Your node answers {which}"
+
+
+def test_a_rate_since_the_first_message_is_named() -> None:
+    rates = replace(EXERCISE, topics=(EXERCISE.topics[0], replace(EXERCISE.topics[1], units={"data": "m/s"})))
+    means = [mean(right(number) for number in range(2, last + 1)) for last in range(2, COUNT + 1)]
+    mine = recording(answer(1, right(1)), *(answer(number, value) for number, value in enumerate(means, start=2)))
+    with pytest.raises(Wrong) as caught:
+        Run(rates, mine, REFERENCE).must_match("data")
+    assert caught.value.finding.cause == "Every data is the change since the first message, and not since the last."

@@ -84,6 +84,11 @@ def test_a_right_program_passes() -> None:
         (0, {"topic": "/inn"}, "Your node does not subscribe to /in. It subscribes to: /inn."),
         (1, {"topic": "/outt"}, "Your node does not publish on /out. It publishes on: /outt."),
         (
+            2,
+            {"kind": "client"},
+            "Your node does not have a service /add. Its services are: none. It has only the other",
+        ),
+        (
             1,
             {"type": "std_msgs/msg/Float32"},
             "Your publisher on /out has another type. Expected std_msgs/msg/Float64",

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from made_up import EMPTY, ENDS, STAMPED, finding, ns, published, run, says
 
-from grader.checking.patterns import common
+from grader.checking.patterns import always, common
 from grader.recording import ReceivedMessage, Recording
 from grader.scenario.scenario import SECOND
 
@@ -147,6 +147,16 @@ def test_values_that_are_rounded_are_named() -> None:
     for rounded, what in ((lambda v: round(v, 2), "rounded to 2 decimals"), (int, "a whole number"), (abs, "")):
         cause = common([(value, float(rounded(value))) for value in exact], "speed")
         assert cause.seen == (f"Every speed is {what}." if what else "No speed is negative: the sign is lost.")
+
+
+def test_a_text_that_never_changes_is_named() -> None:
+    assert always([("on", "off"), ("off", "off"), ("on", "off")], "message").seen == "message is 'off' every time."
+    for right in (
+        [("off", "off")] * 3,
+        [("on", "on"), ("off", "off"), ("on", "off")],
+        [("on", ""), ("off", ""), ("", "")],
+    ):
+        assert not always(right, "message")
 
 
 def test_a_value_at_its_limit_is_not_said_to_be_constant() -> None:

@@ -230,6 +230,21 @@ def raised(line: int, error: str, *frames: str) -> str:
             "Your class has self.coins: is self.coin a misspelling?",
         ),
         (
+            raised(7, "TypeError: Node.__init__() missing 1 required positional argument: 'node_name'"),
+            NODE,
+            "The node's name goes in here: super().__init__('name').",
+        ),
+        (
+            raised(12, "AttributeError: 'Turnstile' object has no attribute 'pub'. Did you mean: 'publishers'?"),
+            NODE.replace("self.coins = 0", "pub = self.create_publisher(Twist, '/x', 10)"),
+            "pub = … in a method is a local variable, which the others don't have: write self.pub = ….",
+        ),
+        (
+            raised(12, "AttributeError: 'Turnstile' object has no attribute 'on_push'"),
+            NODE.replace("    def on_push", "def on_push"),
+            "def on_push is outside of the class: indent it like the other methods.",
+        ),
+        (
             raised(12, "AttributeError: 'Twist' object has no attribute 'speed'"),
             NODE,
             "The fields of a Twist are: linear, angular.",
@@ -338,6 +353,10 @@ def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_i
         ),
         ("TypeError: bad argument type for built-in operation", "takes a str only"),
         ("RuntimeError: no running event loop", "rclpy runs callbacks without asyncio"),
+        ("TypeError: float() argument must be a string or a real number, not 'method'", "The period comes first"),
+        ("IndexError: array assignment index out of range", "append() makes it longer"),
+        ("TypeError: unsupported operand type(s) for -: 'Time' and 'Time'", "stamp.nanosec * 1e-9"),
+        ("EOFError: EOF when reading a line", "leave out input()"),
         ("AttributeError: module 'xml' has no attribute 'etree'", "imported as a whole"),
         ("AttributeError: 'list' object has no attribute 'name'", "a list of parameters"),
         ("FileNotFoundError: [Errno 2] No such file or directory: '/home/x'", "runs on another computer"),
