@@ -84,16 +84,16 @@ def between(first: RigidMotion, second: RigidMotion, ratio: float) -> RigidMotio
 
 
 def _turned(first: Quaternion, second: Quaternion, ratio: float) -> Quaternion:
-    cosine = sum(a * b for a, b in zip(first, second, strict=True))
-    sign = -1.0 if cosine < 0.0 else 1.0
-    cosine = abs(cosine)
-    if cosine > _NEARLY_EQUAL:
-        one, other = 1.0 - ratio, ratio
-    else:
-        angle = math.acos(cosine)
-        one, other = math.sin((1.0 - ratio) * angle) / math.sin(angle), math.sin(ratio * angle) / math.sin(angle)
-    x, y, z, w = (one * a + sign * other * b for a, b in zip(first, second, strict=True))
-    return normalized((x, y, z, w))
+    ax, ay, az, aw = first
+    bx, by, bz, bw = second
+    cosine = ax * bx + ay * by + az * bz + aw * bw
+    one, other = 1.0 - ratio, ratio
+    if abs(cosine) <= _NEARLY_EQUAL:
+        angle = math.acos(abs(cosine))
+        one, other = math.sin(one * angle) / math.sin(angle), math.sin(other * angle) / math.sin(angle)
+    if cosine < 0.0:
+        other = -other
+    return normalized((one * ax + other * bx, one * ay + other * by, one * az + other * bz, one * aw + other * bw))
 
 
 def from_euler(roll: float, pitch: float, yaw: float) -> Quaternion:
