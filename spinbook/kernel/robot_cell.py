@@ -16,16 +16,10 @@ from ros_in_python.robot.still import WIDTH, as_png
 from ros_in_python.robot.urdf import InvalidUrdf, read
 from spinbook.kernel.picture_cells import record, show_picture
 from spinbook.kernel.process import CellFailed
-from spinbook.kernel.robot_recorder import RobotRecording
+from spinbook.kernel.robot_recorder import APPEAR_S, RobotRecording
 
 #: How many positions of a joint per second are kept (Hz), and for how long a picture moves at most (s).
 _RATE, _LONGEST_S = 20.0, 20.0
-#: How long to wait for the first position (s): a robot may stand still.
-_APPEAR_S = 3.0
-_NO_DESCRIPTION = (
-    "No /robot_description has arrived. Start a node that publishes it, transient local, or name a package or a file: "
-    "%robot humanoid_description"
-)
 
 
 def show_robot(source: str, seconds: float) -> None:
@@ -35,9 +29,9 @@ def show_robot(source: str, seconds: float) -> None:
     """
     try:
         recording = RobotRecording(description=description_text(source)) if source else RobotRecording()
-        handle = record("spinbook.kernel.robot_recorder", [], recording, seconds, _show_live, _APPEAR_S)
-        if recording.error or not recording.description:
-            raise CellFailed(recording.error or _NO_DESCRIPTION)
+        handle = record("spinbook.kernel.robot_recorder", [], recording, seconds, _show_live, APPEAR_S)
+        if recording.problem:
+            raise CellFailed(recording.problem)
         _show(recording, handle)
     except InvalidUrdf as error:
         raise CellFailed(str(error)) from None

@@ -22,6 +22,12 @@ from spinbook.kernel.recorder_lines import write_line
 
 #: Where positions of joints come from. What joints do counts more than what they are told to do.
 TOPICS = ("/joint_states", "/joint_commands")
+#: How long to wait for the first position (s): a robot may stand still.
+APPEAR_S = 3.0
+_NO_DESCRIPTION = (
+    "No /robot_description has arrived. Start a node that publishes it, transient local, or name a package or a file: "
+    "%robot humanoid_description"
+)
 
 
 class RobotRecorder(PlotRecorder):
@@ -34,10 +40,6 @@ class RobotRecorder(PlotRecorder):
 
     def _on_description(self, message: Any) -> None:
         self._write("description", message.data)
-
-    def has_publishers(self) -> bool:
-        """Return whether somebody publishes positions of joints."""
-        return any(self.count_publishers(topic) for topic in TOPICS)
 
 
 @dataclass
@@ -52,6 +54,11 @@ class RobotRecording(PlotRecording):
             self.description = values[0]
         else:
             super().note(kind, *values)
+
+    @property
+    def problem(self) -> str:
+        """Why there is no robot to show; "" if there is one."""
+        return self.error or ("" if self.description else _NO_DESCRIPTION)
 
     def positions(self) -> dict[str, tuple[list[float], list[float]]]:
         """Return each joint's times and positions, from the first of `TOPICS` on which any have arrived."""

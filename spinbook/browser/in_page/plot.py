@@ -1,14 +1,18 @@
-"""`%plot` in a page: the process of plain cells records and draws, as the notebook does."""
+"""`%plot` in a page: a terminal's process records and draws, as the notebook does."""
 
 from __future__ import annotations
 
 import json
 import time
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
 
-if TYPE_CHECKING:
-    from spinbook.kernel.plot.recording import PlotRecording
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+
+from spinbook.kernel.plot.picture import in_words, plot_svg
+from spinbook.kernel.plot.recorder import PlotRecorder
+from spinbook.kernel.plot.recording import APPEAR_S, PlotRecording, RecordingTime
 
 
 def plot(paths: Sequence[str], seconds: float, title: str) -> str:
@@ -16,35 +20,33 @@ def plot(paths: Sequence[str], seconds: float, title: str) -> str:
 
     Return the picture as JSON: `picture`, `words` and `problem`, "" if there is none.
     """
-    from spinbook.kernel.plot.picture import in_words, plot_svg
-    from spinbook.kernel.plot.recording import PlotRecording
-
     recording = PlotRecording()
-    _record(recording, paths, seconds)
+    record(recording, lambda context: PlotRecorder(paths, recording.note, context), seconds)
     problem = recording.error or ("" if recording.curves else recording.why_empty(paths))
     if problem:
         return json.dumps({"picture": "", "words": "", "problem": problem})
     return json.dumps({"picture": plot_svg(recording, title) or "", "words": in_words(recording), "problem": ""})
 
 
-def _record(recording: PlotRecording, paths: Sequence[str], seconds: float) -> None:
-    import rclpy
-    from rclpy.executors import SingleThreadedExecutor
-    from rclpy.node import Node
-
-    from spinbook.kernel.plot.recorder import PlotRecorder
-    from spinbook.kernel.plot.recording import RecordingTime
-
+def record(
+    recording: PlotRecording,
+    new_recorder: Callable[[Context], PlotRecorder],
+    seconds: float,
+    appear_s: float = APPEAR_S,
+) -> None:
+    """Record for this many seconds from the first sample on, which may take `appear_s` seconds, or until Ctrl-C."""
     context = rclpy.Context()
     rclpy.init(context=context, args=[])
     executor = SingleThreadedExecutor(context=context)
-    recorder: Node | None = None
-    recording_time = RecordingTime(seconds, time.monotonic())
+    recorder: PlotRecorder | None = None
+    recording_time = RecordingTime(seconds, time.monotonic(), appear_s)
     try:
-        recorder = PlotRecorder(paths, recording.note, context)
+        recorder = new_recorder(context)
         executor.add_node(recorder)
         while not recording_time.is_over(recording, time.monotonic()):
             executor.spin_once(timeout_sec=0.05)
+    except KeyboardInterrupt:
+        pass
     except (LookupError, ValueError) as error:
         recording.error = str(error.args[0] if error.args else error)
     finally:

@@ -82,6 +82,7 @@ def import_rclpy() -> None:
     import rclpy.executors
     import rclpy.node
     import rclpy.qos  # noqa: F401
+    import std_msgs.msg  # noqa: F401
 
 
 def find_grader_in(archive: str) -> None:

@@ -1,71 +1,61 @@
-"""`%robot` in a page: listens as in a notebook, and lets the page's script draw."""
+"""`%robot` in a page: a terminal's process records as in a notebook, and the page's script draws meanwhile."""
 
 from __future__ import annotations
 
 import json
-import time
 from typing import Any
 
-#: How often new positions are sent to the page (s), and how long nobody may publish any before it ends (s).
-_PERIOD_S, _SILENT_S = 0.05, 15.0
+from rclpy.context import Context
+
+from ros_in_python.robot.description import description_text
+from ros_in_python.robot.drawing import RobotMotion, as_data
+from ros_in_python.robot.urdf import InvalidUrdf, read
+from spinbook.browser.in_page.plot import record
+from spinbook.kernel.robot_recorder import APPEAR_S, TOPICS, RobotRecorder, RobotRecording
+
+#: How often new positions are sent to the page (s).
+_PERIOD_S = 0.05
 
 
-def show(page: Any, source: str) -> None:
-    """Send the page a robot's data and then its joints' positions, until interrupted or nobody publishes any more."""
-    import rclpy
+def show(page: Any, source: str, seconds: float) -> str:
+    """Send the page a robot's data and then its joints' positions, for this many seconds from the first one on.
 
-    from ros_in_python.robot.urdf import InvalidUrdf
-
-    rclpy.init(args=[])
+    Return JSON: `problem`, "" if there is a robot, and `moves`, whether any positions arrived.
+    """
+    recording = _LiveRecording(page)
     try:
-        _listen(_Sender(page, source))
-    except (InvalidUrdf, LookupError, ValueError) as error:
-        page.picture(json.dumps({"problem": str(error.args[0] if error.args else error)}))
-    finally:
-        rclpy.try_shutdown()
+        if source:
+            recording.note("description", description_text(source))
+        record(recording, recording.recorder, seconds, APPEAR_S)
+    except InvalidUrdf as error:
+        recording.error = str(error)
+    return json.dumps({"problem": recording.problem, "moves": bool(recording.curves)})
 
 
-class _Sender:
-    """Passes what a `RobotRecorder` records to the page."""
+class _LiveRecording(RobotRecording):
+    """Passes what arrives on to the page."""
 
-    def __init__(self, page: Any, source: str) -> None:
-        from ros_in_python.robot.description import description_text
-
+    def __init__(self, page: Any) -> None:
+        super().__init__()
         self._page = page
         self._positions: dict[str, float] = {}
         self._topic = ""
-        if source:
-            self.note("description", description_text(source))
+
+    def recorder(self, context: Context) -> RobotRecorder:
+        """Return a recorder for this recording."""
+        recorder = RobotRecorder(self.note, context)
+        recorder.create_timer(_PERIOD_S, self._send)
+        return recorder
 
     def note(self, kind: str, *values: Any) -> None:
         """Take one line of the recorder. What joints do counts more than what they are told to do."""
-        from ros_in_python.robot.drawing import RobotMotion, as_data
-        from ros_in_python.robot.urdf import read
-        from spinbook.kernel.robot_recorder import TOPICS
-
+        super().note(kind, *values)
         if kind == "description":
-            self._page.picture(json.dumps({"robot": as_data(read(values[0]), RobotMotion())}))
+            self._page.picture(json.dumps({"robot": as_data(read(self.description), RobotMotion())}))
         elif kind == "sample" and (not self._topic or TOPICS.index(values[0]) <= TOPICS.index(self._topic)):
             self._topic, self._positions[values[3]] = values[0], values[5]
 
-    def send(self) -> None:
-        """Send the positions that are new."""
+    def _send(self) -> None:
         if self._positions:
             self._page.picture(json.dumps({"positions": self._positions}))
             self._positions = {}
-
-
-def _listen(sender: _Sender) -> None:
-    import rclpy
-    from rclpy.executors import SingleThreadedExecutor
-
-    from spinbook.kernel.robot_recorder import RobotRecorder
-
-    executor, recorder = SingleThreadedExecutor(), RobotRecorder(sender.note)
-    executor.add_node(recorder)
-    recorder.create_timer(_PERIOD_S, sender.send)
-    heard = time.monotonic()
-    while rclpy.ok() and time.monotonic() - heard < _SILENT_S:
-        executor.spin_once(timeout_sec=_PERIOD_S)
-        if recorder.has_publishers():
-            heard = time.monotonic()

@@ -23,15 +23,17 @@ class Window(Node):
     """Sends pictures to `page` and takes keys from it. A key has `ahead` and `left`, each -1, 0 or 1."""
 
     def __init__(self, page: Any) -> None:
-        super().__init__("turtle_window", start_parameter_services=False, enable_rosout=False)
+        super().__init__("_turtle_window", start_parameter_services=False, enable_rosout=False)
         self._page = page
         self._pictures = self.create_client(Trigger, "/turtlesim/picture")
-        self._commands = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        self._commands: Any = None
         self._requested: Any = None
         self.create_timer(_PERIOD_S, self._update)
 
     def _update(self) -> None:
         while (key := self._page.key()) is not None:
+            # Only now, so that nobody sees a publisher while nobody drives.
+            self._commands = self._commands or self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
             command = Twist()
             command.linear.x, command.angular.z = _SPEED * key.ahead, _SPEED * key.left
             self._commands.publish(command)

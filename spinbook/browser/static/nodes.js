@@ -107,14 +107,9 @@ function demoNode(from, pack, executable) {
 }
 
 // `%log NAME [--until TEXT] [--seconds N]`
-export async function showLog(cell, args) {
-  const [name] = args;
+export async function showLog(cell, { words: [name], until, seconds = LOG_S }) {
   if (!started.has(name) && !logs.has(name)) return refuse(cell, name);
-  const value = (option) => (args.includes(option) ? args[args.indexOf(option) + 1] : undefined);
-  const text = value("--until");
-  if (text && !(await logHolds(name, text, Number(value("--seconds") ?? LOG_S)))) {
-    cell.print(`The text ${text} did not appear.`);
-  }
+  if (until && !(await logHolds(name, until, seconds))) cell.print(`The text ${until} did not appear.`);
   for (const line of logs.get(name) ?? []) cell.print(line);
 }
 
@@ -132,11 +127,11 @@ function refuse(cell, name) {
   cell.fail(`This page has not started a node \`${name}\`. Started: ${[...started.keys()].join(", ") || "none"}.`);
 }
 
-export async function stop(cell, words) {
-  const names = words.includes("--all") ? [...started.keys()] : words;
+export async function stop(cell, { words, all }) {
+  const names = all ? [...started.keys()] : words;
   const unknown = names.find((name) => !started.has(name));
   if (unknown) return refuse(cell, unknown);
-  if (words.length === 0) return cell.fail("Which one? %stop NAME, or %stop --all.");
+  if (!all && words.length === 0) return cell.fail("Which one? %stop NAME, or %stop --all.");
   const wanted = names.map((name) => started.get(name));
   const hadEnded = wanted.map((process) => !process.running);
   await Promise.all(wanted.map((process) => process.running && process.stop()));

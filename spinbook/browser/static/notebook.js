@@ -1,6 +1,7 @@
 // Plain cells, terminals and interfaces. Plain cells share one process, one after another; each terminal has its own.
 import { runExecutable, showLog, showNodes, showTurtle, stop } from "./nodes.js";
 import { launch } from "./launch.js";
+import { read, UsageError } from "./magic_line.js";
 import { graph, show } from "./picture.js";
 import { environment, take } from "./processes.js";
 import { robot } from "./robot.js";
@@ -75,7 +76,7 @@ async function result(cell, process, op, given) {
 
 export async function runPlain(cell) {
   for (const part of parts(cell.source)) {
-    if (part.magic) await magic(cell, part.magic);
+    if (part.magic) await magic(cell, part.magic, part.rest);
     else await runPython(cell, part.python);
     if (cell.failed) return;
   }
@@ -100,70 +101,62 @@ function parts(source) {
     python = [];
   };
   for (const line of source.split("\n")) {
-    if (!/^%\w/.test(line)) {
+    const [, magic, rest] = /^%(%?\w+)(.*)/.exec(line) ?? [];
+    if (!magic) {
       python.push(line);
       continue;
     }
     finish();
-    pieces.push({ magic: wordsOf(line.slice(1)) });
+    pieces.push({ magic, rest: rest.trim() });
   }
   finish();
   return pieces;
 }
 
-// The words of a line, quoted as in a shell.
-const wordsOf = (line) => (line.match(/"[^"]*"|'[^']*'|\S+/g) ?? []).map((word) => word.replace(/^(["'])(.*)\1$/, "$2"));
+// What a page does for each magic; `args` are its words and options.
+const MAGICS = {
+  nodes: showNodes,
+  log: showLog,
+  stop,
+  turtle: showTurtle,
+  timeline: (cell, args) => inTerminal(cell, (process) => timeline(cell, process, args)),
+  plot: (cell, args) => inTerminal(cell, (process) => drawPlot(cell, process, args)),
+  robot: (cell, args) => inTerminal(cell, (process) => robot(cell, process, { seconds: secondsOf(cell), ...args })),
+  graph: (cell, args) => inTerminal(cell, (process) => drawGraph(cell, process, args)),
+};
 
-// The options that a page's magics take, as in the notebook.
-const OPTIONS = { plot: ["--seconds", "--title"], timeline: ["--record", "--title"], graph: ["--seconds"] };
-Object.assign(OPTIONS, { nodes: [], turtle: [], stop: ["--all"], log: ["--all", "--until", "--seconds"] });
-
-async function magic(cell, [word, ...written]) {
-  const args = written.flatMap((each) => (/^--\w+=/.test(each) ? [each.split("=", 1)[0], each.slice(each.indexOf("=") + 1)] : [each]));
-  const options = OPTIONS[word];
-  const unknown = options && args.find((each) => each.startsWith("--") && !options.includes(each));
-  if (unknown) return cell.fail(`%${word} has no option ${unknown}. It has: ${options.join(", ") || "none"}.`);
-  const known = { nodes: showNodes, log: showLog, stop, turtle: showTurtle, env: setVariable };
-  if (word in known) await known[word](cell, args);
-  else if (word === "timeline") await inTerminal(cell, (process) => timeline(cell, process, args));
-  else if (word === "plot") await inTerminal(cell, (process) => drawPlot(cell, process, args));
-  else if (word === "robot") await robot(cell, optionsOf(args).words[0] ?? "");
-  else if (word === "graph") await inTerminal(cell, (process) => drawGraph(cell, process, args));
-  else if (word === "ros2") {
-    const command = { kind: "ros2", words: ["ros2", ...args], text: `ros2 ${args.join(" ")}` };
-    await inTerminal(cell, (process) => runCommand(cell, process, command));
-  } else cell.fail(`%${word} does not work in a page. These do: %${[...Object.keys(known), "timeline", "plot", "robot", "graph", "ros2"].join(", %")}.`);
+async function magic(cell, word, rest) {
+  if (word in MAGICS) {
+    try {
+      await MAGICS[word](cell, read(word, rest));
+    } catch (error) {
+      if (!(error instanceof UsageError)) throw error;
+      cell.fail(error.message);
+    }
+  } else if (word === "env") setVariable(cell, rest);
+  else if (word === "ros2") await inTerminal(cell, (process) => runCommands(cell, process, `ros2 ${rest}`));
+  else cell.fail(`%${word} does not work in a page. These do: %${[...Object.keys(MAGICS), "env", "ros2"].join(", %")}.`);
 }
 
+// How long a cell records (s).
+const secondsOf = (cell) => cell.about.seconds ?? SHOWN_S;
+
 // `%env NAME=VALUE`, `%env NAME VALUE`, `%env NAME`, `%env`, and a terminal's `export`: for processes started later.
-function setVariable(cell, args) {
-  const [name, ...rest] = args.join(" ").split(/[=\s]+/);
+function setVariable(cell, line) {
+  const [, name, value] = /^(\w*)[=\s]*(.*)$/.exec(line) ?? [];
   if (!name) return Object.entries(environment).forEach(([key, value]) => cell.print(`${key}=${value}`));
-  if (rest.length === 0) return cell.print(environment[name] ?? "");
-  environment[name] = rest.join(" ").replace(/^(["'])(.*)\1$/, "$2");
+  if (!value) return cell.print(environment[name] ?? "");
+  environment[name] = value.replace(/^(["'])(.*)\1$/, "$2");
   cell.print(`env: ${name}=${environment[name]}`);
 }
 
-async function drawPlot(cell, process, args) {
-  const { words: paths, seconds = cell.about.seconds ?? SHOWN_S, title = "" } = optionsOf(args);
-  if (paths.length === 0) return cell.fail("Plot what? Write %plot /TOPIC/FIELD.");
+async function drawPlot(cell, process, { words: paths, seconds = secondsOf(cell), title = "" }) {
   cell.say(`Recording for ${seconds} s …`, "running");
-  const drawn = await process.call("plot", { paths, seconds: Number(seconds), title });
+  const drawn = await process.call("plot", { paths, seconds, title });
   if (drawn) show(cell, drawn, "live-plot");
 }
 
-// Split `/a/x --seconds 3` into words and options by name.
-function optionsOf(args) {
-  const options = { words: [] };
-  for (let at = 0; at < args.length; at += 1) {
-    if (args[at].startsWith("--")) options[args[at].slice(2)] = args[(at += 1)];
-    else options.words.push(args[at]);
-  }
-  return options;
-}
-
-async function drawGraph(cell, process, args) {
-  const seconds = Number(optionsOf(args).seconds ?? GRAPH_S);
+async function drawGraph(cell, process, { seconds = GRAPH_S }) {
   cell.say(`Counting messages for ${seconds} s …`, "running");
   const counted = await process.call("count", { seconds });
   if (counted?.pictures.length) cell.shown?.append(graph(counted));
@@ -171,12 +164,14 @@ async function drawGraph(cell, process, args) {
 }
 
 export async function runTerminal(cell) {
-  await inTerminal(cell, async (process) => {
-    for (const command of (await process.call("commands", { source: cell.source })) ?? []) {
-      await runCommand(cell, process, command);
-      if (cell.failed) return;
-    }
-  });
+  await inTerminal(cell, (process) => runCommands(cell, process, cell.source));
+}
+
+async function runCommands(cell, process, source) {
+  for (const command of (await process.call("commands", { source })) ?? []) {
+    await runCommand(cell, process, command);
+    if (cell.failed) return;
+  }
 }
 
 async function runCommand(cell, process, command) {
@@ -184,9 +179,9 @@ async function runCommand(cell, process, command) {
   const exported = /^# export (\w+=.*)/.exec(text);
   const missing = notWritten(text);
   if (why) cell.print(`${text}\n    does not run in a page: ${why}.`, "stderr");
-  else if (exported) setVariable(cell, [exported[1]]);
-  else if (kind === "rqt_plot") await drawPlot(cell, process, words.slice(1));
-  else if (kind === "rqt_graph") await drawGraph(cell, process, []);
+  else if (exported) setVariable(cell, exported[1]);
+  else if (kind === "rqt_plot") await drawPlot(cell, process, read("plot", text.replace(/^\S+/, "")));
+  else if (kind === "rqt_graph") await drawGraph(cell, process, {});
   else if (kind === "colcon") cell.print("colcon is not needed in a page: `ros2 run` finds the page's nodes without it.");
   else if (missing) cell.fail(`Run ${missing} above first.`);
   else if (kind === "ros2" && words[1] === "run") await runExecutable(cell, words);

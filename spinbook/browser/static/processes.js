@@ -15,6 +15,8 @@ let count = 0;
 // The memory of the first process when Python had started, a Blob. All others start with a copy of it, also after a
 // reload: this takes a seventh of the computing.
 let memory = keptMemory();
+// Python's code, compiled: all processes share it.
+let code = null;
 // A process that has started, and waits for its program.
 let spare = null;
 
@@ -81,7 +83,11 @@ export class Process {
     this.worker = new Worker(addressOf("worker.js"), { type: "module", name: this.identity });
     this.worker.onmessage = ({ data }) => this.#heard(data);
     this.worker.onerror = (event) => this.#broke(event.message || "The browser could not start it.");
-    this.ready = memory.then((memory) => this.call("start", { version: VERSION, identity: this.identity, memory }));
+    code ??= WebAssembly.compileStreaming(fetch(addressOf("pyodide.asm.wasm")));
+    code.catch(() => (code = null));
+    this.ready = Promise.all([code, memory]).then(([code, memory]) =>
+      this.call("start", { version: VERSION, identity: this.identity, code, memory }),
+    );
     this.ready.catch(() => this.end());
   }
 

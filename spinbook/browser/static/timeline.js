@@ -42,9 +42,7 @@ async function finish(cell, process, title) {
   show(cell, await process.call("drawn", { names, lines, title }), "live-timeline");
 }
 
-export async function timeline(cell, process, args) {
-  const value = (option) => (args.includes(option) ? args.slice(args.indexOf(option) + 1) : []);
-  const until = (words) => words.slice(0, Math.max(0, words.findIndex((word) => word.startsWith("--"))) || undefined);
-  if (args.includes("--record")) await begin(cell, until(value("--record")));
-  else await finish(cell, process, value("--title")[0] ?? "");
+export async function timeline(cell, process, { record, title = "" }) {
+  if (record) await begin(cell, record);
+  else await finish(cell, process, title);
 }

@@ -44,19 +44,40 @@ async function bytes(name) {
 }
 
 // If there is no memory for another program, Pyodide only warns and never returns; this promise rejects then.
-const lacking = new Promise((resolve, reject) => {
-  for (const name of ["instantiate", "instantiateStreaming"]) {
-    const original = WebAssembly[name];
-    WebAssembly[name] = async (...args) => {
-      try {
-        return await original.apply(WebAssembly, args);
-      } catch (error) {
-        if (error instanceof RangeError) reject(error);
-        throw error;
-      }
-    };
+const lacking = Promise.withResolvers();
+
+// Let Pyodide take its code from `code`, compiled once for all processes, instead of loading and compiling it again.
+function shareCode(code) {
+  const { fetch } = self;
+  self.fetch = (address, ...options) => (String(address).endsWith(".asm.wasm") ? code : fetch(address, ...options));
+  WebAssembly.instantiateStreaming = async (source, imports) => {
+    try {
+      return { module: await source, instance: await WebAssembly.instantiate(await source, imports) };
+    } catch (error) {
+      lacking.reject(error);
+      throw error;
+    }
+  };
+}
+
+const PAGE = 4096;
+
+// The `set` with which Pyodide writes a snapshot, without its empty pages: what is never written takes no memory.
+function setFullPages(bytes, at = 0) {
+  const { set } = Uint8Array.prototype;
+  if (bytes.length < PAGE) return void set.call(this, bytes, at);
+  for (let from = 0; from < bytes.length; from += PAGE) {
+    const part = bytes.subarray(from, from + PAGE);
+    const old = this.subarray(at + from, at + from + part.length);
+    if (!isEmpty(part) || !isEmpty(old)) set.call(old, part);
   }
-});
+}
+
+function isEmpty({ buffer, byteOffset, length }) {
+  const words = new Uint32Array(buffer, byteOffset, length / 4);
+  for (let at = 0; at < words.length; at++) if (words[at]) return false;
+  return true;
+}
 
 const PREPARE = 'import sys; sys.path.insert(0, "/ros.zip"); from spinbook.browser.in_page import process; process.prepare()';
 
@@ -67,7 +88,11 @@ async function python(memory) {
     indexURL: new URL("./", import.meta.url).href,
     stdout: print("stdout"),
     stderr: print("stderr"),
-    fsInit: (FS) => FS.writeFile("/ros.zip", archive),
+    fsInit: (FS) => {
+      const { writeFile } = FS;
+      FS.writeFile = (path, data, options) => writeFile(path, data, { canOwn: true, ...options }); // no second copy
+      FS.writeFile("/ros.zip", archive);
+    },
   };
   if (memory) {
     const copy = new Uint8Array(memory.size);
@@ -76,7 +101,9 @@ async function python(memory) {
       copy.set(part, filled);
       filled += part.length;
     }
-    const py = await loadPyodide({ ...options, _loadSnapshot: copy });
+    Int8Array.prototype.set = setFullPages;
+    const loading = loadPyodide({ ...options, _loadSnapshot: copy });
+    const py = await loading.finally(() => delete Int8Array.prototype.set);
     copy.buffer.transfer(0); // Pyodide keeps references to it: 31 MB in each process. This frees them.
     return py;
   }
@@ -84,12 +111,15 @@ async function python(memory) {
   const py = await loadPyodide({ ...options, _makeSnapshot: true });
   progress("ROS 2");
   py.runPython(PREPARE);
-  self.postMessage({ op: "memory", memory: new Blob([py.makeMemorySnapshot()]) });
+  const snapshot = py.makeMemorySnapshot();
+  self.postMessage({ op: "memory", memory: new Blob([snapshot]) });
+  snapshot.buffer.transfer(0);
   return py;
 }
 
-async function start(identity, memory) {
-  const py = await Promise.race([lacking, memory ? python(memory).catch(() => python(null)) : python(null)]);
+async function start(identity, code, memory) {
+  shareCode(code);
+  const py = await Promise.race([lacking.promise, memory ? python(memory).catch(() => python(null)) : python(null)]);
   const process = py.pyimport("spinbook.browser.in_page.process");
   process.open_process(page, identity);
   return { py, process };
@@ -98,9 +128,9 @@ async function start(identity, memory) {
 let ready = null;
 
 const does = {
-  start: ({ version, identity, memory }) => {
+  start: ({ version, identity, code, memory }) => {
     if (version !== VERSION) throw new Error("another version");
-    ready = start(identity, memory);
+    ready = start(identity, code, memory);
     return ready.then(() => null);
   },
   program: async ({ source, file, args, environment, files }) => {
@@ -155,10 +185,10 @@ const does = {
     const { py } = await ready;
     return py.pyimport("spinbook.browser.in_page.turtle").show.callPromising(page);
   },
-  robot: async ({ source }) => {
+  robot: async ({ source, seconds }) => {
     const { py } = await ready;
     await shares(py);
-    return py.pyimport("spinbook.browser.in_page.robot").show.callPromising(page, source);
+    return JSON.parse(await py.pyimport("spinbook.browser.in_page.robot").show.callPromising(page, source, seconds));
   },
   check: async ({ exercise, source }) => {
     const result = await (await checks()).check.callPromising(exercise, source);

@@ -35,7 +35,7 @@ class PlotRecorder(Node):
     def __init__(
         self, paths: Sequence[str], write: Callable[..., None] = write_line, context: Context | None = None
     ) -> None:
-        super().__init__("spinbook_plot", context=context, start_parameter_services=False)
+        super().__init__("_spinbook_plot", context=context, start_parameter_services=False)
         self._paths: dict[str, TopicPath | None] = dict.fromkeys(paths)
         self._write = write
         write("looking")

@@ -63,3 +63,7 @@ def test_errors_are_named_with_their_line(line: str, said: list[str]) -> None:
     problems_there = json.loads(problems(PROGRAM.replace("{line}", line)))
     assert [problem["line"] for problem in problems_there] == [11] * len(said)
     assert all(problem["text"].startswith(text) for problem, text in zip(problems_there, said, strict=True))
+
+
+def test_lines_for_the_page_are_no_errors() -> None:
+    assert json.loads(problems("%plot /a/b --seconds 3\nx = 1\n")) == []

@@ -78,7 +78,7 @@ def test_an_element_is_one_curve(shown: Opened) -> None:
 
 def test_a_robot_moves_and_says_which_joint_is_beyond_its_limits(shown: Opened) -> None:
     cell = shown.page.locator(".cell-snippet").first
-    run(cell, "%robot humanoid_description")
+    run(cell, "%robot humanoid_description --seconds 90")
     robot = cell.locator("canvas")
 
     expect(cell.locator(".robot-state")).to_contain_text("left elbow −", timeout=DEADLINE_MS)
@@ -86,6 +86,8 @@ def test_a_robot_moves_and_says_which_joint_is_beyond_its_limits(shown: Opened) 
     expect(robot).to_have_attribute(
         "aria-label", re.compile(r"^The robot humanoid: left elbow −?[0-9.]+ rad.* keys turn it")
     )
+    cell.get_by_role("button", name="Ctrl-C").click()
+    expect(cell.get_by_role("status")).to_have_text("done")
     assert shown.violations() == []
     assert shown.faults == []
 
@@ -121,7 +123,9 @@ def test_what_can_not_be_plotted_is_reported_as_in_a_notebook(shown: Opened) -> 
 
     run(cell, "%plot /joint_commands/positions --seconds 1")
     expect(cell).to_contain_text("there is no field `positions`. The fields are: header, name", timeout=DEADLINE_MS)
+    run(cell, "%robot humanoid_descriptoin --seconds 1")
+    expect(cell).to_contain_text("no installed package 'humanoid_descriptoin'", timeout=DEADLINE_MS)
     run(cell, "%plot /joint_commands/position[ --seconds 1")
     expect(cell).to_contain_text("is not a field. Write for example position[0]", timeout=DEADLINE_MS)
     run(cell, "%plot /joint_commands --second 1")
-    expect(cell).to_contain_text("%plot has no option --second. It has: --seconds, --title.", timeout=DEADLINE_MS)
+    expect(cell).to_contain_text("unrecognized arguments: --second", timeout=DEADLINE_MS)
