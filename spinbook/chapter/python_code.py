@@ -41,7 +41,9 @@ from spinbook.chapter.program_start import (
 from spinbook.chapter.syntax import descendants, last_name, syntax_tree
 
 #: A line of IPython's own syntax: `%plot …`, `!ls`, `%%time`, `files = !ls`, `Node?`.
-_MAGIC = re.compile(r"^(?P<indent>\s*)(?P<names>[\w, ]+= *)?(?P<command>[%!].*|\?{1,2}[\w.]+|[\w.]+\?{1,2})$")
+_MAGIC = re.compile(
+    r"^(?P<indent>\s*)(?P<names>[\w, ]+= *)?(?P<command>(?:%%?[A-Za-z]|!).*|\?{1,2}[\w.]+|[\w.]+\?{1,2})$"
+)
 #: What setup.py writes under console_scripts.
 _ENTRY_POINT = re.compile(r"[\w.-]+\s*=\s*[\w.]+:\w+")
 _ALWAYS_THERE = frozenset(dir(builtins)) | {
@@ -174,8 +176,16 @@ def _blank(magic: re.Match[str]) -> str:
 
 
 def has_magics(code: str) -> bool:
-    """Return whether a line is one of IPython's (`%plot`, `!ls`)."""
-    return any(_MAGIC.match(line) for line in code.split("\n"))
+    """Return whether a line is one of IPython's (`%plot`, `!ls`), and not of a text or an expression of Python's."""
+    return any(_MAGIC.match(line) for line in code.split("\n")) and not _is_python(code)
+
+
+def _is_python(code: str) -> bool:
+    try:
+        ast.parse(code)
+    except (SyntaxError, ValueError):
+        return False
+    return True
 
 
 def programs_in_magics(code: str) -> dict[str, int]:

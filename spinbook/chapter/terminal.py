@@ -83,12 +83,16 @@ class Command:
 
 @dataclass(frozen=True)
 class UnsupportedCommand:
-    """A command that a notebook can't run, and why; `meant` is the command of which it looks like a misspelling."""
+    """A command that a notebook can't run, and why; `meant` is the command of which it looks like a misspelling.
+
+    `is_unknown` is whether `ros2` has no such noun or verb.
+    """
 
     text: str
     line: int
     why: str
     meant: str = ""
+    is_unknown: bool = False
 
     @property
     def is_ros(self) -> bool:
@@ -269,8 +273,8 @@ def _unknown(text: str, line: int, before: str, word: str, known: Iterable[str])
     """Return a command whose `word`, after `before`, is not one of those that are known there."""
     why, close = f"there is no `{before} {word}` here", _meant(word, known)
     if close:
-        return UnsupportedCommand(text, line, why, f"{before} {close}")
-    return UnsupportedCommand(text, line, f"{why}; there are: {', '.join(sorted(known))}")
+        return UnsupportedCommand(text, line, why, f"{before} {close}", is_unknown=True)
+    return UnsupportedCommand(text, line, f"{why}; there are: {', '.join(sorted(known))}", is_unknown=True)
 
 
 @functools.cache

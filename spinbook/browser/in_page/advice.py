@@ -17,7 +17,7 @@ from spinbook.chapter.wrong_fields import wrong_fields
 #: Stands where the reader types.
 _HERE = "_here_"
 #: A line of a plain cell that is for the page, such as `%plot /a/b`.
-_MAGIC = re.compile(r"^%\w.*$", re.MULTILINE)
+_MAGIC = re.compile(r"^[%!]{1,2}\w.*$", re.MULTILINE)
 _DOTTED = re.compile(r"[\w.\[\]()]*\.\w*$")
 
 

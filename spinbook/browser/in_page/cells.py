@@ -43,16 +43,16 @@ def set_environment(variables: Mapping[str, str]) -> None:
 
 def commands(source: str) -> str:
     """Read a terminal cell's commands as a chapter's are read: JSON of kind, words and text, or why it can't run."""
-    from spinbook.chapter.terminal import Command, read_commands
+    from spinbook.chapter.terminal import Command, UnsupportedCommand, read_commands
 
-    return json.dumps(
-        [
-            {"kind": item.kind.value, "words": item.words, "text": item.text}
-            if isinstance(item, Command)
-            else {"text": item.text, "why": item.why}
-            for item in read_commands(source)
-        ]
-    )
+    def as_data(item: Command | UnsupportedCommand) -> dict[str, Any]:
+        if isinstance(item, Command):
+            return {"kind": item.kind.value, "words": item.words, "text": item.text}
+        if item.is_unknown:  # `ros2` itself says what there is
+            return {"kind": "ros2", "words": item.text.split(), "text": item.text}
+        return {"text": item.text, "why": f"{item.why}. Did you mean `{item.meant}`?" if item.meant else f"{item.why}."}
+
+    return json.dumps([as_data(item) for item in read_commands(source)])
 
 
 _SHARE = Path("/opt/ros/share")

@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 import rclpy
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
 
 from spinbook.kernel.plot.picture import in_words, plot_svg
 from spinbook.kernel.plot.recorder import PlotRecorder
@@ -30,7 +31,7 @@ def plot(paths: Sequence[str], seconds: float, title: str) -> str:
 
 def record(
     recording: PlotRecording,
-    new_recorder: Callable[[Context], PlotRecorder],
+    new_recorder: Callable[[Context], Node],
     seconds: float,
     appear_s: float = APPEAR_S,
 ) -> None:
@@ -38,7 +39,7 @@ def record(
     context = rclpy.Context()
     rclpy.init(context=context, args=[])
     executor = SingleThreadedExecutor(context=context)
-    recorder: PlotRecorder | None = None
+    recorder: Node | None = None
     recording_time = RecordingTime(seconds, time.monotonic(), appear_s)
     try:
         recorder = new_recorder(context)

@@ -1,5 +1,5 @@
 // The nodes of a page: started by their cells or by `ros2 run`, listed and stopped as in a notebook.
-import { cellOf, logs } from "./cell.js";
+import { cellOf, cells, logs } from "./cell.js";
 import { failure } from "./elements.js";
 import { files } from "./workspace.js";
 import { named, take } from "./processes.js";
@@ -70,6 +70,7 @@ export async function runExecutable(cell, [, , pack, executable, ...args]) {
     await start(name ?? executable, cell, demo.source, demo.file, args);
     return void (await Promise.race([cell.shows(SHOWN_S), cell.ended]));
   }
+  if (!isPackage(pack)) return cell.fail(`Package '${pack}' not found.`);
   const wanted = cellOf(cell, executable, `${pack}/${executable}`);
   if (wanted && name) {
     await start(name, cell, wanted.program, wanted.file, args);
@@ -78,6 +79,12 @@ export async function runExecutable(cell, [, , pack, executable, ...args]) {
   if (!wanted) return cell.fail(`There is no node ${executable} on this page.`);
   await runNode(wanted, cell, args);
   await Promise.race([cell.shows(SHOWN_S), cell.ended]);
+}
+
+// Return whether the course or a command of this page, as it is written, has this package.
+function isPackage(name) {
+  const names = ({ written, about }) => written.split(/\s+/).includes(name) || about.executables?.some((full) => full.startsWith(`${name}/`));
+  return name === document.documentElement.dataset.package || [...cells.values()].some(names);
 }
 
 export function showNodes(cell) {

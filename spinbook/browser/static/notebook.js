@@ -6,7 +6,7 @@ import { graph, show } from "./picture.js";
 import { environment, take } from "./processes.js";
 import { robot } from "./robot.js";
 import { timeline } from "./timeline.js";
-import { files, keep, notWritten } from "./workspace.js";
+import { absentLaunchFile, files, keep, notWritten } from "./workspace.js";
 
 const SHOWN_S = 6;
 const GRAPH_S = 2.5;
@@ -101,13 +101,13 @@ function parts(source) {
     python = [];
   };
   for (const line of source.split("\n")) {
-    const [, magic, rest] = /^%(%?\w+)(.*)/.exec(line) ?? [];
-    if (!magic) {
+    const [, first, name = "!", rest] = /^(!|%(%?\w+))(.*)/.exec(line) ?? [];
+    if (!first) {
       python.push(line);
       continue;
     }
     finish();
-    pieces.push({ magic, rest: rest.trim() });
+    pieces.push({ magic: name, rest: rest.trim() });
   }
   finish();
   return pieces;
@@ -135,6 +135,7 @@ async function magic(cell, word, rest) {
     }
   } else if (word === "env") setVariable(cell, rest);
   else if (word === "ros2") await inTerminal(cell, (process) => runCommands(cell, process, `ros2 ${rest}`));
+  else if (word === "!") cell.fail(`!${rest}: a page has no shell. It runs in a notebook.`);
   else cell.fail(`%${word} does not work in a page. These do: %${[...Object.keys(MAGICS), "env", "ros2"].join(", %")}.`);
 }
 
@@ -168,22 +169,26 @@ export async function runTerminal(cell) {
 }
 
 async function runCommands(cell, process, source) {
-  for (const command of (await process.call("commands", { source })) ?? []) {
+  const commands = (await process.call("commands", { source })) ?? [];
+  for (const command of commands) {
     await runCommand(cell, process, command);
     if (cell.failed) return;
   }
+  if (commands.every(({ why }) => why)) cell.fail();
 }
 
 async function runCommand(cell, process, command) {
   const { kind, words, text, why } = command;
   const exported = /^# export (\w+=.*)/.exec(text);
   const missing = notWritten(text);
-  if (why) cell.print(`${text}\n    does not run in a page: ${why}.`, "stderr");
+  const absent = words && absentLaunchFile(words);
+  if (why) cell.print(`${text}\n    does not run in a page: ${why}`, "stderr");
   else if (exported) setVariable(cell, exported[1]);
   else if (kind === "rqt_plot") await drawPlot(cell, process, read("plot", text.replace(/^\S+/, "")));
   else if (kind === "rqt_graph") await drawGraph(cell, process, {});
   else if (kind === "colcon") cell.print("colcon is not needed in a page: `ros2 run` finds the page's nodes without it.");
   else if (missing) cell.fail(`Run ${missing} above first.`);
+  else if (absent) cell.fail(absent);
   else if (kind === "ros2" && words[1] === "run") await runExecutable(cell, words);
   else if (kind === "ros2" && words[1] === "launch" && !SHOWS_ONLY.test(text)) await launch(cell, process, text);
   else if (kind === "ros2") await bounded(cell, process, text);

@@ -13,7 +13,7 @@ export const changes = new EventTarget();
 const all = new Map();
 let count = 0;
 // The memory of the first process when Python had started, a Blob. All others start with a copy of it, also after a
-// reload: this takes a seventh of the computing.
+// reload: this takes a tenth of the computing.
 let memory = keptMemory();
 // Python's code, compiled: all processes share it.
 let code = null;

@@ -18,3 +18,11 @@ export function notWritten(command) {
   const names = [...cells.values()].filter((cell) => cell.kind === "package_file" && !(cell.file in texts)).map(({ file }) => file.split("/").at(-1));
   return names.find((name) => command.includes(name)) ?? "";
 }
+
+// Return why `ros2 launch` can't find the file that it names, although this page has the package or the file; "" otherwise.
+export function absentLaunchFile([, verb, name, file = "-"]) {
+  if (verb !== "launch" || file.startsWith("-")) return "";
+  const names = [...cells.values()].filter((cell) => cell.file.startsWith("launch/")).map((cell) => cell.file.split("/").at(-1));
+  if (names.includes(file)) return name === pack ? "" : `Package '${name}' not found. ${file} is in ${pack}.`;
+  return name === pack ? `There is no launch file ${file} on this page. There is: ${names.join(", ") || "none"}.` : "";
+}

@@ -39,6 +39,7 @@ def kinds(chapter: Chapter) -> list[CellKind]:
         ("python", "x = 1\nx\n", CellKind.SNIPPET),
         ("py", "x = 1\n", CellKind.SNIPPET),
         ("ipython3", "%plot /a/b\n", CellKind.SNIPPET),
+        ("python", "print(\n    '%d of %d'\n    % (1, 2)\n)\n", CellKind.SNIPPET),
         ("python", "%stop --all\n", CellKind.SNIPPET),
         ("python", "def f():\n    return 1\nf()\n", CellKind.SNIPPET),
         ("python", "[i for i in range(3) if i]\n", CellKind.SNIPPET),

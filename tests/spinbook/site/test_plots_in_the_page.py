@@ -123,6 +123,10 @@ def test_what_can_not_be_plotted_is_reported_as_in_a_notebook(shown: Opened) -> 
 
     run(cell, "%plot /joint_commands/positions --seconds 1")
     expect(cell).to_contain_text("there is no field `positions`. The fields are: header, name", timeout=DEADLINE_MS)
+    run(cell, "!ls")
+    expect(cell).to_contain_text("a page has no shell", timeout=DEADLINE_MS)
+    run(cell, "%ros2 topic ech /joint_commands")
+    expect(cell).to_contain_text("Did you mean 'echo'?", timeout=DEADLINE_MS)
     run(cell, "%robot humanoid_descriptoin --seconds 1")
     expect(cell).to_contain_text("no installed package 'humanoid_descriptoin'", timeout=DEADLINE_MS)
     run(cell, "%plot /joint_commands/position[ --seconds 1")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -46,7 +47,11 @@ class Running:
     def stop(self, number: int = signal.SIGINT) -> Answer:
         """Send a signal; return what arrived after the lines that were read."""
         self.process.send_signal(number)
-        out, err = self.process.communicate(timeout=DEADLINE_S)
+        try:
+            out, err = self.process.communicate(timeout=DEADLINE_S)
+        except subprocess.TimeoutExpired:
+            self.process.send_signal(signal.SIGABRT)  # what its threads do is printed then: see Terminal.start
+            raise AssertionError(f"has not ended after {DEADLINE_S} s:\n{self.process.communicate()[1]}") from None
         return Answer(self.process.returncode, out, err)
 
 
@@ -66,6 +71,7 @@ class Terminal:
         process = subprocess.Popen(
             [sys.executable, "-m", "ros_in_python.ros2", *arguments],
             cwd=cwd,
+            env={**os.environ, "PYTHONFAULTHANDLER": "1"},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
