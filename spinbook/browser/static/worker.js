@@ -50,13 +50,18 @@ const lacking = Promise.withResolvers();
 function shareCode(code) {
   const { fetch } = self;
   self.fetch = (address, ...options) => (String(address).endsWith(".asm.wasm") ? code : fetch(address, ...options));
-  WebAssembly.instantiateStreaming = async (source, imports) => {
+  const { instantiate } = WebAssembly;
+  WebAssembly.instantiate = async (...args) => {
     try {
-      return { module: await source, instance: await WebAssembly.instantiate(await source, imports) };
+      return await instantiate.apply(WebAssembly, args);
     } catch (error) {
-      lacking.reject(error);
+      if (error instanceof RangeError) lacking.reject(error);
       throw error;
     }
+  };
+  WebAssembly.instantiateStreaming = async (source, imports) => {
+    const module = await source;
+    return { module, instance: await WebAssembly.instantiate(module, imports) };
   };
 }
 
