@@ -85,8 +85,8 @@ export class Process {
     this.worker.onerror = (event) => this.#broke(event.message || "The browser could not start it.");
     code ??= WebAssembly.compileStreaming(fetch(addressOf("pyodide.asm.wasm")));
     code.catch(() => (code = null));
-    this.ready = Promise.all([code, memory]).then(([code, memory]) =>
-      this.call("start", { version: VERSION, identity: this.identity, code, memory }),
+    this.ready = Promise.all([code, memory]).then(([compiled, memory]) =>
+      this.call("start", { version: VERSION, identity: this.identity, compiled, memory }),
     );
     this.ready.catch(() => this.end());
   }

@@ -44,26 +44,26 @@ async function bytes(name) {
 }
 
 // If there is no memory for another program, Pyodide only warns and never returns; this promise rejects then.
-const lacking = Promise.withResolvers();
-
-// Let Pyodide take its code from `code`, compiled once for all processes, instead of loading and compiling it again.
-function shareCode(code) {
-  const { fetch } = self;
-  self.fetch = (address, ...options) => (String(address).endsWith(".asm.wasm") ? code : fetch(address, ...options));
+const lacking = new Promise((resolve, reject) => {
   const { instantiate } = WebAssembly;
   WebAssembly.instantiate = async (...args) => {
     try {
       return await instantiate.apply(WebAssembly, args);
     } catch (error) {
-      if (error instanceof RangeError) lacking.reject(error);
+      if (error instanceof RangeError) reject(error);
       throw error;
     }
   };
-  WebAssembly.instantiateStreaming = async (source, imports) => {
-    const module = await source;
-    return { module, instance: await WebAssembly.instantiate(module, imports) };
-  };
-}
+});
+
+// Pyodide's code, which the page compiles once for all processes. Pyodide gets it instead of loading and compiling it.
+let code = null;
+const { fetch: load } = self;
+self.fetch = (address, ...options) => (String(address).endsWith(".asm.wasm") ? code : load(address, ...options));
+WebAssembly.instantiateStreaming = async (source, imports) => {
+  const module = await source;
+  return { module, instance: await WebAssembly.instantiate(module, imports) };
+};
 
 const PAGE = 4096;
 
@@ -122,9 +122,8 @@ async function python(memory) {
   return py;
 }
 
-async function start(identity, code, memory) {
-  shareCode(code);
-  const py = await Promise.race([lacking.promise, memory ? python(memory).catch(() => python(null)) : python(null)]);
+async function start(identity, memory) {
+  const py = await Promise.race([lacking, memory ? python(memory).catch(() => python(null)) : python(null)]);
   const process = py.pyimport("spinbook.browser.in_page.process");
   process.open_process(page, identity);
   return { py, process };
@@ -133,9 +132,10 @@ async function start(identity, code, memory) {
 let ready = null;
 
 const does = {
-  start: ({ version, identity, code, memory }) => {
+  start: ({ version, identity, compiled, memory }) => {
     if (version !== VERSION) throw new Error("another version");
-    ready = start(identity, code, memory);
+    code = compiled;
+    ready = start(identity, memory);
     return ready.then(() => null);
   },
   program: async ({ source, file, args, environment, files }) => {
