@@ -11,7 +11,7 @@ from ros_in_python.robot.description import description_text
 from ros_in_python.robot.drawing import RobotMotion, as_data
 from ros_in_python.robot.urdf import InvalidUrdf, read
 from spinbook.browser.in_page.plot import record
-from spinbook.kernel.robot_recorder import APPEAR_S, TOPICS, RobotRecorder, RobotRecording
+from spinbook.kernel.robot_recorder import APPEAR_S, RobotRecorder, RobotRecording
 
 #: How often new positions are sent to the page (s).
 _PERIOD_S = 0.05
@@ -38,8 +38,7 @@ class _LiveRecording(RobotRecording):
     def __init__(self, page: Any) -> None:
         super().__init__()
         self._page = page
-        self._positions: dict[str, float] = {}
-        self._topic = ""
+        self._sent: dict[str, float] = {}
 
     def recorder(self, context: Context) -> RobotRecorder:
         """Return a recorder for this recording."""
@@ -48,14 +47,13 @@ class _LiveRecording(RobotRecording):
         return recorder
 
     def note(self, kind: str, *values: Any) -> None:
-        """Take one line of the recorder. What joints do counts more than what they are told to do."""
+        """Take one line of the recorder."""
         super().note(kind, *values)
         if kind == "description":
             self._page.picture(json.dumps({"robot": as_data(read(self.description), RobotMotion())}))
-        elif kind == "sample" and (not self._topic or TOPICS.index(values[0]) <= TOPICS.index(self._topic)):
-            self._topic, self._positions[values[3]] = values[0], values[5]
 
     def _send(self) -> None:
-        if self._positions:
-            self._page.picture(json.dumps({"positions": self._positions}))
-            self._positions = {}
+        positions = {name: values[-1] for name, (_, values) in self.positions().items()}
+        if positions != self._sent:
+            self._page.picture(json.dumps({"positions": positions}))
+            self._sent = positions
