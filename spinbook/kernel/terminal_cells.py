@@ -9,21 +9,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from interface_compiler import toolchain
+from ros_in_python.ros2 import create
 from spinbook.chapter.own_packages import created_node, created_package
 from spinbook.kernel.cell_output import DisplayLimit
 from spinbook.kernel.process import CellFailed
 from spinbook.kernel.session import NodeStart, Session
 from spinbook.package.workspace import write_package, written_definitions
 
-#: The program that `ros2 pkg create --node-name` makes.
-_HELLO = """\
-def main():
-    print("Hi from {package}.")
-
-
-if __name__ == "__main__":
-    main()
-"""
 #: How long a build may take (s).
 COLCON_SECONDS = 120.0
 
@@ -95,7 +87,7 @@ def _create_package(session: Session, words: list[str]) -> None:
         return
     folder = write_package(session.workspace, replace(session.package, name=name), [])
     if node := created_node(["ros2", *words]):
-        session.save_node(node, _HELLO.format(package=name), NodeStart(known_as=(f"{name}/{node}",)))
+        session.save_node(node, create.NODE.format(package=name), NodeStart(known_as=(f"{name}/{node}",)))
     print(f"Created the package {name} in {folder.relative_to(Path.cwd())}")
 
 

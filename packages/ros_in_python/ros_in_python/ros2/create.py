@@ -11,6 +11,7 @@ from ros_in_python.ros2.ament_cmake import cmake_files
 from ros_in_python.ros2.ament_python import Manifest, package_files
 from ros_in_python.ros2.cli import CommandError
 
+#: The program that `--node-name` makes.
 NODE = """\
 def main():
     print('Hi from {package}.')
