@@ -20,6 +20,8 @@ _UNSEEN = frozenset(
     {"toctree", "contents", "index", "highlight", "tabularcolumns", "meta", "default-role", "only", "redirect-from"}
 )
 _CODE = frozenset({"code-block", "sourcecode", "code"})
+#: Directives that hold what is typed in a terminal or in Python, and the language if they do not name it.
+_TYPED = {"prompt": "bash", "terminal": "bash", "ipython": "python", "jupyter-execute": "python"}
 #: Sphinx's directives whose first line is a title, and what they are in MyST.
 _TITLED = {
     "tab": "tab-item",
@@ -62,6 +64,9 @@ class _Anything(Directive):  # type: ignore[misc]  # docutils has no types
         if self.name in _CODE or self.name in {"literalinclude", "mermaid", "math", "graphviz"}:
             text = "\n".join(self.content)
             return [nodes.literal_block(text, text, language=argument, kind=self.name, options=self.options)]
+        if self.name in _TYPED:
+            text, language = "\n".join(self.content), (argument or _TYPED[self.name]).split(" ")[0]
+            return [nodes.literal_block(text, text, language=language)]
         holder = nodes.container("", kind=self.name, title=argument)
         self.state.nested_parse(self.content, self.content_offset, holder)
         return [holder]
@@ -223,7 +228,8 @@ class _Writer:
         rows = [[self._cell(entry) for entry in row.findall(nodes.entry)] for row in node.findall(nodes.row)]
         width = max(map(len, rows), default=0)
         lines = [f"| {' | '.join([*row, *[''] * (width - len(row))])} |" for row in rows]
-        return [*lines[:1], f"|{' --- |' * width}", *lines[1:]] if lines else []
+        title = [line for item in node.findall(nodes.title) for line in (f"**{self.inline(item.children)}**", "")]
+        return [*title, *lines[:1], f"|{' --- |' * width}", *lines[1:]] if lines else []
 
     def _cell(self, entry: nodes.entry) -> str:
         return " ".join(line for line in self.blocks(entry.children, 0) if line).replace("|", "\\|")
