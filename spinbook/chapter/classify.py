@@ -41,6 +41,8 @@ NEVER_RUN = frozenset(
 
 #: Languages of fences whose content says whether they are for a notebook's terminal.
 _ANY = frozenset({"", "text", "plaintext", "powershell", "ps1", "pwsh", "cmd", "bat", "batch"})
+#: Languages of what is only shown, whatever it is.
+_SHOWN = frozenset({"diff", "patch", "output", "log", "markdown", "md", "history"})
 #: Languages of what Python shows in a terminal.
 _SESSIONS = frozenset({"pycon", "doctest", "python-repl", "python-console", "", "text", "console"})
 _SESSIONS |= {"ipython", "ipython3", "ipy"}
@@ -183,13 +185,14 @@ def _package_file(fence: Fence) -> ClassifiedFence | None:
 
 
 def with_language(fence: Fence) -> Fence:
-    """Return the fence; one without a language gets the one that its content clearly is."""
+    """Return the fence; one without a language, or of one that nobody knows, gets what its content clearly is."""
     if fence.language in _SESSIONS and is_session(fence.code):
         return replace(fence, language="python")
-    if fence.language not in _ANY and not fence.is_python and _is_program(fence):
-        return replace(fence, language="python")
-    if fence.language not in _ANY or fence.attributes:
+    is_unknown = fence.language not in _ANY
+    if fence.is_python or fence.is_shell or fence.language in _SHOWN or (fence.attributes and not is_unknown):
         return fence
+    if is_unknown and _is_program(fence):
+        return replace(fence, language="python")
     if looks_like_shell(split_transcript(fence.code)[0] if SHOWN_PROMPT.match(fence.code.lstrip()) else fence.code):
         return Fence("bash", fence.code, fence.line, fence.attributes, fence.skipped)
     if not fence.language and _IMPORTS_ROS.search(fence.code):

@@ -188,3 +188,12 @@ def test_a_program_is_one_however_its_language_is_written(tmp_path: Path, info: 
     *_, cell = read(tmp_path, f"# C\n\n``` {info}\n{NODE}```\n").cells
 
     assert (cell.kind, cell.name) == (CellKind.NODE, "talker")
+
+
+@pytest.mark.parametrize(("language", "kind"), [("linux", CellKind.SHELL), ("input", CellKind.SHELL), ("output", None)])
+def test_commands_run_in_a_language_that_nobody_knows_but_not_in_an_output(
+    tmp_path: Path, language: str, kind: CellKind | None
+) -> None:
+    kinds = [cell.kind for cell in read(tmp_path, f"# C\n\n```{language}\nros2 node list\n```\n").cells]
+
+    assert kinds[1:] == ([kind] if kind else [])
