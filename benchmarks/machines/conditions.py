@@ -56,6 +56,7 @@ def conditions(scratch: Path) -> list[Condition]:
         *kinds_of_text(),
         *limits(),
         *parts_missing(scratch),
+        *mounts(scratch),
     ]
 
 
@@ -73,6 +74,8 @@ def variables_of_others(scratch: Path) -> list[Condition]:
         (libraries / library).write_text("not a library")
     ros = {"ROS_DISTRO": "foxy", "AMENT_PREFIX_PATH": "/nowhere", "RMW_IMPLEMENTATION": "rmw_nowhere_cpp"}
     quiet = {"ROS_LOG_DIR": "/proc/nowhere", "RCUTILS_LOGGING_SEVERITY": "FATAL", "CYCLONEDDS_URI": "file:///nowhere"}
+    fast_dds = {"ROS_LOCALHOST_ONLY": "1", "FASTRTPS_DEFAULT_PROFILES_FILE": "/nowhere.xml", "ROS_DOMAIN_ID": "232"}
+    broken = os.fspath(polluted / "rclpy.py")
     guard = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
     tools = {"PYTEST_ADDOPTS": "--collect-only", "PYTEST_PLUGINS": "nothing", "MPLBACKEND": "TkAgg"}
     return [
@@ -90,6 +93,13 @@ def variables_of_others(scratch: Path) -> list[Condition]:
         Condition("ROS logs silent, and nowhere", quiet),
         Condition("variables of pytest, matplotlib", {**tools, "OMP_NUM_THREADS": "0", "VIRTUAL_ENV": "/nowhere"}),
         Condition("ROS_DOMAIN_ID=kitchen", {"ROS_DOMAIN_ID": "kitchen"}),
+        Condition("Fast DDS settings, localhost only", fast_dds),
+        Condition("PYTHONSTARTUP, PYTHONUSERBASE", {"PYTHONSTARTUP": broken, "PYTHONUSERBASE": os.fspath(polluted)}),
+        Condition("PYTHONDEVMODE, PYTHONMALLOC", {"PYTHONDEVMODE": "1", "PYTHONMALLOC": "debug"}),
+        Condition("conda's variables", {"CONDA_PREFIX": "/nowhere/conda", "CONDA_DEFAULT_ENV": "base", "_CE_M": ""}),
+        Condition(
+            "a proxy that is not there", dict.fromkeys(("http_proxy", "https_proxy", "ALL_PROXY"), "http://[::1]:1")
+        ),
     ]
 
 
@@ -130,8 +140,49 @@ def limits() -> list[Condition]:
         limited("stack 1 MB", "-s 1024"),
         limited("no core, 100 MB a file", "-c 0 -f 204800"),
         limited("memory 1 GB", "-v 1048576"),
+        limited("files 64", "-n 64"),
+        limited("1 MB a file", "-f 2048"),
+        limited("processes 4", "-u 4"),
+        limited("memory 100 MB", "-v 102400"),
+        limited("CPU 5 s", "-t 5"),
+        Condition("one CPU", prefix=("taskset", "-c", "0"), needs=("taskset",)),
+        *(
+            Condition(f"{name} closed", prefix=("sh", "-c", f'exec {number}; exec "$@"', "sh"))
+            for name, number in (("stdin", "<&-"), ("stderr", "2>&-"))
+        ),
+        Condition("SIGPIPE, SIGCHLD, SIGINT ignored", prefix=("sh", "-c", "trap '' PIPE CHLD INT; exec \"$@\"", "sh")),
         Condition("lowest priority", prefix=("nice", "-n", "19")),
     ]
+
+
+def mounts(scratch: Path) -> list[Condition]:
+    """Return conditions in which a file system is odd; each is mounted for its commands alone."""
+    tiny, linked, closed = scratch / "tiny", scratch / "linked", scratch / "closed"
+    tiny.mkdir()
+    linked.symlink_to("/tmp")
+    closed.mkdir(mode=0)
+    long = scratch / ("n" * 60) / ("m" * 60)
+    long.mkdir(parents=True)
+    return [
+        Condition("TMPDIR with a long path", {"TMPDIR": os.fspath(long)}),
+        Condition("TMPDIR a link", {"TMPDIR": os.fspath(linked)}),
+        Condition("TMPDIR relative", {"TMPDIR": "."}),
+        _mounted("TMPDIR full", f"mount -t tmpfs -o size=4k none {tiny}", {"TMPDIR": os.fspath(tiny)}),
+        _mounted("TMPDIR with noexec", f"mount -t tmpfs -o noexec none {tiny}", {"TMPDIR": os.fspath(tiny)}),
+        _mounted("TMPDIR read-only", f"mount -t tmpfs -o ro none {tiny}", {"TMPDIR": os.fspath(tiny)}),
+        _mounted("/dev/shm of 4 kB", "mount -t tmpfs -o size=4k none /dev/shm"),
+        _mounted("/dev/shm read-only, noexec", "mount -t tmpfs -o ro,noexec none /dev/shm"),
+        _mounted(
+            "/dev/null a file", f"touch {tiny}/null && chmod 600 {tiny}/null && mount --bind {tiny}/null /dev/null"
+        ),
+        _mounted("HOME read-only", f"mount -t tmpfs -o ro none {tiny}", {"HOME": os.fspath(tiny)}),
+    ]
+
+
+def _mounted(name: str, mount: str, variables: Mapping[str, str | None] | None = None) -> Condition:
+    return Condition(
+        name, variables or {}, ("unshare", "--mount", "sh", "-c", f'{mount} && exec "$@"', "sh"), ("unshare",)
+    )
 
 
 def parts_missing(scratch: Path) -> list[Condition]:

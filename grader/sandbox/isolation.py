@@ -8,19 +8,21 @@ did not work are tried again each time.
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import os
 import resource
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
 from grader.sandbox import filesystem, landlock
 from grader.sandbox.environment import RUNTIME_VARIABLES, for_trusted
-from grader.sandbox.program import IN_DOCKER, OPEN_FILES, Isolation, SandboxUnavailable
+from grader.sandbox.program import IN_DOCKER, OPEN_FILES, Isolation, Limits, SandboxUnavailable
 from groundwork.clean_environment import module_command
 from groundwork.files import cached, write_if_changed
 
@@ -78,12 +80,39 @@ def _refuse_what_no_level_works_with() -> None:
         raise SandboxUnavailable(
             "/proc is not there, from which the grader reads what a program uses. Mount it: proc(5)."
         )
-    hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
-    if 0 <= hard < OPEN_FILES:
+    for which, does, needed, letter in _NEEDED_LIMITS:
+        hard = resource.getrlimit(which)[1]
+        if 0 <= hard < needed:
+            raise SandboxUnavailable(
+                f"A program here may {does.format(hard)}, and a student's needs {needed}. Raise the limit: "
+                f"`ulimit -H{letter}` shows it, /etc/security/limits.conf or the container's --ulimit sets it."
+            )
+    if not Path(os.devnull).is_char_device():
         raise SandboxUnavailable(
-            f"A program here may open {hard} files at once, and a student's needs {OPEN_FILES}. Raise the limit: "
-            "`ulimit -Hn` shows it, /etc/security/limits.conf or the container's --ulimit sets it."
+            "/dev/null is a file here. Make it again: rm -f /dev/null; mknod -m 666 /dev/null c 1 3"
         )
+    _refuse_full_shared_memory()
+
+
+#: What the hard limits of a session must allow: the limit, what it reads like, how much, and its letter for `ulimit`.
+_NEEDED_LIMITS = (
+    (resource.RLIMIT_NOFILE, "open {} files at once", OPEN_FILES, "n"),
+    (resource.RLIMIT_AS, "use {} bytes of addresses", 512 * 2**20, "v"),
+    (resource.RLIMIT_CPU, "compute for {} s", int(Limits().cpu_s) + 2, "t"),
+)
+
+
+def _refuse_full_shared_memory() -> None:
+    """Refuse a full /dev/shm: rclpy's LTTng maps a page of it, and the kernel ends a process that it can't give one."""
+    try:
+        with tempfile.TemporaryFile(dir="/dev/shm") as file:
+            os.posix_fallocate(file.fileno(), 0, 4 * resource.getpagesize())
+    except OSError as error:  # without it, or where it can't be written, rclpy does without
+        if error.errno == errno.ENOSPC:
+            raise SandboxUnavailable(
+                "/dev/shm is full, so every program that imports rclpy is killed. Remove what nodes have left there, "
+                "/dev/shm/fastrtps_*, or make it larger; in Docker: --shm-size 256m"
+            ) from None
 
 
 def refuse_what_students_can_not_read() -> None:

@@ -95,7 +95,8 @@ def examine_shared_memory() -> MachineFinding:
     if free < _ENOUGH:
         return warning(
             found,
-            f"{_NOT_NEEDED}\nRemove the files of killed nodes: fastdds shm clean. In a container, use --shm-size 256m.",
+            "Programs that import rclpy are killed when it is full.\n"
+            "Remove the files of killed nodes: fastdds shm clean. In a container, use --shm-size 256m.",
         )
     return ok(found)
 

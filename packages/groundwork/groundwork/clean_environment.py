@@ -68,6 +68,11 @@ def restart_if_polluted(module: str) -> None:
 
     The new process has the former values in the variable `IGNORED`.
     """
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:  # closed by whoever started this: the next file that is opened would take its place
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)
     if sys.path and not _is_inside(sys.path[0], _own_roots()) and not _holds(sys.path[0] or ".", _OWN_PACKAGES):
         del sys.path[0]  # `python -m` adds the current folder, which may be a student's
     environment = dict(os.environ)

@@ -131,3 +131,14 @@ def test_a_module_runs_without_the_current_folders_files(tmp_path: Path) -> None
 def test_a_path_that_a_pth_file_adds_is_not_an_own_one(tmp_path: Path) -> None:
     assert own_path([str(tmp_path), *sys.path]) == own_path(sys.path)
     assert os.path.dirname(os.__file__) in own_path(sys.path)  # noqa: PTH120
+
+
+def test_a_standard_stream_that_is_closed_is_not_taken_by_another_file_here_or_in_child_processes() -> None:
+    code = (
+        "import os, sys; os.close(2); sys.path.insert(0, sys.argv[1])\n"
+        "from groundwork.clean_environment import restart_if_polluted; restart_if_polluted('nothing')\n"
+        "print(os.readlink('/proc/self/fd/2'), os.get_inheritable(2))"
+    )
+    command = [sys.executable, "-S", "-c", code, str(Path(clean_environment.__file__).parents[1])]
+    done = subprocess.run(command, env={}, stdout=subprocess.PIPE, text=True, check=True)
+    assert done.stdout == "/dev/null True\n"

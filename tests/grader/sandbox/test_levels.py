@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import resource
 import subprocess
@@ -64,6 +65,25 @@ def test_a_session_in_which_too_few_files_may_be_open_is_named_before_anything_r
 ) -> None:
     monkeypatch.setattr(resource, "getrlimit", lambda _: (64, 128))
     with pytest.raises(SandboxUnavailable, match="may open 128 files at once, and a student's needs 1024"):
+        choose(Isolation.NONE)
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (-1, 30 if which == resource.RLIMIT_CPU else -1))
+    with pytest.raises(SandboxUnavailable, match=r"may compute for 30 s, .* `ulimit -Ht` shows it"):
+        choose(Isolation.NONE)
+
+
+def test_a_full_dev_shm_and_a_dev_null_that_is_a_file_are_named_before_they_end_programs(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def full(*_: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "posix_fallocate", full)
+        with pytest.raises(SandboxUnavailable, match="/dev/shm is full"):
+            choose(Isolation.NONE)
+    (tmp_path / "null").touch()
+    monkeypatch.setattr(os, "devnull", str(tmp_path / "null"))
+    with pytest.raises(SandboxUnavailable, match="/dev/null is a file here"):
         choose(Isolation.NONE)
 
 
