@@ -19,6 +19,7 @@ place, or is an error.
 from __future__ import annotations
 
 import difflib
+import itertools
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -114,7 +115,7 @@ def read_edits(file: Path) -> tuple[Edit, ...]:
     headings = [token.map[0] for token in tokens if token.type == "heading_open" and token.tag == "h2" and token.map]
     fences = [(token.map[0], token.map[1]) for token in tokens if _is_diff(token.type, token.info) and token.map]
     edits = []
-    for start, end in zip(headings, [*headings[1:], len(lines)], strict=True):
+    for start, end in itertools.pairwise([*headings, len(lines)]):
         inside = [fence for fence in fences if start < fence[0] < end]
         edits.append(_edit(file, lines, start, end, inside))
     _refuse_odd_names(edits)

@@ -141,3 +141,9 @@ def test_an_unknown_name_is_answered_with_the_names_that_there_are(exercise: Exe
     write_edit(exercise, " class Node:\n+    tag = 1")
     with pytest.raises(NoMistake, match=r"no mistake called wrung\. It has: wrong\."):
         mistake_of(exercise, "wrung")
+
+
+def test_a_file_without_headings_has_no_mistakes(exercise: Exercise) -> None:
+    assert exercise.solution_folder
+    (exercise.solution_folder / EDITS).write_text("# Usual mistakes\n\nNone yet.\n")
+    assert list(each_mistake(exercise)) == []
