@@ -35,6 +35,7 @@ _SPINBOOK = (
     *("__init__.py", "problem.py", "kernel/__init__.py", "kernel/entry.py", "kernel/recorder_lines.py"),
     *("kernel/robot_recorder.py", "kernel/surroundings.py", "kernel/timeline.py", "kernel/timeline_picture.py"),
     *("kernel/timeline_recorder.py", "kernel/plot", "browser", "graph", "chapter/__init__.py", "chapter/bindings.py"),
+    "chapter/callback_answers.py",
     *("chapter/interface_fields.py", "chapter/node_classes.py", "chapter/syntax.py", "chapter/terminal.py"),
     *("chapter/variable_types.py", "chapter/wrong_fields.py"),
 )
