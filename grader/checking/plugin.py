@@ -228,11 +228,15 @@ class Checks:
         if isinstance(error, AssertionError):
             text = str(error) or f"“{verdict.title}” is not so."  # an assert without a message
             wrong = error if isinstance(error, Wrong) else Wrong(Finding(text))
-            finding = wrong.finding.shortened()
-            if mark.depends and finding.where.startswith(_BASIC):
-                finding = replace(finding, where="", todo="")
+            finding = suited(wrong.finding.shortened(), mark)
             return replace(verdict, status="failed", finding=finding, share=wrong.share, partial=mark.partial)
         return replace(verdict, status="error", error=_describe(error, item.path))
+
+
+def suited(finding: Finding, options: CheckOptions) -> Finding:
+    """Return the finding of a check, without hints for a node that works nowhere if the check depends on others."""
+    basic = options.depends and finding.where.startswith(_BASIC)
+    return replace(finding, where="", todo="") if basic else finding
 
 
 def _is_defined_here(item: pytest.Item) -> bool:

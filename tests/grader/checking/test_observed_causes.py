@@ -12,6 +12,8 @@ from made_up import EMPTY, ENDS, EXERCISE, FLOAT, STAMPED, finding, ns, publishe
 
 from grader.checking import doubts, observed
 from grader.checking.hint_texts import texts
+from grader.checking.plugin import suited
+from grader.checking.verdict import CheckOptions
 from grader.exercise.exercise import Elements, Topic
 from grader.recording import Ending, Endpoint, ParameterChange, ReceivedMessage, Recording, SentMessage
 
@@ -61,6 +63,16 @@ def test_what_the_graph_and_the_parameters_show(mine: Recording, cause: str, tod
     assert found.cause.startswith(cause), found.cause
     assert bool(cause) == bool(found.cause)
     assert todo in found.todo
+
+
+def test_a_check_that_depends_on_others_keeps_its_own_hints_if_nothing_is_published() -> None:
+    silent = fails(published((), ()))
+    first, later = (CheckOptions(1.0, "Author's hint.", depends, "") for depends in ((), ("test_publishes",)))
+
+    assert suited(silent, first).where.startswith("Which method calls publish()")
+    assert suited(silent, later) == replace(silent, where="", todo="")
+    sign = fails(published((0.1, 0.2, 0.3), (-1.0, -2.0, -3.0)))
+    assert suited(sign, later) == sign
 
 
 def test_a_program_that_ends_is_one_cause_for_all_checks_and_named_without_its_words() -> None:
