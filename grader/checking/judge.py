@@ -100,7 +100,10 @@ def run_pytest(exercise: Exercise, runs: Mapping[str, Run | None], checks: Check
         raise checks.problem
     if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
         file: Path = exercise.check_files[0]
-        raise ExerciseError(file, f"pytest ended with {pytest.ExitCode(code).name}", "Are there any checks in it?")
+        advice = "Are there any checks in it?"
+        if "$" in str(file):  # pytest puts the values of variables into paths
+            advice = "Move the course to a path without a dollar sign."
+        raise ExerciseError(file, f"pytest ended with {pytest.ExitCode(code).name}", advice)
 
 
 def _session(folder: Path, *arguments: str, plugins: Sequence[object] = ()) -> int:

@@ -46,10 +46,10 @@ def examine_folder() -> MachineFinding:
     """Check the paths for characters that break colcon's shell scripts or the search paths."""
     folders = (Path.cwd(), Path(sys.prefix))
     for folder in folders:
-        if any(character.isspace() or character == ":" for character in str(folder)):
+        if any(character.isspace() or character in ":\"'$\\" for character in str(folder)):
             return missing(
-                f"'{folder}' has a space or a colon in it",
-                "colcon's scripts and ROS's search paths fail there. "
+                f"'{folder}' has a space, a colon, a quotation mark, a dollar sign or a backslash in it",
+                "colcon's scripts, compilers and ROS's search paths fail there. "
                 "Move it to a path without one, and run make again.",
             )
     return ok(f"{folders[0]} (environment: {folders[1]})")
