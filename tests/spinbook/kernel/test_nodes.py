@@ -83,7 +83,9 @@ def test_a_node_that_crashes_fails_its_cell_with_its_own_words(kernel: Kernel) -
 
     assert shown.text.startswith("hello\nTraceback")
     assert 'robot_ws/src/robot/robot/crash.py", line 5' in shown.text, "as in the cell, its empty first line included"
-    assert shown.error == "crash ended with exit code 1. Its last output is above."
+    said, _, advice = shown.error.partition(" above. ")
+    assert said == "crash ended with exit code 1. Its last output is"
+    assert advice.startswith("Is the name spelled right?")
 
 
 def test_a_node_that_ends_by_itself_is_said_to(kernel: Kernel) -> None:
