@@ -18,6 +18,7 @@ from spinbook.graph.model import NodeGraph
 _MARGIN, _BETWEEN = 10, 28
 _NODE, _TOPIC = "var(--node-graph-node,#0a625d)", "var(--node-graph-topic,#a8690c)"
 _FONT = "ui-monospace,SFMono-Regular,Menlo,Consolas,'DejaVu Sans Mono',monospace"
+_INHERITED = 'font-size="12" font-weight="600" text-anchor="middle" fill="currentColor" stroke-width="1.4"'
 _STANDALONE = (
     "<style>.graph{color:#16211f}.paper{fill:#fff}@media(prefers-color-scheme:dark){.paper{fill:#101817}"
     ".graph{color:#e6eeec;--node-graph-node:#6fd3c8;--node-graph-topic:#e0a94a}}</style>"
@@ -87,32 +88,35 @@ def _element(content: str, width: float, height: float, words: str, standalone: 
     w, h = _number(width), _number(height)
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" class="graph" width="{w}" height="{h}" viewBox="0 0 {w} {h}" '
-        f'role="img" aria-labelledby="{key}t {key}d" font-family="{_FONT}">'
+        f'role="img" aria-labelledby="{key}t {key}d" font-family="{_FONT}" {_INHERITED}>'
         f'<title id="{key}t">Node graph</title><desc id="{key}d">{escape(words)}</desc>{paper}{content}</svg>'
     )
 
 
 def _drawn(placed: GraphLayout) -> str:
-    return "".join([*map(_arrow, placed.lines), *map(_box, placed.boxes)])
+    paths, heads = "".join(map(_path, placed.lines)), "".join(map(_head, placed.lines))
+    arrows = f'<g fill="none" stroke="currentColor" stroke-opacity=".6">{paths}</g><g fill-opacity=".75">{heads}</g>'
+    return f"{arrows if placed.lines else ''}{''.join(map(_box, placed.boxes))}"
 
 
-def _arrow(line: PlacedArrow) -> str:
+def _path(line: PlacedArrow) -> str:
     x1, y1, x2, y2 = line.x1, line.y1, line.x2, line.y2
     bend = (x2 - x1) / 2
-    # The head is at the topic of a publisher, at the node of a subscription.
     if line.arrow.publishes:
         path = f"M{_number(x1)} {_number(y1)}C{_number(x1 + bend)} {_number(y1)} {_number(x2 - bend)} {_number(y2)} "
         path += f"{_number(x2 - 6)} {_number(y2)}"
-        head = f"M{_number(x2)} {_number(y2)}l-8-3.5v7z"
     else:
         path = f"M{_number(x2)} {_number(y2)}C{_number(x2 - bend)} {_number(y2)} {_number(x1 + bend)} {_number(y1)} "
         path += f"{_number(x1 + 6)} {_number(y1)}"
-        head = f"M{_number(x1)} {_number(y1)}l8-3.5v7z"
     dashes = "" if line.arrow.connected else ' stroke-dasharray="3 4"'
-    return (
-        f'<path d="{path}" fill="none" stroke="currentColor" stroke-opacity=".6" stroke-width="1.4"{dashes}/>'
-        f'<path d="{head}" fill="currentColor" fill-opacity=".75"/>'
-    )
+    return f'<path d="{path}"{dashes}/>'
+
+
+def _head(line: PlacedArrow) -> str:
+    """Return the arrow's head: at the topic of a publisher, at the node of a subscription."""
+    if line.arrow.publishes:
+        return f'<path d="M{_number(line.x2)} {_number(line.y2)}l-8-3.5v7z"/>'
+    return f'<path d="M{_number(line.x1)} {_number(line.y1)}l8-3.5v7z"/>'
 
 
 def _box(placed: PlacedBox) -> str:
@@ -120,20 +124,20 @@ def _box(placed: PlacedBox) -> str:
     colour, radius = (_NODE, min(placed.height / 2, 17)) if node else (_TOPIC, 3)
     shape = (
         f'<rect x="{_number(placed.x)}" y="{_number(placed.y)}" width="{_number(placed.width)}" '
-        f'height="{_number(placed.height)}" rx="{_number(radius)}" fill="{colour}" fill-opacity=".13" '
-        f'stroke="{colour}" stroke-width="1.4"/>'
+        f'height="{_number(placed.height)}" rx="{_number(radius)}" color="{colour}" fill-opacity=".13" '
+        f'stroke="currentColor"/>'
     )
     y = placed.y + (placed.height - NAME_LINE * len(placed.lines) - SMALL_LINE * len(placed.small)) / 2
     x = _number(placed.x + placed.width / 2)
     text = []
     for line in placed.lines:
         y += NAME_LINE
-        text.append(f'<text x="{x}" y="{_number(y - 4)}" font-size="12" font-weight="600">{escape(line)}</text>')
+        text.append(f'<text x="{x}" y="{_number(y - 4)}">{escape(line)}</text>')
     for line in placed.small:
         y += SMALL_LINE
-        text.append(f'<text x="{x}" y="{_number(y - 3.5)}" font-size="10.5">{escape(line)}</text>')
+        text.append(f'<text x="{x}" y="{_number(y - 3.5)}" font-size="10.5" font-weight="400">{escape(line)}</text>')
     about = f"<title>{escape(placed.box.about)}</title>" if placed.box.about else ""
-    return f'<g text-anchor="middle" fill="currentColor">{about}{shape}{"".join(text)}</g>'
+    return f"<g>{about}{shape}{''.join(text)}</g>"
 
 
 def _number(value: float) -> str:

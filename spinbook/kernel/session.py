@@ -275,7 +275,8 @@ class Session:
         status = node.process.status
         if status.exit is None:
             print(
-                f"— {node.name} continues in the background: %stop {node.name} ends it, %log {node.name} shows more —"
+                f"— {node.name} continues in the background: %stop {node.name} ends it, "
+                f"%log {node.name} shows more\N{NO-BREAK SPACE}—"
             )
         elif status.exit == 0:
             print(f"— {node.name} has ended (exit code 0) —")

@@ -68,7 +68,7 @@ def try_out(session: Session, shell: Any, name: str, scenario_name: str, course:
         raise CellFailed("It could not be played: see above.")
     print(f"— what {node} printed:\n{session.log(node, False).rstrip()}")
     if session.nodes.status(node).running:
-        print(f"— {node} continues in the background: %stop {node} ends it —")
+        print(f"— {node} continues in the background: %stop {node} ends it\N{NO-BREAK SPACE}—")
 
 
 def _scenario(exercise: Exercise, name: str) -> Scenario:

@@ -17,7 +17,7 @@ from sphinx.util import logging
 
 BEGINNING = "Guess before you look"
 _DETAILS, _END = "<details", "</details>"
-_UNKNOWN = "I don't know"
+_UNKNOWN = "I don’t know"
 _WAIT = "The output and the answer show when you have chosen, or run the code."
 _LOG = logging.getLogger(__name__)
 

@@ -75,14 +75,17 @@ def _timed(section: nodes.section, minutes: Mapping[str, int]) -> Iterator[Timed
     known = next((minutes[anchor] for anchor in section["ids"] if anchor in minutes), None)
     total = estimated if known is None else float(known)
     inner = [child for child in section.children if isinstance(child, nodes.section)]
-    if total <= LONGEST or len(inner) < 2:
+    scale = total / max(estimated, 1)
+    # A beginning that is too short for a part keeps the first subsection.
+    is_short = scale * (estimated - sum(map(_estimate, inner))) < SHORTEST
+    later = inner[1:] if is_short else inner
+    if total <= LONGEST or not later:
         yield TimedSection(_title(section), total, section)
         return
-    scale = total / max(estimated, 1)
-    for child in inner[1:]:
+    for child in later:
         section.remove(child)
     yield TimedSection(_title(section), scale * _estimate(section), section)
-    for child in inner[1:]:
+    for child in later:
         # The heading keeps its level within a section that has no heading of its own.
         yield TimedSection(_title(child), scale * _estimate(child), nodes.section("", child), _title(section))
 

@@ -20,8 +20,10 @@ from spinbook.site.drawings import PICTURE_FOLDER
 #: The script that draws robots, as a file of the site.
 SCRIPT = "_static/robot_view.js"
 _QUALITY = 70
+#: A still is shown until the script draws, and on paper: so many of its pixels for one of CSS are sharp enough.
+_SHARPNESS = 4 / 3
 #: Transparency has steps of this size: nobody sees them in the soft shadow, which takes a third of the file otherwise.
-_STEP = 3
+_STEP = 4
 
 
 def script() -> bytes:
@@ -37,7 +39,10 @@ def is_robot(output: Mapping[str, Any]) -> bool:
 def robot_still(output: Mapping[str, Any]) -> tuple[str, bytes]:
     """Return the still picture of a robot: its file in the site, and its content, a fifth of the size of a PNG."""
     out = io.BytesIO()
-    picture = Image.open(io.BytesIO(base64.b64decode(output["data"]["image/png"])))
+    # With premultiplied opacity, so that what is transparent colours nothing.
+    picture = Image.open(io.BytesIO(base64.b64decode(output["data"]["image/png"]))).convert("RGBa")
+    size = (round(WIDTH * _SHARPNESS), round(HEIGHT * _SHARPNESS))
+    picture = picture.resize(size, Image.Resampling.BILINEAR).convert("RGBA")
     picture.putalpha(picture.getchannel("A").point([alpha - alpha % _STEP for alpha in range(256)]))
     picture.save(out, "WEBP", quality=_QUALITY, method=6)
     return f"{PICTURE_FOLDER}/{digest(out.getvalue())[:16]}.webp", out.getvalue()
@@ -45,9 +50,10 @@ def robot_still(output: Mapping[str, Any]) -> tuple[str, bytes]:
 
 def robot_html(output: Mapping[str, Any], root: str, caption: str = "") -> str:
     """Return a robot for a page from which `root` leads to the site's folder. `caption` is HTML."""
-    data = output["data"][KIND]
+    data = dict(output["data"][KIND])
+    words = escape(data.pop("words"))
     moves = json.dumps(data, separators=(",", ":"), ensure_ascii=False).replace("<", "\\u003c")
-    source, words = root + robot_still(output)[0], escape(data["words"])
+    source = root + robot_still(output)[0]
     # One with a caption is at the top of its page: it is loaded at once, so that it can be printed.
     late = "" if caption else ' loading="lazy"'
     still = f'<img src="{source}" alt="{words}" width="{WIDTH}" height="{HEIGHT}"{late}>'

@@ -67,7 +67,7 @@ def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], 
 
 #: For pages that are open while the course is updated; and what a page keeps for reading without a network.
 _VERSION, _OFFLINE = "version.txt", "offline.json"
-_RELATIVE = re.compile(rb'\b(href|src|action|data-root)="(?!https?:|#)([^"]*)"')
+_RELATIVE = re.compile(rb'\b(href|src|action|data-root)="(?!https?:|#|\./)([^"]*)"')
 _OWN_FILE = re.compile(rb'(_static/(?:%s))"' % b"|".join(re.escape(name.encode()) for name in _OURS))
 
 
@@ -78,13 +78,16 @@ def _stamped(page: bytes, version: str) -> bytes:
 
 _COMMENTS = re.compile(rb"^[ \t]*(?://[^\n]*\n|/\*.*?\*/\n)?", re.MULTILINE | re.DOTALL)
 
+_CSS_SPARE = re.compile(rb"(?:\s|;(?=\s*}))*([{};,>])\s*|(?<=:)\s+|(?<![\w.])0(?=\.\d)")
+
 
 def _bare(file: Path, code: bytes) -> bytes:
-    """Return a page's script or style sheet without indentation and without comments that have their own lines."""
+    """Return a page's script or style sheet without what no browser needs: indentation, and comments on lines of their
+    own; in a style sheet also spaces, last semicolons, and zeros before a decimal point."""
     if file.parent.name != "_static":
         return code
     code = _COMMENTS.sub(b"", code)
-    return re.sub(rb"\s*([{};,>])\s*|(?<=:)\s+", rb"\1", code) if file.suffix == ".css" else code
+    return _CSS_SPARE.sub(rb"\1", code) if file.suffix == ".css" else code
 
 
 def _for_offline(published: Mapping[Path, bytes]) -> bytes:

@@ -8,6 +8,7 @@ from html import unescape
 _TABLE = re.compile(r"<table\b(?P<attributes>[^>]*)>(?P<rows>.*?)</table>", re.DOTALL)
 _ROW = re.compile(r"<tr\b(?P<attributes>[^>]*)>(?P<cells>.*?)</tr>", re.DOTALL)
 _CELL = re.compile(r"<(?P<tag>t[dh])\b(?P<attributes>[^>]*)>(?P<content>.*?)</t[dh]>", re.DOTALL)
+_EMPTY_HEAD = re.compile(r"<thead>(?:<t[rh][^>]*>|</t[rh]>|<p>|</p>|\s)*</thead>")
 _TAG = re.compile(r"<[^>]+>")
 _NUMBER = re.compile(r"[-+−±]?\d[\d.,]*")
 #: A phone stacks the cells of tables with this many columns.
@@ -17,7 +18,7 @@ _ROLES = {"td": "cell", "th": "columnheader"}
 
 def readable_tables(html: str) -> str:
     """Return the HTML with its tables framed, aligned and labelled."""
-    return _TABLE.sub(_table, html)
+    return _EMPTY_HEAD.sub("", _TABLE.sub(_table, html))
 
 
 def _table(match: re.Match[str]) -> str:

@@ -135,7 +135,7 @@ def test_it_fits_a_phone_with_text_that_can_be_read_and_told(browser: Browser, t
     )
     with opened(browser, tmp_path / "page.html", width=390, dark=dark) as shown:
         boxes = shown.page.evaluate(
-            "[...document.querySelectorAll('svg g > g')].map(g => ["
+            "[...document.querySelectorAll('svg g:has(> rect)')].map(g => ["
             "g.querySelector('rect').getBoundingClientRect().toJSON(),"
             "[...g.querySelectorAll('text')].map(t => t.getBoundingClientRect().toJSON())])"
         )

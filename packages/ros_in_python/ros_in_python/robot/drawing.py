@@ -99,7 +99,8 @@ def as_data(robot: RobotDescription, motion: RobotMotion) -> dict[str, Any]:
         "joints": [_joint(joint, number) for joint in sorted(robot.joints, key=lambda joint: number[joint.child])],
         "shapes": [_shape(shape, number) for shape in shapes_of(robot)],
         "times": _short(motion.times),
-        "positions": {name: _short(values) for name, values in (motion.positions or {}).items()},
+        # Nobody sees a thousandth of a radian.
+        "positions": {name: _short(values, 3) for name, values in (motion.positions or {}).items()},
         "words": in_words(robot, motion.last),
     }
 
@@ -112,9 +113,9 @@ def _joint(joint: Joint, number: Mapping[str, int]) -> dict[str, Any]:
         "child": number[joint.child],
         "origin": _short((*joint.origin.translation, *joint.origin.rotation)),
         "axis": _short(joint.axis),
-        "rest": joint.rest,
+        "rest": _short([joint.rest])[0],
     }
-    about |= {"limits": [joint.lower, joint.upper]} if joint.is_limited else {}
+    about |= {"limits": _short([joint.lower, joint.upper])} if joint.is_limited else {}
     return about | ({"mimic": [joint.mimic.joint, joint.mimic.multiplier, joint.mimic.offset]} if joint.mimic else {})
 
 
@@ -123,5 +124,5 @@ def _shape(shape: LinkShape, number: Mapping[str, int]) -> list[Any]:
     return [number[shape.link], shape.kind, _short(shape.half), where, _short(shape.colour or _SHELL)]
 
 
-def _short(values: Sequence[float]) -> list[float]:
-    return [int(value) if value == int(value) else value for value in (round(value, 4) for value in values)]
+def _short(values: Sequence[float], digits: int = 4) -> list[float]:
+    return [int(value) if value == int(value) else value for value in (round(value, digits) for value in values)]

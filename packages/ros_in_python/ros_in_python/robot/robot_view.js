@@ -5,11 +5,16 @@
 globalThis.showRobot = (() => {
   const RED = [0.85, 0.16, 0.12];
   const VIEW = { azimuth: 0.5, elevation: 0.16 };
-  const FOCAL = 3.6; // the height of the picture is 2 / FOCAL of the distance
-  const [BALLS, FEW_BALLS] = [96, 20]; // as many balls of shapes throw shadows; fewer without a graphics card
-  const LIGHT = [0.35, 0.5, 0.8]; // where it comes from: towards the viewer, to the left, up; it turns with the viewer
-  const SLOW_GAP_MS = 120; // without a graphics card, this time is left to the page's nodes between two pictures
-  const BACK_S = 0.8; // a recording that has ended goes back to its start in this time
+  // The height of the picture is 2 / FOCAL of the distance.
+  const FOCAL = 3.6;
+  // As many balls of shapes throw shadows; fewer without a graphics card.
+  const [BALLS, FEW_BALLS] = [96, 20];
+  // Where it comes from: towards the viewer, to the left, up; it turns with the viewer.
+  const LIGHT = [0.35, 0.5, 0.8];
+  // Without a graphics card, this time is left to the page's nodes between two pictures.
+  const SLOW_GAP_MS = 120;
+  // A recording that has ended goes back to its start in this time.
+  const BACK_S = 0.8;
 
   const VERTEX = `#version 300 es
     in vec3 corner; out vec3 normal, at;

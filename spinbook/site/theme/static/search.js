@@ -57,7 +57,8 @@ function excerpt(text, words) {
   const lower = text.toLowerCase();
   const first = Math.min(...words.map((word) => lower.indexOf(word)).filter((at) => at >= 0));
   const start = Number.isFinite(first) ? Math.max(0, text.lastIndexOf(" ", Math.max(0, first - 70)) + 1) : 0;
-  const piece = `${start > 0 ? "… " : ""}${text.slice(start, start + 220)}${text.length > start + 220 ? " …" : ""}`;
+  const end = text.length > start + 220 ? text.lastIndexOf(" ", start + 220) : text.length;
+  const piece = `${start > 0 ? "… " : ""}${text.slice(start, end)}${end < text.length ? " …" : ""}`;
   const paragraph = document.createElement("p");
   const pattern = new RegExp(`(${words.map((word) => word.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("|")})`, "gi");
   piece.split(pattern).forEach((part, index) => {
