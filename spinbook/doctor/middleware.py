@@ -28,7 +28,7 @@ def examine_middleware() -> MachineFinding:
     absent = missing_middleware(os.environ)
     trial = subprocess.run([sys.executable, "-c", _PRINT_MIDDLEWARE], capture_output=True, text=True, check=False)
     if trial.returncode == 0:
-        loaded = trial.stdout.strip()
+        loaded = "".join(trial.stdout.splitlines()[-1:])
         if loaded.startswith("rmw_fastrtps"):
             return ok(f"{loaded}{' (RMW_IMPLEMENTATION)' if chosen else ''}")
         return warning(
@@ -55,7 +55,7 @@ def examine_lockstep() -> MachineFinding:
     if not isinstance(found, Library):
         return warning(f"not available: {found.reason}", f"{_NEEDED} {found.remedy}")
     trial = _trial(found)
-    loaded = trial.stdout.strip()
+    loaded = "".join(trial.stdout.splitlines()[-1:])
     if loaded == IDENTIFIER:
         return ok(f"{loaded}, {found.folder}")
     lines = trial.stderr.strip().splitlines() or [f"rclpy has loaded {loaded or 'nothing'}"]

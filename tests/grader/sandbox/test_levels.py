@@ -25,6 +25,7 @@ from grader.sandbox import (
     filesystem,
     isolation,
     landlock,
+    trial,
 )
 
 NOTHING_WORKS = {
@@ -270,3 +271,8 @@ def test_as_root_interfaces_in_a_folder_that_others_can_not_enter_refuse_landloc
     with pytest.raises(SandboxUnavailable, match=r"they need .*closed/interfaces"):
         choose(Isolation.LANDLOCK)
     assert Isolation.LANDLOCK not in tried
+
+
+def test_a_python_that_prints_something_at_each_start_has_its_sandboxes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(trial, "_PROGRAM", f"print('from a .pth file')\n{trial._PROGRAM}")
+    assert trial.reason_against(Isolation.NONE) is None
