@@ -42,7 +42,7 @@ def declared_pins(packages: Sequence[str], pinned: Sequence[str]) -> list[str]:
 
 def _pins(names: set[str]) -> Iterator[str]:
     root = Path(spinbook.__file__).parents[1]
-    for lock in LOCKS:
+    for lock in LOCKS.values():
         text = (root / lock).read_text(encoding="utf-8") if (root / lock).is_file() else ""
         for line in re.findall(r"^[A-Za-z0-9][^\\\n]*", text, re.MULTILINE):
             if re.split("[=; ]", line, maxsplit=1)[0] in names - _LEFT_OUT:

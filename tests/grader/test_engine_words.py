@@ -33,9 +33,10 @@ ABOUT_ROS_MESSAGES = (
     "spinbook/new/",
 )
 
-#: Names that ROS 2 itself has, the topics on which `%robot` listens, and the world that `grader.scenario` offers.
+#: Names that ROS 2 itself has, the topics on which `%robot` listens, and the world and messages of `grader.scenario`.
 OF_ROS = re.compile(
     r"JointState|JointChain|(linear|angular)_velocity|turtlesim|robot_description|RobotDescription|/joint_(states|commands)"
+    r"|^grader\.scenario\.joint_states$"
 )
 
 #: Files of a page that come from elsewhere, or draw any robot.
