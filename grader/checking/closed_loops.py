@@ -11,7 +11,8 @@ from grader.checking.cause import UNKNOWN, Cause
 from grader.checking.hint_texts import hints
 from grader.checking.patterns import common
 from grader.checking.recorded_run import RecordedRun
-from grader.recording.recording import ReceivedMessage, SentMessage
+from grader.recording.events import Truth
+from grader.recording.recording import ReceivedMessage, Recording, SentMessage
 from ros_in_python.field_path import field_of
 
 Place = dict[str, float]
@@ -19,7 +20,7 @@ Place = dict[str, float]
 #: Stands for a topic: what the world's truth() returned after each step.
 TRUTH = "truth"
 
-#: (seconds after the start, values of the fields) of each message, in order.
+#: (seconds after the start, (values of the fields)) of each message, in order; also of one field: `(0.5, (2.0,))`.
 Way = list[tuple[float, tuple[float, ...]]]
 
 #: (seconds after the start, how far it is to the goal then, with its sign), in order: the goal minus the place.
@@ -37,19 +38,34 @@ _SIGN = hints("wrong_sign")
 def trajectory(run: RecordedRun, topic: str, *fields: str) -> Way:
     """Return (seconds after the start, values of `fields`) of each message on `topic`, whichever node published it.
 
-    The topic "truth" stands for what the world's truth() returned.
+    The values are a tuple, also of one field. The topic "truth" stands for what the world's truth() returned. There is
+    at least one: the check ends if only the solution published something on `topic`.
 
-    Example: `run.trajectory("/in", "data")[-1]`
+    Example: `time, (value,) = run.trajectory("/in", "data")[-1]`
     """
-    if topic == TRUTH:
-        truth = run.recording.truth
-        return [(one.at, tuple(float(field_of(one.values, name)) for name in fields)) for one in truth]
-    messages: list[SentMessage | ReceivedMessage] = [*run.recording.sent]
-    messages += [message for message in run.recording.received if not message.subscriber]
-    on_topic = sorted((message for message in messages if message.topic == topic), key=lambda message: message.at_ns)
-    if not on_topic:
-        raise ValueError(f"there is no message on {topic} in the scenario {run.scenario}.")
-    return [(m.at, tuple(float(field_of(m.fields, name)) for name in fields)) for m in on_topic]
+    return _from(run, topic, None, *fields)
+
+
+def _from(run: RecordedRun, topic: str, start: float | None, *fields: str) -> Way:
+    """Return the trajectory from `start` on (s). If it is empty, the check ends, or the author's check is at fault."""
+    way = _way(run.recording, topic, start, fields)
+    since = "" if start is None else f" from {start:g} s on"
+    if not way and not _way(run.reference, topic, start, ()):
+        raise ValueError(f"there is no message on {topic} in the scenario {run.scenario}{since}.")
+    if not way:
+        run.wrong_at(None, f"expected messages on {topic}, got none{since}.", "", "messages", "none", run.waits())
+    return way
+
+
+def _way(recording: Recording, topic: str, start: float | None, fields: Sequence[str]) -> Way:
+    messages: list[Truth | SentMessage | ReceivedMessage] = [*recording.truth]
+    if topic != TRUTH:
+        messages = [message for message in recording.sent if message.topic == topic]
+        messages += [m for m in recording.received if m.topic == topic and not m.subscriber]
+        messages.sort(key=lambda message: message.at_ns)
+    chosen = [message for message in messages if start is None or message.at >= start - 1e-9]
+    values = ((one.at, one.values if isinstance(one, Truth) else one.fields) for one in chosen)
+    return [(at, tuple(float(field_of(named, name)) for name in fields)) for at, named in values]
 
 
 def must_reach(
@@ -65,12 +81,14 @@ def must_reach(
     """Check that the position published on `topic` is within `tolerance` of `place` by `within` s after `start`.
 
     `place` has a value for each field that counts: `{"x": 9.0, "y": 2.0}`. With `overshoot`, it must not go further
-    than that beyond the place, as seen from its position at `start`. Unless `stay` is False, it must not leave the
-    place again.
+    than that beyond the place, as seen from its position at `start`. It must not leave the place again after that time;
+    with `stay=False` it may, and passing through the place once is enough. Raises ValueError if the world ends before
+    that time.
 
-    Example: `run.must_reach("truth", {"level": 1.0}, tolerance=0.1, within=1.5)`
+    Example: `run.must_reach("truth", {"level": 1.0}, tolerance=0.1, within=0.9)`
     """
-    way = [(at, point) for at, point in trajectory(run, topic, *place) if at >= start - 1e-9]
+    way = _from(run, topic, start, *place)
+    _see_that_it_may_be_late(run, topic, start + within)
     goal, unit = tuple(place.values()), run.unit_of(next(iter(place)), topic)
     reached = next((at for at, point in way if math.dist(point, goal) <= tolerance), None)
     words = _words(place)
@@ -96,8 +114,8 @@ def must_stay_between(
     if lowest > highest:
         raise ValueError(f"lowest={lowest:g} is more than highest={highest:g}.")
     unit = run.unit_of(field, topic)
-    for at, (value,) in trajectory(run, topic, field):
-        if at >= start - 1e-9 and not lowest - 1e-9 <= value <= highest + 1e-9:
+    for at, (value,) in _from(run, topic, start, field):
+        if not lowest - 1e-9 <= value <= highest + 1e-9:
             expected, got = f"{lowest:g} to {_measure(highest, unit)}", _measure(value, unit)
             part = "" if topic == TRUTH else topic  # which is no name that a student knows
             run.wrong_at(at, f"expected {field} from {expected}, got {got}.", part, expected, got)
@@ -112,8 +130,11 @@ def must_estimate(run: RecordedRun, topic: str, fields: dict[str, str], rmse: fl
     Example: `run.must_estimate("/out", {"data": "level"}, rmse=0.2)`
     """
     truth, times = run.recording.truth, [state.at_ns for state in run.recording.truth]
+    if not run.reference.truth:
+        raise ValueError(f"the world of the scenario {run.scenario} has no truth(), with which to compare {topic}.")
     messages = [m for m in run.published_on(topic) if m.at >= start and times and m.at_ns >= times[0]]
     if not messages:
+        _from(run, topic, start)
         run.wrong_at(None, f"expected messages on {topic}, got none from {start:g} s on.", "", "messages", "none")
     pairs = [(truth[bisect_right(times, m.at_ns) - 1].values, m.fields) for m in messages]
     each = {
@@ -139,6 +160,10 @@ def must_steer(run: RecordedRun, topic: str, field: str, errors: Errors) -> None
     Example: `run.must_steer("/out", "data", [(0.0, 2.0)])`
     """
     cause = steers_away(run, topic, field, errors)
+    since = min((at for at, error in errors if abs(error) > SMALLEST), default=None)
+    if since is not None and not _steering(run, topic, field, errors):
+        text = f"expected a {field} on {topic} while the goal is away, got none from {since:g} s on."
+        run.wrong_at(since, text, "", f"a {field}", "none", run.waits())
     for at, error, value in _steering(run, topic, field, errors):
         if error * value <= 0:
             expected, got = "more than 0" if error > 0 else "less than 0", _measure(value, run.unit_of(field, topic))
@@ -172,6 +197,20 @@ def _steering(run: RecordedRun, topic: str, field: str, errors: Errors) -> list[
     commands = [(at, value, bisect_right(times, at + 1e-9)) for at, (value,) in trajectory(run, topic, field)]
     pairs = [(at, errors[known - 1][1], value) for at, value, known in commands if known]
     return [(at, error, value) for at, error, value in pairs if abs(error) > SMALLEST]
+
+
+def _see_that_it_may_be_late(run: RecordedRun, topic: str, end: float) -> None:
+    """Raise ValueError if what the world publishes on `topic` ends before `end` (s): then nothing comes too late."""
+    times = [one.at for one in (run.reference.truth if topic == TRUTH else run.reference.sent) if _is_on(one, topic)]
+    if len(times) > 1 and end > 2 * times[-1] - times[-2] + 1e-9:
+        text = (
+            f"it may take until {end:g} s, but the scenario {run.scenario} ends after {times[-1]:g} s: it never comes"
+        )
+        raise ValueError(f"{text} too late. Give a shorter within, or the scenario a longer duration.")
+
+
+def _is_on(one: Truth | SentMessage, topic: str) -> bool:
+    return isinstance(one, Truth) or one.topic == topic
 
 
 def _never_there(

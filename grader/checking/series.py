@@ -125,14 +125,20 @@ def must_have_no_gap(
     times = [message.at for message in run.published_on(name)]
     if end is None:
         end = max((message.at for message in run.published_on(name, reference=True)), default=None)
+    if end is not None and end < start:
+        text = f"from {start:g} s on there is nothing to look at on {name}: it ends at {end:g} s"
+        raise ValueError(f"{text} in the scenario {run.scenario}. Give a smaller start.")
     inside = [at for at in times if at >= start and (end is None or at <= end)]
     moments = [start, *inside, *([end] if end is not None else [])]
     for before, after in itertools.pairwise(moments):
         if after - before > longest + 1e-9:
             text = f"nothing was published on {name} for {after - before:.2f} s, from {before:.2f} s on."
             run.wrong_at(before, text, "", f"a gap of at most {longest:g} s", f"{after - before:.2f} s", _GAP)
-    if not inside:
+    if not times:
         _never(run, name, f"a message every {longest:g} s")
+    if not inside:
+        text = f"expected messages on {name}, got none from {start:g} s on."
+        run.wrong_at(times[-1], text, "", f"a message every {longest:g} s", "none", run.waits())
 
 
 def must_stamp(run: RecordedRun, topic: str = "", field: str = "header.stamp", within: float = 0.001) -> None:

@@ -42,8 +42,9 @@ Made from the docstrings; each example is run by a test. The [guide](writing-che
 - **Arguments** after a `*` are given by name: `check(points=5, hint="…")`.
 - **A topic, service or action** that you leave out is the only one of its kind in exercise.toml. If there are several,
   name it.
-- **Types**: `Place` is a dictionary from fields to values, `Way` and `Errors` are lists of (seconds, value), `By` is
-  "grader" or "node", `Kind` is that of an [Endpoint](#endpoint).
+- **Types**: `Place` is a dictionary from fields to values. `Way` is a list of (seconds, (value, …)), with a tuple of
+  values also for one field: `time, (value,) = run.trajectory("/in", "data")[-1]`. `Errors` is a list of (seconds,
+  number). `By` is "grader" or "node", `Kind` is that of an [Endpoint](#endpoint).
 - **Helpers that begin with `must_`** end the check if the node does not do so, with a sentence for the student.
 
 ```python

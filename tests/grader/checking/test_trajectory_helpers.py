@@ -79,3 +79,34 @@ def test_a_command_that_turns_to_and_fro_is_named() -> None:
 def test_a_topic_without_messages_is_the_authors_fault() -> None:
     with pytest.raises(ValueError, match="there is no message on /poses in the scenario plain"):
         run(RIGHT).must_reach("/poses", PLACE, 0.1, 2.0)
+
+
+LASTING = published((1.0, 2.0, 5.0), (1.0, 2.0, 4.0))
+SHORT, SILENT = published((1.0, 2.0), (1.0, 2.0)), published((), ())
+
+
+@pytest.mark.parametrize("mine", [SHORT, SILENT])
+def test_a_node_that_falls_silent_fails(mine: Recording) -> None:
+    """That nothing comes from the student is no fault of the exercise's."""
+    one = run(mine, LASTING)
+    for check in (
+        lambda: one.must_reach("/out", {"data": 4.0}, 0.1, within=1.0, start=4.0),
+        lambda: one.must_stay_between("/out", "data", 0.0, 5.0, start=4.0),
+    ):
+        message = "In “as usual”: expected messages on /out, got none from 4 s on."
+        assert says(check).startswith(message)
+    assert says(lambda: run(SILENT, LASTING).trajectory("/out", "data")[-1]).endswith("messages on /out, got none.")
+    assert "got none" in says(lambda: one.must_steer("/out", "data", [(4.0, 1.0)]))
+    assert "nothing was published on /out for 1.00 s" in says(lambda: one.must_have_no_gap(0.5, start=4.0))
+
+
+def test_a_time_that_the_scenario_does_not_have_is_the_authors_fault() -> None:
+    one = run(RIGHT)
+    with pytest.raises(ValueError, match="no message on /pose in the scenario plain from 30 s on"):
+        one.must_stay_between("/pose", "x", 0.0, 5.0, start=30.0)
+    with pytest.raises(ValueError, match="may take until 2000 s, but the scenario plain ends after 4 s"):
+        one.must_reach("/pose", PLACE, 0.1, within=2000.0)
+    with pytest.raises(ValueError, match="has no truth"):
+        one.must_estimate("/out", {"data": "x"}, rmse=1.0)
+    with pytest.raises(ValueError, match="nothing to look at on /out: it ends at 5 s"):
+        run(LASTING).must_have_no_gap(1.0, start=30.0)
