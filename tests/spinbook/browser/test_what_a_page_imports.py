@@ -4,26 +4,46 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from pathlib import Path
 
-from spinbook.browser.archives import ros_archive
+import pytest
 
-ABSENT = ("grader.grading", "grader.sandbox", "grader.workers", "rich", "numpy", "matplotlib", "resource")
-SHOWN = ("grader.report.checks", "grader.report.facts", "grader.report.feedback", "grader.report.feedback_plot")
+from spinbook.browser.archives import check_archive, ros_archive
+
+CHECKED = (
+    "grader.checking.judge",
+    "grader.submission.code",
+    "grader.report.facts",
+    "grader.report.feedback",
+    "grader.report.feedback_plot",
+    "spinbook.browser.in_page.check",
+)
 
 
-def test_what_is_shown_of_a_check_imports_without_a_sandbox() -> None:
-    code = f"import sys; sys.modules.update(dict.fromkeys({ABSENT!r})); import {', '.join(SHOWN)}"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
+@pytest.fixture(scope="module")
+def archives(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """The paths of check.zip and ros.zip: a page that checks searches them in this order."""
+    folder = tmp_path_factory.mktemp("page")
+    files = {folder / "check.zip": check_archive({}), folder / "ros.zip": ros_archive()}
+    for file, content in files.items():
+        file.write_bytes(content)
+    return [str(file) for file in files]
+
+
+def printed(archives: list[str], code: str) -> str:
+    """Return what code prints that can import the archives and Python's own library, and nothing else."""
+    command = [sys.executable, "-I", "-S", "-c", f"import sys; sys.path[:0] = {archives!r}\n{code}"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 0, done.stderr
+    return done.stdout
 
 
-def test_what_the_editor_says_needs_nothing_but_the_archive(tmp_path: Path) -> None:
-    archive = tmp_path / "ros.zip"
-    archive.write_bytes(ros_archive())
-    code = f"import sys; sys.path.insert(0, {str(archive)!r}); from spinbook.browser.in_page import advice as it"
-    code += "; print(it.__file__, it.problems('if x'))"
-    done = subprocess.run([sys.executable, "-I", "-S", "-c", code], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith(str(archive))
-    assert "expected ':'" in done.stdout
+def test_a_check_and_what_is_shown_of_it_need_nothing_but_the_archives(archives: list[str]) -> None:
+    code = f"import rcl_python; rcl_python.install(); sys.modules['resource'] = None; import {', '.join(CHECKED)}"
+    assert printed(archives, f"{code}; print(grader.checking.judge.__file__)").startswith(archives[0])
+
+
+def test_what_the_editor_says_needs_nothing_but_the_archive(archives: list[str]) -> None:
+    code = "from spinbook.browser.in_page import advice as it; print(it.__file__, it.problems('if x'))"
+    said = printed(archives[1:], code)
+    assert said.startswith(archives[1])
+    assert "expected ':'" in said

@@ -59,6 +59,7 @@ def generate_launch_description():
 ```
 
 ```bash
+colcon build
 ros2 launch robot talkers.launch.py
 ```
 
