@@ -6,8 +6,10 @@ import difflib
 import re
 from collections.abc import Collection
 from dataclasses import dataclass
+from pathlib import Path
 
 from interface_compiler import prefixes
+from ros_in_python.example_robots import share_folders
 from ros_in_python.ros2 import executables
 from spinbook.chapter.imports import IN_ROS, interfaces_of, own_names, remedy, ros_packages
 from spinbook.chapter.terminal import Command, is_placeholder
@@ -61,6 +63,12 @@ def foreign_program(package: str, executable: str, course_package: str, own: Col
     show = f"Show its program in a fence of the chapter, or {IN_ROS}."
     fix = f"Did you mean `{close[0]}`?" if close else show
     return Reason(f"there is no package `{package}` here", fix, package)
+
+
+def has_launch_file(package: str, name: str) -> bool:
+    """Return whether an installed package has this launch file."""
+    shares = share_folders(package) if name and Path(name).name == name else []
+    return any(path.is_file() for share in shares for path in share.rglob(name))
 
 
 def similar(name: str, there: Collection[str], cutoff: float = 0.7) -> list[str]:

@@ -14,7 +14,15 @@ from groundwork.problem import Problem, Severity
 from ros_in_python.ros2 import executables
 from spinbook.chapter.chapter import ChapterCell
 from spinbook.chapter.classify import CellKind, ClassifiedFence
-from spinbook.chapter.foreign_commands import READ_KEYS, TO_FILL_IN, Reason, foreign_program, missing_type, similar
+from spinbook.chapter.foreign_commands import (
+    READ_KEYS,
+    TO_FILL_IN,
+    Reason,
+    foreign_program,
+    has_launch_file,
+    missing_type,
+    similar,
+)
 from spinbook.chapter.imports import IN_ROS, ros_packages
 from spinbook.chapter.launch_files import NotSupportedError
 from spinbook.chapter.launches import Launches, launch_words
@@ -289,6 +297,8 @@ class Shells:
                 fix = f'To run all of it, write title="launch/{file}", and ros2 launch {self.package} {file}'
             return Reason(f"its launch file can't run here: {error}", fix, "")
         package = names[0] if len(names) > 1 else ""
+        if package and has_launch_file(package, names[1]):
+            return None
         if not package or package in {self.package, *self.own.names, *ros_packages()}:
             file = _file_name(names[-1]) if names else ""
             if file in self._launches.files:

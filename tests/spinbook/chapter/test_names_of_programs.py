@@ -188,6 +188,15 @@ def test_a_launch_file_that_does_more_starts_nothing_and_says_why(tmp_path: Path
     assert cells(chapter)[-1].kind is CellKind.NODE
 
 
+def test_a_launch_file_of_an_installed_package_runs(tmp_path: Path) -> None:
+    files = [shell(f"ros2 launch turtlesim {name}.launch.py") for name in ("multisim", "multism")]
+
+    chapter = read(tmp_path, *files)
+
+    assert [cell.kind for cell in cells(chapter)] == [CellKind.SHELL]
+    assert chapter.static_fences[-1].sign == "no fence above is its launch file."
+
+
 def test_a_launch_file_of_another_name_is_not_taken_for_the_one_that_is_launched(tmp_path: Path) -> None:
     titled = launch(f"    return LaunchDescription([{LAMP}])\n").replace("python", 'python title="lamps.launch.py"', 1)
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from interface_compiler import prefixes
+from ros_in_python.example_robots import share_folders
 from ros_in_python.launch import markup_file, python_file
 from ros_in_python.launch.actions import DeclareLaunchArgument, LaunchDescription
 from ros_in_python.launch.plan import LaunchPlan, arguments_of
@@ -88,14 +88,13 @@ def _find(first: str, words: Sequence[str]) -> tuple[Path, list[str]]:
 
 
 def _in_package(package: str, name: str) -> Path:
-    prefix = prefixes.prefix_of(package, prefixes.installed())
-    if prefix is None:
+    shares = share_folders(package)
+    if not shares:
         raise CommandError(
             f"Package '{package}' not found", "Run `colcon build --symlink-install` in its workspace, and this there."
         )
-    share = prefix / "share" / package
-    there = sorted(path for suffix in SUFFIXES for path in share.rglob(f"*launch{suffix}"))
-    found = [path for path in sorted(share.rglob(name)) if path.is_file()]
+    there = sorted(path for share in shares for suffix in SUFFIXES for path in share.rglob(f"*launch{suffix}"))
+    found = [path for share in shares for path in sorted(share.rglob(name)) if path.is_file()]
     if not found:
         raise CommandError(
             f"file '{name}' was not found in the share directory of package '{package}'",

@@ -249,3 +249,10 @@ def test_arguments_and_files_that_are_not_there_are_refused_with_those_that_are(
     absent = terminal.ros2("launch", "arm", "leg.launch.py", cwd=workspace)
     assert "Launch files there: arm.launch.py." in absent.err
     assert {unknown.code, missing.code, absent.code} == {1}
+
+
+def test_turtlesim_comes_with_its_launch_file(terminal: Terminal) -> None:
+    answer = terminal.ros2("launch", "--show-args", "turtlesim", "multisim.launch.py")
+    assert (answer.code, answer.err) == (0, "")
+    absent = terminal.ros2("launch", "turtlesim", "mimic.launch.py")
+    assert "Launch files there: multisim.launch.py." in absent.err

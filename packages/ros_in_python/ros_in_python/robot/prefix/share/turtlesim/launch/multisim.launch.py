@@ -1,0 +1,14 @@
+"""Starts two turtlesims, which do not hear each other: each is in a namespace of its own."""
+
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Return the two nodes."""
+    return LaunchDescription(
+        [
+            Node(package="turtlesim", executable="turtlesim_node", namespace=namespace, output="screen")
+            for namespace in ("turtlesim1", "turtlesim2")
+        ]
+    )
