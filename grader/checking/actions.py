@@ -55,7 +55,7 @@ def goals(run: RecordedRun, action: str = "", by: By = "grader") -> tuple[Goal, 
 
     Example: `run.goals("/count")[0].status`
     """
-    name = action or run.only("action" if by == "grader" else "action_client")
+    name = run.existing("action", action or run.only("action" if by == "grader" else "action_client"))
     return tuple(goal for goal in run.recording.goals if goal.action == name and goal.by == by)
 
 
@@ -228,6 +228,8 @@ def must_ask_only_for_accepted(run: RecordedRun, action: str = "") -> None:
 
     Example: `run.must_ask_only_for_accepted("/climb")`
     """
+    if not _reference_goals(run, action or run.only("action_client"), "node"):
+        raise ValueError(f"in the scenario {run.scenario} the solution sends no goal: there is nothing to look at.")
     for student in goals(run, action, by="node"):
         if student.accepted is False and student.asked_result is not None:
             text = "it was rejected, but your node asked for its result. Check goal_handle.accepted."
@@ -244,7 +246,10 @@ def _match(
     what: str,
 ) -> list[tuple[Goal, Goal]]:
     name = action or run.only("action" if by == "grader" else "action_client")
-    both = list(zip(goals(run, name, by), _reference_goals(run, name, by), strict=False))
+    references = _reference_goals(run, name, by)
+    both = list(zip(goals(run, name, by), references, strict=False))
+    if by == "grader" and not references:
+        raise ValueError(f"the scenario {run.scenario} sends no goal for {name}. Add at(0.5).send_goal({name!r}, …).")
     pairs = [(e, g) for student, reference in both if (g := part_of(student)) and (e := part_of(reference))]
     for student, reference in both:
         expected, got = part_of(reference), part_of(student)

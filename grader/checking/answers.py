@@ -18,6 +18,7 @@ from grader.checking.patterns import FEWEST, ORDER, common, fixed_step
 from grader.checking.recorded_run import RecordedRun
 from grader.checking.unanswered import why_unanswered
 from grader.recording.arrays import LongArray
+from groundwork.words import counted
 
 _COPIED = hints("copied")
 
@@ -59,8 +60,19 @@ def _note_stamps(exchanges: list[Exchange]) -> None:
 
 
 def _expected(run: RecordedRun) -> list[Exchange]:
-    """Return the messages that the solution answers."""
+    """Return the messages that the solution answers. Raises ValueError if there are none."""
+    if not any(exchange.expected for exchange in _exchanges(run)):
+        raise ValueError(f"the solution answers no message in the scenario {run.scenario}. Use must_be_silent there.")
     return [exchange for exchange in run.exchanges if exchange.expected]
+
+
+def _exchanges(run: RecordedRun, fewest: int = 1) -> list[Exchange]:
+    """Return each message sent. Raises ValueError if the scenario sends fewer than this."""
+    if len(run.reference.sent) < fewest:
+        sends = f"the scenario {run.scenario} sends {counted(len(run.reference.sent), 'message')} to the node"
+        fix = "Send more, or use must_match_series, which is for nodes that publish on their own."
+        raise ValueError(f"{sends}, so no answer can be judged. {fix}")
+    return run.exchanges
 
 
 def _unit(run: RecordedRun, field: str) -> str:
@@ -107,6 +119,7 @@ def must_vary(run: RecordedRun, field: str, per: str = "") -> None:
 
     Example: `run.must_vary("data")`
     """
+    _exchanges(run)
     expected, got = _series(run, field, per, reference=True), _series(run, field, per, reference=False)
     varying = {name: values for name, values in expected.items() if len(set(values)) > 1}
     if not varying:
@@ -145,7 +158,7 @@ def must_be_silent(run: RecordedRun) -> None:
 
     Example: `run.must_be_silent()`
     """
-    _must_be_silent(run, run.exchanges[1:])
+    _must_be_silent(run, _exchanges(run, fewest=2)[1:])
 
 
 def must_be_silent_at_first(run: RecordedRun) -> None:
@@ -153,7 +166,7 @@ def must_be_silent_at_first(run: RecordedRun) -> None:
 
     Example: `run.must_be_silent_at_first()`
     """
-    _must_be_silent(run, run.exchanges[:1])
+    _must_be_silent(run, _exchanges(run)[:1])
 
 
 def _must_be_silent(run: RecordedRun, exchanges: list[Exchange]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal, NoReturn
 
 from grader.checking.cause import UNKNOWN, Cause, as_cause
+from grader.checking.existing_names import OF_EVERY_NODE
 from grader.checking.hint_texts import hints
 from grader.checking.recorded_run import RecordedRun
 from grader.checking.verdict import Finding, Wrong
@@ -28,9 +29,6 @@ CLOCK = "/clock"
 
 #: What a node with a life cycle publishes when its state changes.
 _TRANSITION_EVENT = "lifecycle_msgs/msg/TransitionEvent"
-#: Topics that every node has without creating them.
-OF_EVERY_NODE = (CLOCK, "/rosout", "/parameter_events")
-
 #: Its own endpoints on these topics. A publisher on /clock is not among them: the student created it.
 _OWN = {
     ("subscription", CLOCK),
@@ -127,9 +125,10 @@ def must_have_qos(run: RecordedRun, topic: str = "", depth: bool = False) -> Non
 
     Example: `run.must_have_qos("/out", depth=True)`
     """
-    for declared in run.exercise.topics:
-        if topic not in ("", declared.name):
-            continue
+    chosen = [declared for declared in run.exercise.topics if topic in ("", declared.name)]
+    if topic and not chosen:
+        raise ValueError(f"exercise.toml does not declare {topic}: there is no QoS to compare with.")
+    for declared in chosen:
         expected = f"{declared.reliability} and {declared.durability}"
         kind = _KINDS[declared.direction]
         names = {_in(run, kind, declared.name, start) for start in _starts(run)}

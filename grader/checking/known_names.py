@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from grader.checking.closed_loops import TRUTH
-from grader.checking.graph import OF_EVERY_NODE
+from grader.checking.existing_names import OF_EVERY_NODE
 from grader.exercise.exercise import Exercise
 from grader.recording.types import message_class
 from grader.scenario.command_line import programs_of, starts

@@ -25,12 +25,16 @@ def must_transition(run: RecordedRun, name: str = "") -> None:
             text = f"expected that it is {expected}, got {got}."
             run.wrong_at(call.at, text, part, expected, got, _cause(call, got))
 
+    if not any(_counts(call, name) for call in run.reference.calls):
+        raise ValueError(f"the scenario {run.scenario} asks for no transition{f' {name}' if name else ''}.")
     pairs = zip(run.recording.calls, run.reference.calls, strict=False)
-    each([pair for pair in pairs if _is_transition(pair[0]) and name in ("", _label(pair[0]))], judge)
+    each([pair for pair in pairs if _counts(pair[0], name)], judge)
 
 
-def _is_transition(call: Call) -> bool:
-    return call.by == "grader" and call.service.endswith(f"/{CHANGE_STATE}")
+def _counts(call: Call, name: str) -> bool:
+    """Return whether a call asks for a transition of this name; without one, for any."""
+    is_transition = call.by == "grader" and call.service.endswith(f"/{CHANGE_STATE}")
+    return is_transition and name in ("", _label(call))
 
 
 def _label(call: Call) -> str:

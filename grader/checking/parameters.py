@@ -47,6 +47,8 @@ def must_take_and_refuse_as_the_solution(run: RecordedRun) -> None:
 
     Example: `run.must_take_and_refuse_as_the_solution()`
     """
+    if not run.reference.parameters:
+        raise ValueError(f"the scenario {run.scenario} sets no parameter. Add at(1.0).set_parameter(…) to it.")
     for change, reference in zip(run.recording.parameters, run.reference.parameters, strict=False):
         if reference.taken is not None:
             _see(run, change, taken=reference.taken)
@@ -78,8 +80,9 @@ def _changes(run: RecordedRun, name: str, value: Any) -> list[ParameterChange]:
     changes = [change for change in run.recording.parameters if change.name == name]
     matching = [c for c in changes if value is ANY or (type(c.value) is type(value) and c.value == value)]
     if not matching:
-        text = ", ".join(shown(change.value) for change in changes) or "nothing"
-        raise ValueError(f"the scenario {run.scenario} sets {name} to {text}, never to {value!r}.")
+        text = ", ".join(shown(change.value) for change in changes)
+        never = f"sets {name} to {text}, never to {value!r}" if text else f"never sets the parameter {name}"
+        raise ValueError(f"the scenario {run.scenario} {never}.")
     return matching
 
 

@@ -11,6 +11,7 @@ from typing import Any, NoReturn
 
 from grader.checking.cause import UNKNOWN, Cause, as_cause
 from grader.checking.comparator import difference, shown, shown_apart
+from grader.checking.existing_names import names_of, not_existing
 from grader.checking.hint_texts import hints
 from grader.checking.message import Exchange, Message, WorldState, exchanges
 from grader.checking.observed import observed, otherwise
@@ -262,7 +263,8 @@ class RecordedRun:
         self, topic: str = "", reference: bool = False, subscriber: str = ""
     ) -> tuple[ReceivedMessage, ...]:
         """Return only what the student's node, or the solution, published on `topic`: see `messages_on`."""
-        recording, name = self.reference if reference else self.recording, topic or self.output.name
+        recording = self.reference if reference else self.recording
+        name = self.existing("topic", topic or self.output.name)
         return tuple(m for m in recording.received if m.topic == name and m.subscriber == subscriber)
 
     @property
@@ -272,6 +274,18 @@ class RecordedRun:
             names = ", ".join(topic.name for topic in self.exercise.outputs) or "none"
             raise ValueError(f"name the topic: the topics that exercise.toml has under [[publish]] are: {names}.")
         return self.exercise.outputs[0]
+
+    def existing(self, word: str, name: str) -> str:
+        """Return the `name` of a topic, service or action. Raises ValueError if neither the exercise nor the run with
+        the solution has it.
+        """
+        if problem := not_existing(name, word, self._names, self.scenario):
+            raise ValueError(problem)
+        return name
+
+    @cached_property
+    def _names(self) -> frozenset[str]:
+        return names_of(self.exercise, self.reference)
 
     def only(self, role: Role) -> str:
         """Return the only service or action of a kind. Raises ValueError if there are several."""

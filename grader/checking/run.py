@@ -26,8 +26,9 @@ class Run(RecordedRun):
 
         Example: `run.on("/out").must_match("data")`
         """
+        name = self.existing("topic", topic)
         student, solution = (
-            replace(recording, received=tuple(message for message in recording.received if message.topic == topic))
+            replace(recording, received=tuple(message for message in recording.received if message.topic == name))
             for recording in (self.recording, self.reference)
         )
         return replace(self, recording=student, reference=solution)

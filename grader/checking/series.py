@@ -148,6 +148,8 @@ def must_stamp(run: RecordedRun, topic: str = "", field: str = "header.stamp", w
     """
     name = topic or run.output.name
     messages = run.published_on(name)
+    if not run.published_on(name, reference=True):
+        raise ValueError(f"the solution publishes nothing on {name} in the scenario {run.scenario}.")
     stamps = [_nanoseconds(field_of(message.fields, field)) for message in messages]
 
     def judge(numbered: tuple[int, tuple[ReceivedMessage, int]]) -> None:

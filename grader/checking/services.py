@@ -24,7 +24,7 @@ def calls(run: RecordedRun, service: str = "", by: By = "grader") -> tuple[Call,
 
     Example: `run.calls("/add")[0].response["sum"]`
     """
-    name = service or run.only("service" if by == "grader" else "client")
+    name = run.existing("service", service or run.only("service" if by == "grader" else "client"))
     return tuple(call for call in run.recording.calls if call.service == name and call.by == by)
 
 
@@ -106,7 +106,10 @@ def must_match_requests(
 def _numbered(run: RecordedRun, service: str, by: By) -> list[tuple[int, Call, Call]]:
     """Return (number from 1, the student's, the solution's) of each call."""
     name = service or run.only("service" if by == "grader" else "client")
-    pairs = zip(calls(run, name, by), _reference_calls(run, name, by), strict=False)
+    references = _reference_calls(run, name, by)
+    pairs = zip(calls(run, name, by), references, strict=False)
+    if by == "grader" and not references:
+        raise ValueError(f"the scenario {run.scenario} never calls {name}. Add a step: at(0.5).call({name!r}, …).")
     return [(number, call, reference) for number, (call, reference) in enumerate(pairs, start=1)]
 
 

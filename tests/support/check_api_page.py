@@ -84,7 +84,7 @@ _FIELDS = """\
 `message.data`."""
 
 #: What helpers share, and checks do not need.
-_INTERNAL = ("observed", "waits", "only", "output", "published_on")
+_INTERNAL = ("observed", "waits", "only", "existing", "output", "published_on")
 
 
 def page() -> str:

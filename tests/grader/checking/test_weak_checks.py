@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from made_up import EXERCISE
+from made_up import EMPTY, EXERCISE, published, run
 
 from grader.checking.proofreader import others_each_time
+from grader.checking.run import Run
 from grader.checking.weak_checks import weak_checks
 from grader.scenario.scenario import Scenario, SetParameter
 from grader.scenario.steps import at
@@ -57,3 +59,41 @@ def test_scenarios_must_be_the_same_for_one_seed() -> None:
     assert "the scenario first is another one each time" in error.problem.problem
     (error,) = others_each_time(EXERCISE, (first,), (first, second))
     assert "1 scenario the first time, 2 the second" in error.problem.problem
+
+
+@pytest.mark.parametrize(
+    ("check", "problem"),
+    [
+        (lambda run: run.must_match("data"), "sends 0 messages to the node, so no answer can be judged"),
+        (lambda run: run.must_vary("data"), "sends 0 messages to the node"),
+        (lambda run: run.must_be_silent(), "sends 0 messages to the node"),
+        (lambda run: run.must_be_silent_at_first(), "sends 0 messages to the node"),
+        (lambda run: run.must_match_responses("sum"), "the scenario plain never calls /add. Add a step"),
+        (lambda run: run.must_respond(), "the scenario plain never calls /add"),
+        (lambda run: run.must_match_results(), "the scenario plain sends no goal for /count"),
+        (lambda run: run.must_transition(), "the scenario plain asks for no transition"),
+        (lambda run: run.must_take("gain"), "the scenario plain never sets the parameter gain."),
+        (lambda run: run.must_take_and_refuse_as_the_solution(), "the scenario plain sets no parameter"),
+        (lambda run: run.must_have_qos("/outt"), "exercise.toml does not declare /outt"),
+        (
+            lambda run: run.on("/outt"),
+            "there is no topic /outt in exercise.toml, nor in the scenario plain. Did you mean",
+        ),
+        (lambda run: run.messages_on("/outt"), "Did you mean /out?"),
+        (lambda run: run.must_publish("/outt", count=0), "Did you mean /out?"),
+        (
+            lambda run: run.calls("/ad"),
+            "there is no service /ad in exercise.toml, nor in the scenario plain. Did you mean",
+        ),
+        (lambda run: run.goals("/cuont"), "Did you mean /count?"),
+    ],
+)
+def test_a_helper_with_nothing_to_judge_is_the_authors_fault(check: Callable[[Run], object], problem: str) -> None:
+    for mine in (EMPTY, published((1.0,), (2.0,))):
+        with pytest.raises(ValueError, match=problem.replace("?", r"\?")):
+            check(run(mine, EMPTY))
+
+
+def test_names_in_a_namespace_and_those_of_every_node_are_right() -> None:
+    assert not run(EMPTY).messages_on("/left/out")
+    assert not run(EMPTY).messages_on("/rosout")
