@@ -12,7 +12,8 @@ from grader.recording.recording import ReceivedMessage, Recording, SentMessage
 class Message(OnTopic, Part):
     """A message that was sent or received: its fields by name, its `stamp` (s), its topic, and when it arrived (s).
 
-    For a sent message, `heard` says whether the student's node subscribed to its topic at that moment. For a received
+    For a sent message, `heard` says whether the student's node subscribed to its topic at that moment; a field that the
+    scenario does not give has its default. For a received
     message, `after` is the number of messages that had been sent by then. `at_ns` is its simulated time in nanoseconds.
     """
 
@@ -23,7 +24,7 @@ class Message(OnTopic, Part):
     after: int
 
     def __init__(self, kept: SentMessage | ReceivedMessage) -> None:
-        super().__init__(kept.fields)
+        super().__init__(kept.fields, (kept.type,))
         self.heard = not isinstance(kept, SentMessage) or kept.heard
         self.at, self.at_ns = kept.at, kept.at_ns
         self.after = kept.after if isinstance(kept, ReceivedMessage) else 0

@@ -230,7 +230,10 @@ class Checks:
             wrong = error if isinstance(error, Wrong) else Wrong(Finding(text))
             finding = suited(wrong.finding.shortened(), mark)
             return replace(verdict, status="failed", finding=finding, share=wrong.share, partial=mark.partial)
-        return replace(verdict, status="error", error=_describe(error, item.path))
+        advice = ""
+        if isinstance(error, NameError) and error.name in self.scenarios:
+            advice = f". {error.name} is a scenario: add it to the arguments of {item.name}"
+        return replace(verdict, status="error", error=_describe(error, item.path) + advice)
 
 
 def suited(finding: Finding, options: CheckOptions) -> Finding:

@@ -13,7 +13,7 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 from typing import NoReturn
 
@@ -71,14 +71,16 @@ def faults(folder: Path) -> Iterator[ExerciseError]:
         return
     yield from _of_solution(exercise)
     yield from disagreements(exercise)
-    yield from undefined_names(with_modules([exercise.scenarios_file, *exercise.check_files]))
     scenarios: tuple[Scenario, ...] = ()
     try:
         scenarios = declared(exercise, seed=0)
-        yield from others_each_time(exercise, scenarios, declared(exercise, seed=0))
-        yield from misspellings(exercise, scenarios)
+        of_names = [*others_each_time(exercise, scenarios, declared(exercise, seed=0))]
+        of_names += misspellings(exercise, scenarios)
     except ExerciseError as error:
-        yield error
+        of_names = [error]
+    files = with_modules([exercise.scenarios_file, *exercise.check_files])
+    yield from undefined_names(files, {scenario.name for scenario in scenarios})
+    yield from of_names
     for file in exercise.check_files:
         yield from same_name_twice(file)
         yield from weak_checks(file, _parsed(file))
@@ -130,20 +132,35 @@ def same_name_twice(file: Path) -> Iterator[ExerciseError]:
             first.setdefault(node.name, node.lineno)
 
 
-def undefined_names(files: Iterable[Path]) -> Iterator[ExerciseError]:
-    """Yield names that a file uses and nothing in it defines. Python notices it only when it comes to such a line."""
+def undefined_names(files: Iterable[Path], scenarios: Collection[str] = ()) -> Iterator[ExerciseError]:
+    """Yield names that a file uses and nothing in it defines. Python notices it only when it comes to such a line.
+
+    A check has the `scenarios` that are among its arguments.
+    """
     for file in files:
         tree = _parsed(file)
-        names = [node for node in ast.walk(tree) if isinstance(node, ast.Name)]
         imports_all = any(isinstance(node, ast.alias) and node.name == "*" for node in ast.walk(tree))
         for name in sorted(python_code.missing(ast.unparse(tree))) if not imports_all else ():
-            line = next((node.lineno for node in names if node.id == name), None)
-            yield ExerciseError(file, f"there is no {name} in this file", _remedy_for(name, tree), line)
+            lines = {node.lineno for node in ast.walk(tree) if isinstance(node, ast.Name) and node.id == name}
+            line = min(lines - _lines_with(name, tree), default=None)
+            fix = _remedy_for(name, tree, line or 0, scenarios)
+            yield ExerciseError(file, f"there is no {name} in this file", fix, line)
 
 
-def _remedy_for(name: str, tree: ast.Module) -> str:
-    if line := import_of(name):
-        return f"Import it: {line}"
+def _lines_with(argument: str, tree: ast.Module) -> set[int]:
+    """Return the lines of the functions that have this argument."""
+    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+    having = [one for one in functions if any(argument == name.arg for name in one.args.args)]
+    return {line for one in having for line in range(one.lineno, (one.end_lineno or one.lineno) + 1)}
+
+
+def _remedy_for(name: str, tree: ast.Module, line: int, scenarios: Collection[str]) -> str:
+    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+    around = [node.name for node in functions if node.lineno <= line <= (node.end_lineno or 0)]
+    if name in scenarios and around:
+        return f"{name} is a scenario: add it to the arguments of {around[0]}."
+    if imported := import_of(name):
+        return f"Import it: {imported}"
     known = python_code.bound(tree.body) | {node.arg for node in ast.walk(tree) if isinstance(node, ast.arg)}
     near = difflib.get_close_matches(name, sorted(known), n=1)
     return f"Did you mean {near[0]}?" if near else "Define it, or import it."

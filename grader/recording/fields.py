@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping
+from functools import cache, reduce
 from typing import Any
 
 #: A second of builtin_interfaces/msg/Time (ns).
@@ -11,13 +12,13 @@ SECOND = 1_000_000_000
 
 
 class Part:
-    """Some fields of a message, by name."""
+    """Some fields of a message, by name. `kind` is the message's type, if known, and the path of these fields in it."""
 
-    def __init__(self, fields: Mapping[str, Any]) -> None:
-        self._fields = fields
+    def __init__(self, fields: Mapping[str, Any], kind: tuple[str, ...] = ()) -> None:
+        self._fields, self._kind = fields, kind
 
     def __getattr__(self, name: str) -> Any:
-        return field_called(self._fields, name)
+        return field_called(self._fields, name, self._kind)
 
     def __repr__(self) -> str:
         return f"Message({self._fields})"
@@ -74,19 +75,37 @@ class WithFields(OnTopic):
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):  # pickle and copy ask for these before there are fields
             raise AttributeError(name)
-        return field_called(self.__dict__["fields"], name)
+        return field_called(self.__dict__["fields"], name, (self.__dict__["type"],))
 
 
-def field_called(fields: Mapping[str, Any], name: str) -> Any:
+def field_called(fields: Mapping[str, Any], name: str, kind: tuple[str, ...] = ()) -> Any:
     """Return a field by its name; nested messages, in lists as well, as `NestedMessage`.
 
-    Raises AttributeError, which suggests a similar name.
+    What a message that was sent does not give has its type's default. Raises AttributeError for a field that the type
+    does not have, which suggests a similar name.
     """
     if name in fields:
         value = fields[name]
         if isinstance(value, (list, tuple)) and value and isinstance(value[0], dict):
             return [NestedMessage(part) for part in value]
-        return NestedMessage(value) if isinstance(value, dict) else value
+        return NestedMessage(value, (*kind, name) if kind else ()) if isinstance(value, dict) else value
+    if kind and name in (others := _defaults(*kind)):
+        value = others[name]
+        if hasattr(value, "get_fields_and_field_types"):
+            return NestedMessage({}, (*kind, name))
+        return value.tolist() if hasattr(value, "tolist") else value
     close = difflib.get_close_matches(name, fields, n=1)
     advice = f"Did you mean {close[0]}?" if close else f"Its fields are: {', '.join(fields) or 'none'}."
     raise AttributeError(f"a message of this type has no field {name!r}. {advice}")
+
+
+@cache
+def _defaults(type_name: str, *path: str) -> Mapping[str, Any]:
+    """Return the default of each field of a type, or of the message at this path in it; none of an unknown one."""
+    from grader.recording.types import message_class
+
+    try:
+        message = reduce(getattr, path, message_class(type_name)())
+        return {name: getattr(message, name) for name in message.get_fields_and_field_types()}
+    except (ImportError, AttributeError, ValueError):
+        return {}

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from made_up import EMPTY, EXERCISE, published, run
 
-from grader.checking.proofreader import others_each_time
+from grader.checking.proofreader import others_each_time, undefined_names
 from grader.checking.run import Run
 from grader.checking.weak_checks import weak_checks
 from grader.scenario.scenario import Scenario, SetParameter
@@ -97,3 +97,11 @@ def test_a_helper_with_nothing_to_judge_is_the_authors_fault(check: Callable[[Ru
 def test_names_in_a_namespace_and_those_of_every_node_are_right() -> None:
     assert not run(EMPTY).messages_on("/left/out")
     assert not run(EMPTY).messages_on("/rosout")
+
+
+def test_a_scenario_that_is_no_argument_of_its_check_is_named(tmp_path: Path) -> None:
+    file = tmp_path / "checks.py"
+    file.write_text("def test_a(usual):\n    usual.must_answer()\n\n\ndef test_b():\n    usual.must_answer()\n")
+    (error,) = undefined_names([file], {"usual"})
+    assert (error.problem.line, error.problem.problem) == (6, "there is no usual in this file")
+    assert error.problem.fix == "usual is a scenario: add it to the arguments of test_b."
