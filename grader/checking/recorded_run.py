@@ -123,7 +123,8 @@ class RecordedRun:
 
         `part` is the wrong part of the message, such as the joint. Reports show `expected` and `got` separately; those
         that are no texts, such as numbers, are also added to the text. `cause` is what is probably behind it; what the
-        whole run shows has priority.
+        whole run shows has priority. A text is a sentence that the student reads after `text`, and the check's own
+        hints stay; a `Cause` has hints of its own. All failures with the same cause are shown as one mistake.
 
         Example: `run.wrong(run.exchanges[0], "the sign is wrong.", expected=1, got=-1)`
         """

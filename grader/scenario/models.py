@@ -100,7 +100,7 @@ class JointChain:
             self._positions[name], self._velocities[name] = position + velocity * seconds, velocity
 
     def state(self) -> dict[str, Fields]:
-        """Return positions and velocities, stamped with the time of the step."""
+        """Return positions and velocities, without a stamp."""
         return {
             self._states: {
                 "name": list(self._positions),

@@ -51,6 +51,26 @@ Made from the docstrings; each example is run by a test. The [guide](writing-che
 from grader.checking import Run, check, each, fail
 from grader.checking.cause import Cause
 ```
+
+The examples are about a node `worker` that subscribes to `/in`, publishes on `/out` and `/point`, serves `/add` and
+`/count`, calls `/ask`, sends goals to `/climb` and has a parameter `gain`, in this scenario. The truth() of its world
+returns a `level`.
+
+```python
+def scenarios(seed):
+    steps = (
+        numbers("/in", wave(2.0, every(0.1, 1.0))),
+        at(0.5).call("/add", a=1, b=2),
+        at(0.5).set_parameter("gain", 3.0),
+        at(0.6).set_parameter("gain", -1.0),
+        at(0.7).get_parameter("gain"),
+        at(0.7).transition("activate"),
+        at(1.0, 2.0, 3.0).send_goal("/count", order=3),
+        at(3.1).cancel(3),
+    )
+    servers = (Server("/ask", replies=reply(sum=3)), ActionServer("/climb", goals=succeeds(after=1.0)))
+    return (Scenario("usual", "as usual", steps, servers=servers, interrupt=True, duration=4.0),)
+```
 """
 
 #: Title -> the module whose functions are methods of a run.

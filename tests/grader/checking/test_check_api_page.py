@@ -10,6 +10,7 @@ import check_api_page
 import pytest
 from made_up import ADD, COUNT, EMPTY, EXERCISE, FLOAT, STAMPED, ns
 
+import grader.scenario
 from grader.checking import Run, Wrong, check, each, fail
 from grader.exercise.exercise import ServiceOrAction, Topic
 from grader.recording import Ending, Endpoint, ReceivedMessage, Recording, SentMessage
@@ -23,6 +24,7 @@ from grader.recording.events import (
     ParameterReading,
     Truth,
 )
+from grader.scenario import numbers, times
 
 PAGE = Path(__file__).parents[3] / "docs" / "check-api.md"
 
@@ -112,6 +114,15 @@ def test_every_helper_has_an_example() -> None:
     named = {heading.partition("(")[0] for heading in check_api_page.examples()}
     helpers = {f"run.{name}" for name in vars(Run) if not name.startswith("_")}
     assert helpers - named == set()
+
+
+def test_the_scenario_of_the_examples_has_what_they_name() -> None:
+    names = {**vars(grader.scenario), **vars(numbers), **vars(times)}
+    exec(check_api_page.HEAD.rpartition("```python\n")[2].partition("```")[0], names)
+    (scenario,) = names["scenarios"](1)
+    parts = (*scenario.messages, *scenario.steps, *scenario.servers)
+    known = {getattr(part, key, "") for part in parts for key in ("topic", "service", "action")}
+    assert known >= {"/in", "/add", "/count", "/ask", "/climb"}
 
 
 @pytest.mark.parametrize(
