@@ -23,6 +23,7 @@ from grader.report.terminal import show
 from grader.report.timeline import lines_of
 from grader.sandbox.isolation import choose
 from grader.scenario.declared import declared
+from grader.scenario.scenario import Step
 from grader.submission.reader import NoSubmission, of_source, read
 from grader.submission.submission import Submission
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
@@ -91,30 +92,32 @@ def _traced(asked: Trace, workers: WorkerPool) -> int:
     """Run and show; return the exit code."""
     try:
         exercise = load(asked.exercise)
-        grade = _run(asked, exercise, workers)
+        grade, steps = _run(asked, exercise, workers)
     except (NoSubmission, NoMistake) as error:
         raise click.UsageError(str(error)) from None
     except (ExerciseError, HostFault) as error:
         click.echo(str(error), err=True)
         return 3
-    _show(asked, exercise, grade)
+    _show(asked, exercise, grade, steps)
     return 0 if grade.outcome == "graded" else 1
 
 
-def _run(asked: Trace, exercise: Exercise, workers: WorkerPool) -> Grade:
+def _run(asked: Trace, exercise: Exercise, workers: WorkerPool) -> tuple[Grade, tuple[Step, ...]]:
+    """Return the grade in one scenario, and the scenario's steps."""
     options = Options(seed=asked.seed)
     every = declared(exercise, asked.seed)
     names = [scenario.name for scenario in every]
     if asked.scenario and asked.scenario not in names:
         raise click.UsageError(f"--scenario {asked.scenario}: the scenarios are {', '.join(names)}.")
     runner = ScenarioRunner(exercise, every, choose(None), options, workers, partly=True)
-    runner = runner.only(asked.scenario or names[0])
+    name = asked.scenario or names[0]
+    runner = runner.only(name)
     solution = of_source("the solution", solution_file(exercise).read_bytes(), exercise)
     references = runner.run(solution)
     grading = Grading(runner, references)
     program = _program(asked, exercise)
     recordings = runner.run(program) if program and program.program else references
-    return grading.judge(program or solution, recordings)
+    return grading.judge(program or solution, recordings), every[names.index(name)].steps
 
 
 def _program(asked: Trace, exercise: Exercise) -> Submission | None:
@@ -125,10 +128,10 @@ def _program(asked: Trace, exercise: Exercise) -> Submission | None:
     return read(asked.program, exercise) if asked.program else None
 
 
-def _show(asked: Trace, exercise: Exercise, grade: Grade) -> None:
+def _show(asked: Trace, exercise: Exercise, grade: Grade, steps: tuple[Step, ...]) -> None:
     (scenario, recording), *_ = grade.recordings.items()
     click.echo(f"scenario: {scenario}")
-    for line in lines_of(recording, asked.only, asked.everything):
+    for line in lines_of(recording, asked.only, asked.everything, steps):
         click.echo(line)
     click.echo()
     show(grade, exercise, Console(soft_wrap=False, highlight=False), asked.log)

@@ -13,6 +13,7 @@ from grader.recording.events import Call, Goal, GoalState, ParameterChange, Trut
 from grader.report import trace as trace_module
 from grader.report.timeline import lines_of
 from grader.report.trace import trace
+from grader.scenario.scenario import ToWorld
 
 SECOND, START = 1_000_000_000, 100_000_000_000
 TOML = """\
@@ -136,15 +137,31 @@ def test_the_timeline_has_all_kinds_of_events_and_thins_messages() -> None:
         calls=(Call(at(1), "/add", "", {"a": 1}, "grader", at(1.5), {"sum": 3}),),
         goals=(Goal(1, at(2), "/go", "", {"to": 1}, "grader", True, at(2), (GoalState(at(2), "executing"),)),),
         parameters=(ParameterChange(at(3), "/node", "gain", -1.0, False, "too low"),),
-        truth=(Truth(at(0), {"x": 1.0}),),
+        truth=tuple(Truth(at(n / 10), {"x": 1.0}) for n in range(14)),
     )
+    push = ToWorld(at(3), "push", {"body": "pole"})
+    assert "    3.000 s  • world push  body = 'pole'" in lines_of(recording, steps=(push,))
     lines = list(lines_of(recording))
     assert "    0.000 s  → /in  x = 0, list = [1, 1, 1, 1, 1, 1, 1, 1, …]  (nobody subscribes)" in lines
     assert "    1.500 s  • response /add  sum = 3" in lines
     assert "    2.000 s  • state /go 1  executing" in lines
     assert "    3.000 s  • set gain  -1.0: refused too low" in lines
     assert "    0.000 s  = truth  x = 1" in lines
-    assert lines[-1] == "28 more messages of /out are not shown: --all shows them."
+    assert {*lines[-2:]} == {
+        "28 more messages of /out are not shown: --all shows them.",
+        "2 more messages of truth are not shown: --all shows them.",
+    }
     assert sum("← /out" in line for line in lines) == 12
     assert sum("← /out" in line for line in lines_of(recording, everything=True)) == 40
     assert {line.split()[3] for line in lines_of(recording, ("/add",))} == {"request", "response"}
+
+
+def test_of_a_stamped_message_what_changes_comes_first_and_its_stamp_is_short() -> None:
+    def scan(n: int) -> SentMessage:
+        header = {"stamp": {"sec": 100, "nanosec": n * SECOND // 10}, "frame_id": "laser_of_the_robot"}
+        fields = {"header": header, "angle_min": -1.5707963, "angle_max": 1.5707963, "ranges": [float(n)] * 9}
+        return SentMessage(START + n * SECOND // 10, "/scan", "", fields)
+
+    recording = Recording("s", tuple(map(scan, (1, 2))), (), (), (), True, Ending("completed"))
+    first, _ = lines_of(recording)
+    assert first.startswith("    0.100 s  → /scan  ranges = [1, 1, 1, 1, 1, 1, 1, 1, …], stamp = 100.100, ")
