@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import difflib
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,9 @@ from grader.checking.created import CreationCall, created, texts
 from grader.exercise.exercise import Exercise, ExerciseError, Qos
 from grader.exercise.exercise_toml import line_of
 from grader.exercise.starter import hidden_blocks
+from grader.scenario.command_line import starts
+from grader.scenario.scenario import Scenario
+from grader.scenario.world import World
 from grader.submission import python_code
 
 #: The name of each kind in a sentence.
@@ -62,6 +66,36 @@ def disagreements(exercise: Exercise) -> Iterator[ExerciseError]:
                 whose = "the solution" if call.line in hidden else "the starter"
                 yield ExerciseError(file, f"{whose} {problem}", _FIX, call.line)
     yield from _missing(exercise, file, source, declared, made)
+
+
+def unheard_commands(exercise: Exercise, scenarios: Iterable[Scenario]) -> Iterator[ExerciseError]:
+    """Yield each topic that a scenario tells its world to read, and that nothing publishes."""
+    for scenario in scenarios:
+        published = _published(exercise, scenario)
+        for topic in _told_to_read(scenario.world) if scenario.world and not scenario.companions else ():
+            if topic not in published:
+                near = difflib.get_close_matches(topic, published, n=1)
+                fix = f"Did you mean {near[0]}?" if near else f"There are: {', '.join(published) or 'none'}."
+                problem = f"the world of {scenario.name} reads {topic}, which the program does not publish"
+                line = scenario.world.line if scenario.world else 0
+                yield ExerciseError(exercise.scenarios_file, problem, fix, line or None)
+
+
+def _published(exercise: Exercise, scenario: Scenario) -> list[str]:
+    names = [topic.name for topic in exercise.outputs]
+    spaces = [(start, space) for start in starts(exercise, scenario) for space in ("", start.namespace)]
+    full = [start.resolved(f"{space}{name}") for start, space in spaces for name in names]
+    return list(dict.fromkeys([*names, *full, *(message.topic for message in scenario.messages)]))
+
+
+def _told_to_read(world: World) -> Iterator[str]:
+    """Yield the topics that a world reads because its arguments name them, as a text or as a key."""
+    for topic in world.begin().reads:
+        if any(
+            topic == argument or (isinstance(argument, dict) and topic in argument)
+            for argument in world.arguments.values()
+        ):
+            yield topic
 
 
 def _declared(exercise: Exercise) -> Iterator[_DeclaredTable]:

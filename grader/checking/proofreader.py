@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from grader.checking import known_names
-from grader.checking.agreement import disagreements
+from grader.checking.agreement import disagreements, unheard_commands
 from grader.checking.judge import ListedCheck, listed
 from grader.checking.misspellings import misspellings
 from grader.checking.weak_checks import weak_checks
@@ -75,7 +75,7 @@ def faults(folder: Path) -> Iterator[ExerciseError]:
     try:
         scenarios = declared(exercise, seed=0)
         of_names = [*others_each_time(exercise, scenarios, declared(exercise, seed=0))]
-        of_names += misspellings(exercise, scenarios)
+        of_names += [*misspellings(exercise, scenarios), *unheard_commands(exercise, scenarios)]
     except ExerciseError as error:
         of_names = [error]
     files = with_modules([exercise.scenarios_file, *exercise.check_files])

@@ -50,19 +50,14 @@ class MuJoCo:
         for name, position in (start or {}).items():
             self._data.joint(name).qpos[0] = position
         mujoco.mj_forward(self._model, self._data)
-        for names in (*self._commands.values(), *self._sensors.values()):
-            self._see(names)
+        for known, every in ((self._model.actuator, self._commands), (self._model.sensor, self._sensors)):
+            for name in (name for names in every.values() for name in _list(names)):
+                known(name)  # which raises KeyError with the names of the model
 
     @staticmethod
     def with_files(arguments: dict[str, Any], folder: Path) -> dict[str, Any]:
         """Return the arguments with the model's text for its file. Raises OSError."""
         return {**arguments, "model": (folder / arguments["model"]).read_text(encoding="utf-8")}
-
-    def _see(self, names: Names) -> None:
-        """Raise KeyError, in MuJoCo's words, for a name that the model does not have."""
-        for name in _list(names):
-            if name not in {self._model.actuator(i).name for i in range(self._model.nu)}:
-                self._model.sensor(name)
 
     def hear(self, topic: str, message: Any) -> None:
         """Take a command. Numbers that are not finite are ignored."""

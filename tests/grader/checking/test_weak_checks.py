@@ -10,11 +10,14 @@ from pathlib import Path
 import pytest
 from made_up import EMPTY, EXERCISE, published, run
 
+from grader.checking.agreement import unheard_commands
 from grader.checking.proofreader import others_each_time, undefined_names
 from grader.checking.run import Run
 from grader.checking.weak_checks import weak_checks
+from grader.scenario.models import JointChain
 from grader.scenario.scenario import Scenario, SetParameter
 from grader.scenario.steps import at
+from grader.scenario.world import World
 
 CHECK = '@check(points=1, hint="")\ndef test_it(near: Run) -> None:\n    """It works."""\n    {line}\n'
 
@@ -105,3 +108,14 @@ def test_a_scenario_that_is_no_argument_of_its_check_is_named(tmp_path: Path) ->
     (error,) = undefined_names([file], {"usual"})
     assert (error.problem.line, error.problem.problem) == (6, "there is no usual in this file")
     assert error.problem.fix == "usual is a scenario: add it to the arguments of test_b."
+
+
+@pytest.mark.parametrize(
+    ("topic", "fix"), [("/ouut", "Did you mean /out?"), ("/left", "There are: /out."), ("/out", "")]
+)
+def test_a_topic_that_a_world_reads_and_nobody_publishes_is_named(topic: str, fix: str) -> None:
+    world = World(JointChain, joints={"elbow": 0.0}, commands=topic)
+    errors = list(unheard_commands(EXERCISE, [Scenario("chain", "", duration=1.0, world=world)]))
+    assert [error.problem.fix for error in errors] == ([fix] if fix else [])
+    assert all(f"the world of chain reads {topic}" in error.problem.problem for error in errors)
+    assert not list(unheard_commands(EXERCISE, [Scenario("chain", "", world=World(JointChain, joints={}))]))

@@ -77,6 +77,7 @@ def test_the_documented_example_falls_and_is_pushed_with_the_same_bits_each_time
     [
         ('model="cart.xml"', 'model="car.xml"', "FileNotFoundError.*car.xml"),
         ('"/angle": "angle"', '"/angle": "angel"', "angel.*Valid names.*angle"),
+        ('"/force": "force"', '"/force": "forc"', "forc.*Valid names.*'force'"),
         ('body="pole"', 'body="poll"', "the world's push fails.*poll"),
         ('world("push"', 'world("pull"', "the world's pull fails.*pull"),
         ("world=CART, ", "", "there is no world to push"),
