@@ -66,11 +66,16 @@ async function fetchInto(cache, address, digest, report) {
   await storing;
 }
 
-// Return the service worker, once it controls this page; null if it can't.
+// Return whether a service worker controls this page, once it does. A page that has one does not wait for its renewal,
+// which took Chromium a minute on a second visit.
 async function serviceWorker() {
-  if (!("serviceWorker" in navigator) || !window.isSecureContext) return null;
-  const known = await navigator.serviceWorker.register(new URL("../offline.js", base), { scope: new URL("../", base).href });
-  if (navigator.serviceWorker.controller) return known;
-  const controlled = new Promise((resolve) => navigator.serviceWorker.addEventListener("controllerchange", () => resolve(known)));
-  return Promise.race([controlled, new Promise((resolve) => setTimeout(resolve, READY_MS, null))]);
+  if (!("serviceWorker" in navigator) || !window.isSecureContext) return false;
+  const known = navigator.serviceWorker.register(new URL("../offline.js", base), { scope: new URL("../", base).href });
+  if (navigator.serviceWorker.controller) {
+    known.catch(() => {});
+    return true;
+  }
+  await known;
+  const controlled = new Promise((resolve) => navigator.serviceWorker.addEventListener("controllerchange", () => resolve(true)));
+  return Promise.race([controlled, new Promise((resolve) => setTimeout(resolve, READY_MS, false))]);
 }
