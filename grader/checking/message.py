@@ -13,8 +13,8 @@ class Message(OnTopic, Part):
     """A message that was sent or received: its fields by name, its `stamp` (s), its topic, and when it arrived (s).
 
     For a sent message, `heard` says whether the student's node subscribed to its topic at that moment; a field that the
-    scenario does not give has its default. For a received
-    message, `after` is the number of messages that had been sent by then. `at_ns` is its simulated time in nanoseconds.
+    scenario does not give has its default. For a received message, `after` is the number of messages that had been sent
+    by then. `at_ns` is its simulated time in nanoseconds.
     """
 
     at: float

@@ -22,8 +22,7 @@ _TINY = 64 * 5e-324
 def observed(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
     """Return the first cause that the run shows, in this order: an exception, messages that are never sent because a
     lifecycle node is not active, a parameter that is missing or that nobody serves, messages that the node sends to
-    itself, ints in float fields, values without names,
-    lists that pile up, only zeros, only false.
+    itself, ints in float fields, values without names, lists that pile up, only zeros, only false.
     """
     seers: tuple[Callable[[Exercise, Recording, Recording], Cause], ...] = (
         _exception,

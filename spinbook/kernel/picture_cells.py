@@ -42,7 +42,7 @@ def show_graph(seconds: float) -> None:
 
 
 def _run(argv: list[str], seconds: float) -> tuple[int | None, str]:
-    """Return a program's exit code and what it prints, within so many seconds."""
+    """Run a program for at most this many seconds; return its exit code and what it printed."""
     process = KeptProcess(argv, os.environ, Path.cwd())
     try:
         return process.wait(seconds).exit, process.read_all()[0].decode(errors="replace").strip()

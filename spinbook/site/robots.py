@@ -20,7 +20,7 @@ from spinbook.site.drawings import PICTURE_FOLDER
 #: The script that draws robots, as a file of the site.
 SCRIPT = "_static/robot_view.js"
 _QUALITY = 62
-#: A still is shown until the script draws, and on paper: so many of its pixels for one of CSS are sharp enough.
+#: A still is shown until the script draws, and on paper: this many of its pixels per CSS pixel are sharp enough.
 _SHARPNESS = 4 / 3
 #: Transparency has steps of this size: nobody sees them in the soft shadow, which takes a third of the file otherwise.
 _STEP = 4

@@ -71,7 +71,7 @@ def restart_if_polluted(module: str) -> None:
     for number in range(3):
         try:
             os.fstat(number)
-        except OSError:  # closed by whoever started this: the next file that is opened would take its place
+        except OSError:  # the caller closed it, and the next file to be opened would get its number
             os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)
     if sys.path and not _is_inside(sys.path[0], _own_roots()) and not _holds(sys.path[0] or ".", _OWN_PACKAGES):
         del sys.path[0]  # `python -m` adds the current folder, which may be a student's
