@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,7 @@ from grader.scenario.command_line import starts
 from grader.scenario.scenario import Scenario
 from grader.scenario.world import World
 from grader.submission import python_code
+from groundwork.words import did_you_mean
 
 #: The name of each kind in a sentence.
 _WORDS = {
@@ -74,8 +74,7 @@ def unheard_commands(exercise: Exercise, scenarios: Iterable[Scenario]) -> Itera
         published = _published(exercise, scenario)
         for topic in _told_to_read(scenario.world) if scenario.world and not scenario.companions else ():
             if topic not in published:
-                near = difflib.get_close_matches(topic, published, n=1)
-                fix = f"Did you mean {near[0]}?" if near else f"There are: {', '.join(published) or 'none'}."
+                fix = did_you_mean(topic, published, f"There are: {', '.join(published) or 'none'}.")
                 problem = f"the world of {scenario.name} reads {topic}, which the program does not publish"
                 line = scenario.world.line if scenario.world else 0
                 yield ExerciseError(exercise.scenarios_file, problem, fix, line or None)

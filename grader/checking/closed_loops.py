@@ -159,12 +159,12 @@ def must_steer(run: RecordedRun, topic: str, field: str, errors: Errors) -> None
 
     Example: `run.must_steer("/out", "data", [(0.0, 2.0)])`
     """
-    cause = steers_away(run, topic, field, errors)
+    cause, steering = steers_away(run, topic, field, errors), _steering(run, topic, field, errors)
     since = min((at for at, error in errors if abs(error) > SMALLEST), default=None)
-    if since is not None and not _steering(run, topic, field, errors):
+    if since is not None and not steering:
         text = f"expected a {field} on {topic} while the goal is away, got none from {since:g} s on."
         run.wrong_at(since, text, "", f"a {field}", "none", run.waits())
-    for at, error, value in _steering(run, topic, field, errors):
+    for at, error, value in steering:
         if error * value <= 0:
             expected, got = "more than 0" if error > 0 else "less than 0", _measure(value, run.unit_of(field, topic))
             text = f"expected {field} {expected}, because the goal is {error:+.3g} away; got {got}."

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
-
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Recording
+from groundwork.words import did_you_mean
 
 #: Topics that every node has without creating them.
 OF_EVERY_NODE = ("/clock", "/rosout", "/parameter_events")
@@ -26,7 +25,6 @@ def not_existing(name: str, word: str, names: frozenset[str], scenario: str) -> 
     """
     if name in names or any(name.endswith(f"/{known.lstrip('/')}") for known in names if known.strip("/")):
         return ""
-    others = names - {*OF_EVERY_NODE}
-    close = difflib.get_close_matches(name, sorted(others), n=1)
-    fix = f"Did you mean {close[0]}?" if close else f"There are: {', '.join(sorted(others)) or 'none'}."
+    others = sorted(names - {*OF_EVERY_NODE})
+    fix = did_you_mean(name, others, f"There are: {', '.join(others) or 'none'}.")
     return f"there is no {word} {name} in exercise.toml, nor in the scenario {scenario}. {fix}"

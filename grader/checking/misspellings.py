@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import difflib
 import inspect
 import re
 from collections.abc import Collection, Iterator
@@ -23,6 +22,7 @@ from grader.exercise.imported_files import with_modules
 from grader.recording.events import STATES, Call, Goal, ParameterChange, ParameterReading
 from grader.recording.recording import Endpoint, ReceivedMessage, Recording, SentMessage
 from grader.scenario.scenario import Scenario
+from groundwork.words import did_you_mean
 from ros_in_python.field_path import steps_of
 
 #: What an expression in a check is: a message of a type, or a record such as `Call`; a list of these.
@@ -204,9 +204,7 @@ class _Function:
     # --- what is wrong
 
     def _error(self, node: ast.expr, problem: str, name: str, known: Collection[str]) -> ExerciseError:
-        close = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
-        there = ", ".join(sorted(known)) or "none"
-        fix = f"Did you mean {close[0]}?" if close else f"There are: {there}."
+        fix = did_you_mean(name, known, f"There are: {', '.join(sorted(known)) or 'none'}.")
         return ExerciseError(self._file, problem, fix, node.lineno)
 
     def _attribute(self, node: ast.Attribute) -> Iterator[ExerciseError]:

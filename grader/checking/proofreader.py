@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import ast
-import difflib
 import json
 import os
 import re
@@ -36,7 +35,7 @@ from grader.submission import python_code
 from groundwork.child_process import run_program
 from groundwork.clean_environment import module_command, without_foreign
 from groundwork.problem import Problem
-from groundwork.words import counted
+from groundwork.words import counted, did_you_mean
 
 #: The time limit (s) for importing an exercise's files.
 TIME_LIMIT_S = 60
@@ -162,8 +161,7 @@ def _remedy_for(name: str, tree: ast.Module, line: int, scenarios: Collection[st
     if imported := import_of(name):
         return f"Import it: {imported}"
     known = python_code.bound(tree.body) | {node.arg for node in ast.walk(tree) if isinstance(node, ast.arg)}
-    near = difflib.get_close_matches(name, sorted(known), n=1)
-    return f"Did you mean {near[0]}?" if near else "Define it, or import it."
+    return did_you_mean(name, sorted(known), "Define it, or import it.")
 
 
 def _twice_in_the_task(exercise: Exercise) -> Iterator[ExerciseError]:

@@ -12,6 +12,7 @@ from pathlib import Path
 from grader.exercise.data_files import data_paths
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.imported_files import imports_of, installed, place_of, with_modules
+from groundwork.words import did_you_mean
 
 #: Files that no student gets. What a public check or scenario needs must be in another file of the exercise's folder.
 HIDDEN_FILES = ("scenarios.py", "hidden_checks.py")
@@ -72,8 +73,7 @@ def _of_argument(called: str, argument: str) -> str:
     """Return what was probably meant by an argument that a class or a function of the grader's does not have."""
     home = import_of(called).split()
     names = inspect.signature(getattr(importlib.import_module(home[1]), called)).parameters if home else ()
-    near = difflib.get_close_matches(argument, names, n=1)
-    return f"Did you mean {near[0]}?" if near else f"Its arguments: {', '.join(names)}." if names else ""
+    return did_you_mean(argument, names, f"Its arguments: {', '.join(names)}." if names else "")
 
 
 def _of_import(error: ImportError) -> str:
@@ -91,8 +91,8 @@ def _remedy(error: BaseException, folder: Path) -> str:
     if isinstance(error, TypeError) and "'module' object is not callable" in str(error):
         return "This is a module. Import what is in it, such as: from grader.scenario.numbers import numbers"
     if isinstance(error, ModuleNotFoundError) and error.name:
-        near = difflib.get_close_matches(error.name, [file.stem for file in folder.glob("*.py")], n=1)
-        return f"Did you mean {near[0]}?" if near else f"Put {error.name}.py next to this file, or install it."
+        there = [file.stem for file in folder.glob("*.py")]
+        return did_you_mean(error.name, there, f"Put {error.name}.py next to this file, or install it.")
     if isinstance(error, ImportError):
         return _of_import(error)
     if isinstance(error, SyntaxError) and "unicode error" in str(error):

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Iterable
+
 
 def counted(number: int, noun: str) -> str:
     """Return `1 student` or `2 students`, `1 entry` or `2 entries`."""
@@ -10,3 +13,9 @@ def counted(number: int, noun: str) -> str:
     if noun.endswith("y") and noun[-2] not in "aeou":
         return f"{number} {noun[:-1]}ies"
     return f"{number} {noun}s"
+
+
+def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
+    """Return the question whether the most similar of the `known` names was meant; `otherwise` if none is similar."""
+    near = difflib.get_close_matches(name, list(known), n=1)
+    return f"Did you mean {near[0]}?" if near else otherwise
