@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor, as_completed
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, TypeVar
 
 from grader.audit.candidates import (
     Candidate,
@@ -19,7 +21,7 @@ from grader.audit.candidates import (
     right_solutions,
     seeds_of,
 )
-from grader.audit.check_list import AuditedCheck, ChecksJob, problems_in_text
+from grader.audit.check_list import ChecksJob, problems_in_text
 from grader.audit.mutants.maker import Mutant, mutants_of
 from grader.audit.result import (
     LEAST_SCORE,
@@ -44,6 +46,7 @@ from grader.audit.worth import (
     scenario_results,
     worth_running_on,
 )
+from grader.checking.verdict import ListedCheck
 from grader.exercise.exercise import Exercise
 from grader.exercise.mistakes import mistakes_of
 from grader.exercise.rules import rules_of
@@ -118,9 +121,9 @@ def sample(mutants: tuple[Mutant, ...], size: int) -> tuple[Mutant, ...]:
 class AuditTrials:
     """The trials: of the author's programs by name, of mutants by id, and of right solutions for each further seed."""
 
-    programs: dict[str, Trial] = field(default_factory=dict)
-    mutants: dict[str, Trial] = field(default_factory=dict)
-    seeds: dict[int, dict[str, Trial]] = field(default_factory=dict)
+    programs: dict[str, Trial]
+    mutants: dict[str, Trial]
+    seeds: dict[int, dict[str, Trial]]
 
     @property
     def all(self) -> list[Trial]:
@@ -130,30 +133,19 @@ class AuditTrials:
 
 def try_all(plan: AuditPlan, trials: Trials, store: Store, progress: AuditProgress) -> AuditTrials:
     """Try everything in the plan. Raises `HostFault` if the machine or the grader is at fault."""
-    tried = AuditTrials()
     work = _Work(plan, trials, store)
-    progress.begin(trials.grading.runner.exercise.name, len(plan.seeds) + len(plan.mutants) + len(_programs(plan)))
-    with ThreadPoolExecutor(trials.grading.runner.options.parallel) as pool:
-        # The longest ones start first, so that the workers finish at about the same time.
-        seeds = {pool.submit(over_seed, trials, store, seed, plan.right): seed for seed in plan.seeds}
-        programs = {pool.submit(work.program, program): program for program in _programs(plan)}
-        mutants = {pool.submit(work.mutant, mutant): mutant for mutant in plan.mutants}
-        every: list[Future[object]] = [*seeds, *programs, *mutants]  # type: ignore[list-item]
-        try:
-            for future in as_completed(every):
-                future.result()
-                progress.done()
-        except BaseException:
-            # After Ctrl-C or a fault, do not wait for the trials in progress.
-            trials.runs.stopped.set()
-            raise
-        finally:
-            for future in every:
-                future.cancel()
-        tried.seeds.update({seed.number: future.result() for future, seed in seeds.items()})
-        tried.programs.update({program.name: future.result() for future, program in programs.items()})
-        tried.mutants.update({mutant.id: future.result() for future, mutant in mutants.items()})
-    return tried
+    seeds: dict[Any, Job] = {seed.number: partial(over_seed, trials, store, seed, plan.right) for seed in plan.seeds}
+    programs: dict[Any, Job] = {program.name: partial(work.program, program) for program in _programs(plan)}
+    mutants: dict[Any, Job] = {mutant.id: partial(work.mutant, mutant) for mutant in plan.mutants}
+    # The longest ones start first, so that the workers finish at about the same time.
+    jobs = {**seeds, **programs, **mutants}
+    progress.begin(trials.grading.runner.exercise.name, len(jobs))
+    results = _done(jobs, trials, progress.done)
+    return AuditTrials(
+        programs={name: results[name] for name in programs},
+        mutants={id_: results[id_] for id_ in mutants},
+        seeds={number: results[number] for number in seeds},
+    )
 
 
 def run_on(plan: AuditPlan, tried: AuditTrials, trials: Trials, store: Store) -> None:
@@ -161,16 +153,30 @@ def run_on(plan: AuditPlan, tried: AuditTrials, trials: Trials, store: Store) ->
     evidence = {**{mistake.name: tried.programs[mistake.name] for mistake in plan.mistakes}, **tried.mutants}
     doubtful = set(worth_running_on(trials.checks, evidence, tried.mutants))
     work = _Work(plan, trials, store)
+    jobs = {mutant.id: partial(work.mutant, mutant, "the end") for mutant in plan.mutants if mutant.id in doubtful}
+    tried.mutants.update(_done(jobs, trials))
+
+
+Key = TypeVar("Key")
+Job = Callable[[], Any]
+
+
+def _done(jobs: Mapping[Key, Job], trials: Trials, progress: Callable[[], None] = lambda: None) -> dict[Key, Any]:
+    """Do several jobs at once, all in the end, and return the result of each."""
     with ThreadPoolExecutor(trials.grading.runner.options.parallel) as pool:
-        futures = {m.id: pool.submit(work.mutant, m, "the end") for m in plan.mutants if m.id in doubtful}
+        futures = {key: pool.submit(job) for key, job in jobs.items()}
         try:
-            tried.mutants.update({id_: future.result() for id_, future in futures.items()})
+            for future in as_completed(futures.values()):
+                future.result()
+                progress()
         except BaseException:
+            # After Ctrl-C or a fault, do not wait for the trials in progress.
             trials.runs.stopped.set()
             raise
         finally:
             for future in futures.values():
                 future.cancel()
+    return {key: future.result() for key, future in futures.items()}
 
 
 def _programs(plan: AuditPlan) -> list[Candidate]:
@@ -215,7 +221,7 @@ def audit(
     began = time.monotonic()
     workers.prepare_to_judge()
     grading = grading_of(exercise, options, workers)
-    checks: tuple[AuditedCheck, ...] = workers.do(ChecksJob(exercise, grading.references))
+    checks: tuple[ListedCheck, ...] = workers.do(ChecksJob(exercise, grading.references))
     trials = Trials(grading, checks, RecordedRuns(grading))
     store = Store(grading.runner)
     reasons = listed(exercise)

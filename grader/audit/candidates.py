@@ -8,11 +8,13 @@ from pathlib import Path
 from typing import Literal
 
 from grader.audit.baselines import programs
-from grader.audit.check_list import AuditedCheck, problem_of
+from grader.audit.check_list import problem_of
 from grader.audit.result import AuditProblem, JudgedProgram, Trial
 from grader.audit.store import Store
 from grader.audit.trial import Trials
+from grader.checking.verdict import ListedCheck
 from grader.exercise.exercise import Exercise
+from grader.exercise.imported_files import tree_of
 from grader.exercise.mistakes import Mistake, mistakes_of
 from grader.exercise.starter import starter
 from grader.grading.reference import solution_file
@@ -89,15 +91,9 @@ def nothings(exercise: Exercise) -> list[Candidate]:
 def _candidate(kind: Literal["solution", "right"], file: Path, exercise: Exercise) -> Candidate:
     code = file.read_bytes()
     name = file.name if kind == "solution" else f"{file.parent.name}/{file.name}"
-    title = _docstring(code.decode("utf-8", errors="replace")).partition("\n")[0] or file.stem
+    docstring = ast.get_docstring(tree_of(code.decode("utf-8", errors="replace"))) or file.stem
+    title = docstring.partition("\n")[0]
     return Candidate(kind, name, file, title, of_source(str(file), code, exercise))
-
-
-def _docstring(text: str) -> str:
-    try:
-        return ast.get_docstring(ast.parse(text)) or ""
-    except SyntaxError:
-        return ""
 
 
 @dataclass(frozen=True)
@@ -183,7 +179,7 @@ def judged(candidate: Candidate, trial: Trial) -> JudgedProgram:
 
 
 def problems_of(
-    candidates: list[Candidate], trials: dict[str, Trial], checks: tuple[AuditedCheck, ...], seed: int | None = None
+    candidates: list[Candidate], trials: dict[str, Trial], checks: tuple[ListedCheck, ...], seed: int | None = None
 ) -> list[AuditProblem]:
     """Return the results that are not as they must be; `seed` is set if it is not the default one."""
     problems: list[AuditProblem] = []
@@ -213,7 +209,7 @@ def _right(candidate: Candidate, trial: Trial, seed: int | None) -> list[AuditPr
     ]
 
 
-def _nothing(candidate: Candidate, trial: Trial, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
+def _nothing(candidate: Candidate, trial: Trial, checks: tuple[ListedCheck, ...]) -> list[AuditProblem]:
     fix = "Let it depend on the check that requires any message at all."
     return [
         problem_of(
@@ -226,7 +222,7 @@ def _nothing(candidate: Candidate, trial: Trial, checks: tuple[AuditedCheck, ...
     ]
 
 
-def _mistake(candidate: Candidate, trial: Trial, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
+def _mistake(candidate: Candidate, trial: Trial, checks: tuple[ListedCheck, ...]) -> list[AuditProblem]:
     subject = f"the mistake {candidate.name} (“{candidate.title}”)"
     known = {check.name for check in checks}
 

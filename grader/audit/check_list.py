@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
-import inspect
-import io
 import re
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-import pytest
 
 from grader.audit.result import AuditProblem
 from grader.checking.judge import run_pytest
 from grader.checking.plugin import Checks
 from grader.checking.proofreader import rule_that_the_task_lacks
 from grader.checking.run import Run
-from grader.checking.verdict import check_options
+from grader.checking.verdict import ListedCheck
 from grader.exercise.exercise import Exercise
 from grader.exercise.starter import starter
 from grader.grading.reference import solution_file
@@ -30,28 +23,6 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class AuditedCheck:
-    """One check as its author wrote it.
-
-    `scenarios` are those that it uses, and `rules` are the sentences of the task that it is based on, or their ids.
-    `seconds` is how long it took to judge the solution. `file` and `line` say where the check is.
-    """
-
-    name: str
-    title: str
-    points: float
-    hint: str
-    depends: tuple[str, ...]
-    rules: tuple[str, ...]
-    hidden: bool
-    scenarios: tuple[str, ...]
-    file: Path
-    line: int
-    seconds: float
-    todo: str = ""
-
-
-@dataclass(frozen=True)
 class ChecksJob:
     """List the checks of an exercise, in the order of the files, with the time that each takes."""
 
@@ -59,65 +30,29 @@ class ChecksJob:
     references: dict[str, Recording]
 
     def run(self, fork_server: ForkServer, ready: Callable[[], None]) -> Any:
-        """Return a tuple of `AuditedCheck`. Raises `ExerciseError` if the files of checks are unusable."""
+        """Return a tuple of `ListedCheck`. Raises `ExerciseError` if the files of checks are unusable."""
         ready()
         runs = {name: Run(self.exercise, recording, recording) for name, recording in self.references.items()}
-        listing = _Listing(set(runs))
-        with contextlib.redirect_stdout(io.StringIO()):
-            run_pytest(self.exercise, runs, listing)
-        return tuple(listing.listed.values())
-
-
-class _Listing(Checks):
-    def __init__(self, scenarios: set[str]) -> None:
-        super().__init__()
-        self._scenarios = scenarios
-        self.listed: dict[str, AuditedCheck] = {}
-
-    @pytest.hookimpl(wrapper=True)
-    def pytest_runtest_call(self, item: pytest.Item) -> Any:
-        """Measure the time of one check."""
-        began = time.perf_counter()
-        try:
-            return (yield)
-        finally:
-            self.listed[item.name] = self._listed(item, time.perf_counter() - began)
-
-    def _listed(self, item: Any, seconds: float) -> AuditedCheck:
-        function = inspect.unwrap(item.function)
-        mark = check_options(function)
-        assert mark
-        return AuditedCheck(
-            name=item.name,
-            title=(inspect.getdoc(function) or "").replace("\n", " "),
-            points=mark.points,
-            hint=mark.hint,
-            todo=mark.todo,
-            depends=mark.depends,
-            rules=mark.rules,
-            hidden=item.path.name == "hidden_checks.py",
-            scenarios=tuple(name for name in item.fixturenames if name in self._scenarios),
-            file=item.path,
-            line=function.__code__.co_firstlineno,
-            seconds=seconds,
-        )
+        checks = Checks()
+        run_pytest(self.exercise, runs, checks)
+        return tuple(checks.listed.values())
 
 
 #: A line of the solution that is shorter than this reveals nothing: `else:`, `return`, `pass`.
 SHORTEST = 12
 
 
-def problem_of(check: AuditedCheck, problem: str, fix: str) -> AuditProblem:
+def problem_of(check: ListedCheck, problem: str, fix: str) -> AuditProblem:
     """Return a problem of this check."""
     return AuditProblem(check.file, check.line, problem, fix, about=check.name)
 
 
-def problems_in_text(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
+def problems_in_text(exercise: Exercise, checks: tuple[ListedCheck, ...]) -> list[AuditProblem]:
     """Return hidden checks without a sentence in the task, and hints and titles that contain a line of the solution."""
     return [*_rules(exercise, checks), *_giveaways(exercise, checks)]
 
 
-def _rules(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
+def _rules(exercise: Exercise, checks: tuple[ListedCheck, ...]) -> list[AuditProblem]:
     problems = []
     for check in checks:
         if check.hidden and not check.rules:
@@ -129,7 +64,7 @@ def _rules(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditPr
     return problems
 
 
-def _giveaways(exercise: Exercise, checks: tuple[AuditedCheck, ...]) -> list[AuditProblem]:
+def _giveaways(exercise: Exercise, checks: tuple[ListedCheck, ...]) -> list[AuditProblem]:
     source = solution_file(exercise).read_text(encoding="utf-8")
     in_starter = {_squeezed(line) for line in starter(source).splitlines()}
     lines = {line.split("  #")[0].strip() for line in source.splitlines() if not line.strip().startswith("#")}

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from grader.audit.check_list import AuditedCheck
 from grader.audit.result import AuditProblem, BrokenRule, JudgedProgram, RuleResult, Trial
+from grader.checking.verdict import ListedCheck
 from grader.exercise.exercise import Exercise
 from grader.exercise.mistakes import Mistake
 from grader.exercise.rules import Rule, ids_used_twice, named_by, rules_of, without_markup
@@ -23,7 +23,7 @@ LARGEST = 0.15
 
 
 def rule_results(
-    exercise: Exercise, checks: tuple[AuditedCheck, ...], mistakes: tuple[Mistake, ...], trials: dict[str, Trial]
+    exercise: Exercise, checks: tuple[ListedCheck, ...], mistakes: tuple[Mistake, ...], trials: dict[str, Trial]
 ) -> tuple[RuleResult, ...]:
     """Return every rule of the task with the mistakes that break it; `trials` are those of mistakes, by name."""
     rules = rules_of(exercise.task) or _quoted(exercise.task, checks, mistakes)
@@ -38,7 +38,7 @@ def rule_results(
     return tuple(results)
 
 
-def _quoted(task: str, checks: tuple[AuditedCheck, ...], mistakes: tuple[Mistake, ...]) -> tuple[Rule, ...]:
+def _quoted(task: str, checks: tuple[ListedCheck, ...], mistakes: tuple[Mistake, ...]) -> tuple[Rule, ...]:
     """Return the sentences that checks and mistakes quote from a task that marks no rules; each is its own id."""
     lines = task.splitlines()
     parts = [without_markup("\n".join(lines[:number])) for number in range(1, len(lines) + 1)]
@@ -53,7 +53,7 @@ def _ids(names: tuple[str, ...], rules: tuple[Rule, ...]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(rule for name in names for rule in named_by(name, rules)))
 
 
-def _broken(mistake: Mistake, trial: Trial, rules: tuple[str, ...], checks: tuple[AuditedCheck, ...]) -> BrokenRule:
+def _broken(mistake: Mistake, trial: Trial, rules: tuple[str, ...], checks: tuple[ListedCheck, ...]) -> BrokenRule:
     lost = round(sum(check.points for check in checks) - trial.score, 1)
     return BrokenRule(mistake.name, mistake.summary, rules, trial.failed, lost, trial.score, mistake.costs_more)
 

@@ -19,8 +19,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from grader.audit.result import RecordingDifference, Trial
-from grader.checking.verdict import Finding
+from grader.audit.result import Trial
 from grader.exercise.modules import grading_files
 from grader.grading.grading import Grading
 from grader.grading.reference import GRADER, cache_folder, digest_of, solution_file, versions
@@ -30,6 +29,7 @@ from grader.scenario.scenario import Scenario
 from grader.submission.submission import Submission
 from grader.workers.pool import Worker
 from groundwork.files import write_if_changed
+from groundwork.plain_data import restored
 
 #: The parts of the grader that decide what a recording contains.
 RECORDING = ("workers", "exercise", "recording", "runner", "sandbox", "scenario", "submission")
@@ -142,7 +142,7 @@ class Store:
         text = json.dumps({**self._common, **key}, sort_keys=True)
         file = self._folder / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.json"
         try:
-            trial = _from_json(file.read_text(encoding="utf-8"))
+            trial = restored(Trial, json.loads(file.read_text(encoding="utf-8")))
             file.touch()
             known = True
         except (OSError, ValueError, KeyError, TypeError):
@@ -153,15 +153,3 @@ class Store:
             self.kept += known
             self.made += not known
         return trial
-
-
-def _from_json(text: str) -> Trial:
-    entries = json.loads(text)
-    return Trial(
-        **{
-            **entries,
-            "findings": {name: Finding(**finding) for name, finding in entries["findings"].items()},
-            "run_in": tuple(entries["run_in"]),
-            "differences": tuple(RecordingDifference(**difference) for difference in entries["differences"]),
-        }
-    )

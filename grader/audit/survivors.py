@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 from collections import Counter
 from pathlib import Path
 
 from grader.audit.mutants.maker import Mutant
 from grader.audit.result import AuditProblem, Fate, MutantResult, Trial
 from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.exercise_toml import read_toml
 from grader.grading.reference import solution_file
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 NOW = {
     "caught": "a check catches it now",
@@ -33,12 +28,8 @@ def listed(exercise: Exercise) -> dict[str, str]:
     file = survivors_file(exercise)
     if not file.exists():
         return {}
-    try:
-        entries = tomllib.loads(file.read_text(encoding="utf-8")).get("survivor", [])
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ExerciseError(file, f"it can't be read: {error}", "Write it as TOML, in UTF-8.") from None
     reasons: dict[str, str] = {}
-    for entry in entries:
+    for entry in read_toml(file).get("survivor", []):
         mutant, reason = entry.get("mutant"), entry.get("reason")
         if not isinstance(mutant, str) or not isinstance(reason, str) or not reason.strip():
             raise ExerciseError(file, f"an entry is {entry}", 'Give each a mutant = "…" and a reason = "…".')

@@ -9,10 +9,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from grader.audit.check_list import AuditedCheck
 from grader.audit.result import RecordingDifference, Trial, Until
 from grader.audit.store import RecordedRuns
-from grader.checking.verdict import Finding, Status, Verdict
+from grader.checking.verdict import Finding, ListedCheck, Status, Verdict
 from grader.grading.grading import Grading
 from grader.recording.recording import Ending, ReceivedMessage, Recording
 from grader.scenario.scenario import Scenario
@@ -99,7 +98,7 @@ class Trials:
     """Everything that trials of one exercise's programs need."""
 
     grading: Grading
-    checks: tuple[AuditedCheck, ...]
+    checks: tuple[ListedCheck, ...]
     runs: RecordedRuns
     _turn: itertools.count[int] = field(default_factory=itertools.count, compare=False)
 
@@ -216,7 +215,7 @@ class Trials:
         message: str,
         recordings: dict[str, Recording],
         verdicts: dict[str, Verdict],
-        decided: tuple[AuditedCheck, ...],
+        decided: tuple[ListedCheck, ...],
     ) -> Trial:
         statuses: dict[str, Status] = {}
         for check in self.checks:

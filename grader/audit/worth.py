@@ -6,9 +6,9 @@ import re
 from itertools import combinations
 from statistics import median
 
-from grader.audit.check_list import AuditedCheck, problem_of
+from grader.audit.check_list import problem_of
 from grader.audit.result import AuditProblem, CheckResult, ScenarioResult, Trial
-from grader.checking.verdict import Finding
+from grader.checking.verdict import Finding, ListedCheck
 from grader.scenario.scenario import Scenario
 
 #: A message without an expected value must say in words what was expected.
@@ -19,20 +19,20 @@ WORDS = re.compile(r"expect|must|should|has to|have to|was to|were to|instead of
 EACH = 4
 
 
-def problems_of_checks(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
+def problems_of_checks(checks: tuple[ListedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     """Return the problems of checks; `trials` are those of mistakes and of mutants that differ from the solution, by
     name.
     """
     return [*_that_never_fail(checks, trials), *_that_fail_together(checks, trials), *messages(checks, trials)]
 
 
-def never_failing(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditedCheck]:
+def never_failing(checks: tuple[ListedCheck, ...], trials: dict[str, Trial]) -> list[ListedCheck]:
     """Return the checks that failed in none of these trials."""
     failed = {name for trial in trials.values() for name in trial.failed}
     return [check for check in checks if check.name not in failed]
 
 
-def alike(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[tuple[AuditedCheck, AuditedCheck, int]]:
+def alike(checks: tuple[ListedCheck, ...], trials: dict[str, Trial]) -> list[tuple[ListedCheck, ListedCheck, int]]:
     """Return pairs of checks that always failed together, with the number of times."""
     pairs_alike = []
     for check, other in combinations(checks, 2):
@@ -45,9 +45,7 @@ def alike(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[tu
     return pairs_alike
 
 
-def worth_running_on(
-    checks: tuple[AuditedCheck, ...], trials: dict[str, Trial], mutants: dict[str, Trial]
-) -> list[str]:
+def worth_running_on(checks: tuple[ListedCheck, ...], trials: dict[str, Trial], mutants: dict[str, Trial]) -> list[str]:
     """Return the mutants that may show that a check can fail, or that two are not alike: a few for each such doubt.
 
     They were run until a check caught them, so nothing is known yet about the checks of other scenarios.
@@ -66,11 +64,11 @@ def worth_running_on(
     return [id_ for id_ in mutants if id_ in chosen]
 
 
-def _undecided(check: AuditedCheck, trial: Trial) -> bool:
+def _undecided(check: ListedCheck, trial: Trial) -> bool:
     return check.name not in trial.statuses and not set(check.depends) & set(trial.failed)
 
 
-def _that_never_fail(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
+def _that_never_fail(checks: tuple[ListedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     return [
         problem_of(
             check,
@@ -81,7 +79,7 @@ def _that_never_fail(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial])
     ]
 
 
-def _that_fail_together(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
+def _that_fail_together(checks: tuple[ListedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     fix = "Write a mistake that fails only one, let one depend on the other, or make them one check."
     return [
         problem_of(
@@ -93,7 +91,7 @@ def _that_fail_together(checks: tuple[AuditedCheck, ...], trials: dict[str, Tria
     ]
 
 
-def problems_of_broken(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
+def problems_of_broken(checks: tuple[ListedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     """Return the checks that crashed on what some program published; `trials` are those of all programs, by name."""
     problems = []
     for check in checks:
@@ -114,7 +112,7 @@ def _broke_off(finding: Finding) -> bool:
     return bool(finding.scenario) and finding.message is None
 
 
-def messages(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
+def messages(checks: tuple[ListedCheck, ...], trials: dict[str, Trial]) -> list[AuditProblem]:
     """Return the checks that failed and did not say what they expected."""
     problems = []
     for check in checks:
@@ -128,7 +126,7 @@ def messages(checks: tuple[AuditedCheck, ...], trials: dict[str, Trial]) -> list
 
 
 def scenario_results(
-    scenarios: tuple[Scenario, ...], checks: tuple[AuditedCheck, ...], trials: list[Trial]
+    scenarios: tuple[Scenario, ...], checks: tuple[ListedCheck, ...], trials: list[Trial]
 ) -> tuple[ScenarioResult, ...]:
     """Return what each scenario costs, over all its runs in these trials."""
     return tuple(
@@ -145,7 +143,7 @@ def scenario_results(
 
 
 def check_results(
-    checks: tuple[AuditedCheck, ...],
+    checks: tuple[ListedCheck, ...],
     scenarios: tuple[ScenarioResult, ...],
     mutants: dict[str, Trial],
     mistakes: dict[str, Trial],

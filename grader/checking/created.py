@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any, cast
 
 from grader.exercise.exercise import Durability, Qos, Reliability
+from grader.exercise.imported_files import tree_of
 
 #: For each call that creates something: what it creates, and the positions and keywords of type, name, and QoS or
 #: default.
@@ -55,23 +56,15 @@ def created(source: str, node: str) -> tuple[CreationCall, ...]:
 
     A source that is not valid Python creates nothing.
     """
-    return _Source(_parsed(source), node).created()
+    return _Source(tree_of(source), node).created()
 
 
 def texts(source: str) -> frozenset[str]:
     """Return every string in a program, except docstrings; empty if the program is not valid Python."""
-    tree = _parsed(source)
+    tree = tree_of(source)
     alone = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     constants = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) not in alone]
     return frozenset(node.value for node in constants if isinstance(node.value, str))
-
-
-def _parsed(source: str) -> ast.Module:
-    """Return the parsed program; an empty one if it is not valid Python."""
-    try:
-        return ast.parse(source)
-    except (SyntaxError, ValueError):
-        return ast.Module(body=[], type_ignores=[])
 
 
 class _Source:

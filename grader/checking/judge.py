@@ -10,14 +10,14 @@ import re
 import sys
 import tempfile
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from grader.checking.plugin import Checks, ReportsWithoutTracebacks, fixtures_of
 from grader.checking.run import Run
-from grader.checking.verdict import Finding, Verdict
+from grader.checking.verdict import Finding, ListedCheck, Verdict
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.imported_files import importable
 from grader.recording.recording import Recording
@@ -134,17 +134,6 @@ def _nothing_from_outside():  # type: ignore[no-untyped-def]  # noqa: ANN202
         os.environ.update(kept)
 
 
-@dataclass(frozen=True)
-class ListedCheck:
-    """One check. `fixtures` are the names that it uses, directly or through another fixture; they include scenarios."""
-
-    name: str
-    points: float
-    hidden: bool
-    fixtures: tuple[str, ...]
-    depends: tuple[str, ...] = ()
-
-
 def listed(exercise: Exercise, scenarios: tuple[str, ...] = ()) -> tuple[ListedCheck, ...]:
     """Return every check of the exercise, in the order of the files.
 
@@ -153,10 +142,7 @@ def listed(exercise: Exercise, scenarios: tuple[str, ...] = ()) -> tuple[ListedC
     """
     checks = Checks(run=False)
     run_pytest(exercise, dict.fromkeys(scenarios), checks)
-    return tuple(
-        ListedCheck(verdict.name, verdict.points, verdict.hidden, *checks.names_in(verdict.name))
-        for verdict in checks.verdicts.values()
-    )
+    return tuple(checks.listed.values())
 
 
 TOPIC = re.compile(r"(?<![\w/])/\w[\w/]*")

@@ -18,7 +18,7 @@ from grader.checking.known_names import KnownNames
 from grader.checking.message import Message
 from grader.checking.run import Run
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.imported_files import with_modules
+from grader.exercise.imported_files import tree_in, with_modules
 from grader.recording.events import STATES, Call, Goal, ParameterChange, ParameterReading
 from grader.recording.recording import Endpoint, ReceivedMessage, Recording, SentMessage
 from grader.scenario.scenario import Scenario
@@ -53,19 +53,12 @@ def misspellings(exercise: Exercise, scenarios: tuple[Scenario, ...]) -> Iterato
     constants: dict[str, str] = {}
     files = [file for file in with_modules(exercise.check_files) if file != exercise.scenarios_file]
     for file in files:
-        tree = _parsed(file)
+        tree = tree_in(file)
         constants |= _constants(tree)
     for file in files:
-        for function in [node for node in ast.walk(_parsed(file)) if isinstance(node, ast.FunctionDef)]:
+        for function in [node for node in ast.walk(tree_in(file)) if isinstance(node, ast.FunctionDef)]:
             if names := _runs_in(function, known):
                 yield from _Function(file, function, names, known, constants).errors()
-
-
-def _parsed(file: Path) -> ast.Module:
-    try:
-        return ast.parse(file.read_text(encoding="utf-8-sig"))
-    except (OSError, SyntaxError, ValueError):
-        return ast.Module(body=[], type_ignores=[])
 
 
 def _constants(tree: ast.Module) -> dict[str, str]:

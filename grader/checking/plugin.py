@@ -17,7 +17,7 @@ from grader.checking import doubts
 from grader.checking.ending_message import message_of
 from grader.checking.hint_texts import hints
 from grader.checking.run import Run
-from grader.checking.verdict import CheckOptions, Finding, Verdict, Wrong, check_options
+from grader.checking.verdict import CheckOptions, Finding, ListedCheck, Verdict, Wrong, check_options
 from grader.exercise.computing_limit import computing_limit
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.modules import error_in
@@ -82,19 +82,17 @@ class Checks:
     """Collects an exercise's checks and keeps their verdicts.
 
     If `run` is False, none is run and each counts as blocked. `before_the_first` is called between collecting and
-    running them. `fixtures` are the names that each check uses, directly or through another fixture.
+    running them. `partly` leaves out checks that need scenarios which are not known.
     """
 
     def __init__(
         self, run: bool = True, before_the_first: Callable[[], None] = lambda: None, partly: bool = False
     ) -> None:
-        """`partly` leaves out checks that need scenarios which are not known."""
         self._run, self._partly = run, partly
         self._before_the_first = before_the_first
-        self.fixtures: dict[str, tuple[str, ...]] = {}
         self.scenarios: tuple[str, ...] = ()
         """The known scenarios; empty if they do not matter."""
-        self._marks: dict[str, CheckOptions] = {}
+        self.listed: dict[str, ListedCheck] = {}
         self.verdicts: dict[str, Verdict] = {}
         self.problem: ExerciseError | None = None
 
@@ -109,26 +107,24 @@ class Checks:
             items[:] = [item for item in items if not self._unknown_scenario(item)]
         for item in items:
             try:
-                self._marks[item.name] = self._mark(item)
-                self.fixtures[item.name] = tuple(getattr(item, "fixturenames", ()))
+                self.listed[item.name] = self._listed(item)
             except ExerciseError as error:
                 self.problem = self.problem or error
         if self.problem:
             items.clear()
 
-    def names_in(self, check: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-        """Return the fixtures that a check uses, and the checks on which it depends."""
-        return self.fixtures[check], tuple(self._marks[check].depends)
-
-    def _mark(self, item: pytest.Item) -> CheckOptions:
+    def _listed(self, item: pytest.Item) -> ListedCheck:
         function = getattr(item, "function", None)
         line = inspect.unwrap(function).__code__.co_firstlineno if function else None
+        title = (inspect.getdoc(function) or "").replace("\n", " ")
         mark = check_options(function)
+        if mark and self._partly:
+            mark = replace(mark, depends=tuple(name for name in mark.depends if name in self.listed))
         if not mark:
             problem, fix = f"{item.name} is not a check", "Put @check(points=…, hint=…) above it."
-        elif item.name in self._marks:
+        elif item.name in self.listed:
             problem, fix = f"there are two checks called {item.name}", "Give each a name of its own."
-        elif not inspect.getdoc(function):
+        elif not title:
             problem, fix = f"{item.name} has no docstring", "Its docstring is the title that the student reads."
         elif isinstance(mark.points, bool) or not isinstance(mark.points, (int, float)) or not mark.points >= 0:
             problem, fix = f"{item.name} gives {mark.points!r} points", "Give points of 0 or more, such as points=5."
@@ -140,13 +136,20 @@ class Checks:
         elif missing := self._unknown_scenario(item):
             problem = f"{item.name} asks for the scenario {missing}, which scenarios.py does not have"
             fix = f"Its scenarios are: {', '.join(self.scenarios)}."
-        elif (unknown := [name for name in mark.depends if name not in self._marks]) and self._partly:
-            return replace(mark, depends=tuple(name for name in mark.depends if name in self._marks))
-        elif unknown:
+        elif unknown := [name for name in mark.depends if name not in self.listed]:
             problem = f"{item.name} depends on {unknown[0]}, but no check above it has that name"
             fix = "A check can depend only on checks above it. Public checks come before hidden ones."
         else:
-            return mark
+            uses = [name for name in getattr(item, "fixturenames", ()) if name in self.scenarios or not self.scenarios]
+            return ListedCheck(
+                **vars(mark),
+                name=item.name,
+                title=title,
+                hidden=item.path.name == "hidden_checks.py",
+                scenarios=tuple(uses),
+                file=item.path,
+                line=line or 1,
+            )
         raise ExerciseError(item.path, problem, fix, line)
 
     def _unknown_scenario(self, item: Any) -> str:
@@ -192,7 +195,7 @@ class Checks:
     def _blocking(self, name: str) -> tuple[str, ...]:
         """Return the checks without which it can't be judged, except those that are blocked themselves."""
         blocking: dict[str, None] = {}
-        for other in self._marks[name].depends:
+        for other in self.listed[name].depends:
             if self.verdicts[other].blocks:
                 blocking.update(dict.fromkeys(self.verdicts[other].blocked_by or (other,)))
         return tuple(blocking)
@@ -207,29 +210,29 @@ class Checks:
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Any:
         """Turn pytest's outcome into a verdict."""
         report: pytest.TestReport = yield
+        if report.when == "call":
+            self.listed[item.name] = replace(self.listed[item.name], seconds=call.duration)
         if report.when == "call" or (report.when == "setup" and not report.passed):
             self.verdicts[item.name] = self._verdict(item, call)
         return report
 
     def _verdict(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Verdict:
-        mark = self._marks[item.name]
-        title = (inspect.getdoc(getattr(item, "function", None)) or "").replace("\n", " ")
-        hidden = item.path.name == "hidden_checks.py"
+        check = self.listed[item.name]
         verdict = Verdict(
-            *(item.name, title, "passed", mark.points, mark.hint, mark.misconception, hidden),
-            todo=mark.todo,
-            untested=mark.untested,
+            *(check.name, check.title, "passed", check.points, check.hint, check.misconception, check.hidden),
+            todo=check.todo,
+            untested=check.untested,
         )
         error = call.excinfo.value if call.excinfo else None
         if error is None:
-            return replace(verdict, untested=mark.untested or doubts.untested())
+            return replace(verdict, untested=check.untested or doubts.untested())
         if isinstance(error, pytest.skip.Exception):
             return replace(verdict, status="blocked", blocked_by=self._blocking(item.name))
         if isinstance(error, AssertionError):
             text = str(error) or f"“{verdict.title}” is not so."  # an assert without a message
             wrong = error if isinstance(error, Wrong) else Wrong(Finding(text))
-            finding = suited(wrong.finding.shortened(), mark)
-            return replace(verdict, status="failed", finding=finding, share=wrong.share, partial=mark.partial)
+            finding = suited(wrong.finding.shortened(), check)
+            return replace(verdict, status="failed", finding=finding, share=wrong.share, partial=check.partial)
         advice = ""
         if isinstance(error, NameError) and error.name in self.scenarios:
             advice = f". {error.name} is a scenario: add it to the arguments of {item.name}"

@@ -18,11 +18,12 @@ from typing import NoReturn
 
 from grader.checking import known_names
 from grader.checking.agreement import disagreements, unheard_commands
-from grader.checking.judge import ListedCheck, listed
+from grader.checking.judge import listed
 from grader.checking.misspellings import misspellings
+from grader.checking.verdict import ListedCheck
 from grader.checking.weak_checks import weak_checks
 from grader.exercise.exercise import Exercise, ExerciseError, ServiceOrAction, Topic
-from grader.exercise.imported_files import with_modules
+from grader.exercise.imported_files import tree_in, with_modules
 from grader.exercise.loading import load
 from grader.exercise.mistakes import each_mistake
 from grader.exercise.modules import error_in, import_of
@@ -82,7 +83,7 @@ def faults(folder: Path) -> Iterator[ExerciseError]:
     yield from of_names
     for file in exercise.check_files:
         yield from same_name_twice(file)
-        yield from weak_checks(file, _parsed(file))
+        yield from weak_checks(file, tree_in(file))
     yield from _twice_in_the_task(exercise)
     yield from _units_of_nothing(exercise)
     yield from rules_that_the_task_lacks(exercise.task, exercise.check_files)
@@ -121,7 +122,7 @@ def _content(scenario: Scenario) -> str:
 def same_name_twice(file: Path) -> Iterator[ExerciseError]:
     """Yield checks with the same name in a file: Python silently keeps only the last one."""
     first: dict[str, int] = {}
-    for node in _parsed(file).body:
+    for node in tree_in(file).body:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name.startswith("test"):
             if node.name in first:
                 problem = f"there are two checks called {node.name}; the other is in line {first[node.name]}"
@@ -137,7 +138,7 @@ def undefined_names(files: Iterable[Path], scenarios: Collection[str] = ()) -> I
     A check has the `scenarios` that are among its arguments.
     """
     for file in files:
-        tree = _parsed(file)
+        tree = tree_in(file)
         imports_all = any(isinstance(node, ast.alias) and node.name == "*" for node in ast.walk(tree))
         for name in sorted(python_code.missing(ast.unparse(tree))) if not imports_all else ():
             lines = {node.lineno for node in ast.walk(tree) if isinstance(node, ast.Name) and node.id == name}
@@ -209,18 +210,10 @@ def rule_that_the_task_lacks(
 
 
 def _rules(file: Path) -> Iterator[tuple[int, str]]:
-    for node in ast.walk(_parsed(file)):
+    for node in ast.walk(tree_in(file)):
         if isinstance(node, ast.keyword) and node.arg == "rule":
             several = node.value.elts if isinstance(node.value, (ast.Tuple, ast.List)) else [node.value]
             yield from ((each.lineno, str(each.value)) for each in several if isinstance(each, ast.Constant))
-
-
-def _parsed(file: Path) -> ast.Module:
-    """Return a parsed file of checks; an empty one if it can't be read, because that fault is reported elsewhere."""
-    try:
-        return ast.parse(file.read_text(encoding="utf-8-sig"))
-    except (SyntaxError, ValueError, OSError):
-        return ast.Module(body=[], type_ignores=[])
 
 
 def points_that_do_not_add_up(exercise: Exercise, points: list[tuple[bool, float]]) -> Iterator[ExerciseError]:

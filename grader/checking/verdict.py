@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Literal, NoReturn, TypeVar
 
 
@@ -141,6 +142,23 @@ class CheckOptions:
     partial: bool = False
     todo: str = ""
     untested: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ListedCheck(CheckOptions):
+    """One check of an exercise, as its author wrote it.
+
+    `scenarios` are those that it uses, directly or by a fixture; with other fixtures, if the scenarios are not known.
+    `file` and `line` say where the check is, and `seconds` how long it took to judge, if it did.
+    """
+
+    name: str
+    title: str
+    hidden: bool
+    scenarios: tuple[str, ...]
+    file: Path
+    line: int
+    seconds: float = 0.0
 
 
 def check(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import date, datetime, timedelta, timezone, tzinfo
@@ -15,13 +14,9 @@ from grader.classroom.submissions import StudentSubmission, SubmissionsError
 from grader.classroom.tables import table_rows
 from grader.classroom.times import later, localized, moment, units_begun, zone_named
 from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.exercise_toml import read_toml
 from grader.grading.grade import Adjustment, Entry
 from groundwork.words import counted
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 UNITS = {
     "minute": timedelta(minutes=1),
@@ -80,7 +75,7 @@ class Deadline:
 def deadline_of(exercise: Exercise) -> Deadline | None:
     """Return the deadline in exercise.toml; None if there is none. Raises `ExerciseError` for a mistake in it."""
     file = exercise.folder / "exercise.toml"
-    entries = tomllib.loads(file.read_text(encoding="utf-8")).get("deadline")
+    entries = read_toml(file).get("deadline")
     if entries is None:
         return None
     if not isinstance(entries, dict):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import re
+import sys
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -22,6 +23,11 @@ from grader.exercise.exercise import (
     Topic,
 )
 from interface_compiler import prefixes, shipped
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 #: Types of parameters: those of rcl_interfaces/msg/ParameterType.
 PARAMETER_TYPES = {
@@ -69,6 +75,19 @@ _FROM_HANDOUT = (
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*")
 _FULL_NAME = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]*)+")
 _PYTHON_FILE = re.compile(r"[a-z_][a-z0-9_]*\.py")
+
+
+def read_toml(file: Path) -> dict[str, Any]:
+    """Return what is in a TOML file of an author's. Raises `ExerciseError` if it is missing or can't be read."""
+    try:
+        entries: dict[str, Any] = tomllib.loads(file.read_text(encoding="utf-8-sig"))
+        return entries
+    except FileNotFoundError:
+        raise ExerciseError(file, "there is no such file", "An exercise is a folder with an exercise.toml.") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        place = re.search(r"at line (\d+)", str(error))
+        line = int(place[1]) if place else None
+        raise ExerciseError(file, f"it can't be read: {error}", "Write it as TOML, in UTF-8.", line) from None
 
 
 @dataclass(frozen=True)

@@ -51,13 +51,25 @@ def imported(file: Path, name: str) -> ModuleType:
     return module
 
 
+def tree_of(source: str) -> ast.Module:
+    """Return a parsed program of an author's; an empty one if it is not valid Python, which running it reports."""
+    try:
+        return ast.parse(source)
+    except (SyntaxError, ValueError):
+        return ast.Module(body=[], type_ignores=[])
+
+
+def tree_in(file: Path) -> ast.Module:
+    """Return the parsed program in a file; an empty one if it can't be read or is not valid Python."""
+    try:
+        return tree_of(file.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError):
+        return tree_of("")
+
+
 def imports_of(file: Path) -> Iterator[tuple[int, str]]:
     """Yield the line and the first part of the name of each module that a Python file imports, such as `maze`."""
-    try:
-        tree = ast.parse(file.read_text(encoding="utf-8-sig"))
-    except (OSError, SyntaxError, ValueError):
-        return  # running the file will report it
-    for node in ast.walk(tree):
+    for node in ast.walk(tree_in(file)):
         if isinstance(node, ast.Import):
             yield from ((node.lineno, alias.name.partition(".")[0]) for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:

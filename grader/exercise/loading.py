@@ -3,19 +3,11 @@
 from __future__ import annotations
 
 import re
-import sys
 from pathlib import Path
-from typing import Any
 
 from grader.exercise.exercise import OWN_FILES, REFERENCE_NODE, Exercise, ExerciseError, ProgramFile
-from grader.exercise.exercise_toml import TomlTable, endpoints, nodes, packages, parameters, programs, topics
+from grader.exercise.exercise_toml import TomlTable, endpoints, nodes, packages, parameters, programs, read_toml, topics
 from interface_compiler.near import use_near
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
 
 #: The file in a course's folder.
 COURSE = "course.toml"
@@ -30,7 +22,7 @@ def load(folder: Path | str) -> Exercise:
     folder = Path(folder).resolve()
     use_near(folder, COURSE)
     file = folder / "exercise.toml"
-    entries = _read(file)
+    entries = read_toml(file)
     task = folder / "task.md"
     if not task.exists():
         raise ExerciseError(task, "the exercise has no task text", "Write what the student is asked to do here.")
@@ -93,18 +85,6 @@ def _main_program(top: TomlTable, parts: tuple[ProgramFile, ...], launched: tupl
                 key, f"{key} is given next to [[program]]", f"With several programs, write {key} in each [[program]]."
             )
     return file_name, parts[0].class_name, parts[0].node
-
-
-def _read(file: Path) -> dict[str, Any]:
-    try:
-        entries: dict[str, Any] = tomllib.loads(file.read_text(encoding="utf-8-sig"))
-        return entries
-    except FileNotFoundError:
-        raise ExerciseError(file, "there is no such file", "An exercise is a folder with an exercise.toml.") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        place = re.search(r"at line (\d+)", str(error))
-        line = int(place[1]) if place else None
-        raise ExerciseError(file, f"it can't be read: {error}", "Write it as TOML, in UTF-8.", line) from None
 
 
 def _text(top: TomlTable, key: str) -> str:

@@ -16,7 +16,6 @@ If it must cost more than its rule is worth, a further paragraph says why: `Cost
 from __future__ import annotations
 
 import ast
-import contextlib
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -24,6 +23,7 @@ from pathlib import Path
 
 from grader.exercise.edits import Edit, read_edits
 from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.imported_files import tree_of
 
 #: The file of edits, and the folder of whole programs, next to solution.py.
 EDITS, WHOLE = "mistakes.md", "mistakes"
@@ -111,7 +111,7 @@ def _of_edit(edit: Edit, solution: Path) -> Mistake | ExerciseError:
 def _of_file(file: Path) -> Mistake:
     source = file.read_text(encoding="utf-8", errors="replace")
     line = next((i for i, row in enumerate(source.splitlines(), start=1) if row.startswith("Caught by:")), 1)
-    return _mistake(file.stem, source, _docstring(source), file, line)
+    return _mistake(file.stem, source, ast.get_docstring(tree_of(source)) or "", file, line)
 
 
 def _mistake(name: str, source: str, text: str, file: Path, line: int) -> Mistake:
@@ -134,9 +134,3 @@ def _rules(text: str) -> tuple[str, ...]:
     if re.fullmatch(r"[a-z0-9_]+(, *[a-z0-9_]+)*", text.strip()):
         return tuple(name.strip() for name in text.split(","))
     return (" ".join(text.split()).strip("\"'"),)
-
-
-def _docstring(source: str) -> str:
-    with contextlib.suppress(SyntaxError, ValueError):
-        return ast.get_docstring(ast.parse(source)) or ""
-    return ""

@@ -10,16 +10,17 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from grader.checking.verdict import ListedCheck
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.imported_files import with_modules
 from grader.exercise.modules import HIDDEN_FILES, see_that_students_have
 from grader.grading.grade import Options
 from grader.grading.reference import reference
 from grader.grading.scenario_runner import ScenarioRunner
-from grader.recording.arrays import ArrayEncoder, read_arrays
-from grader.recording.recording import Recording, from_plain, plain
+from grader.recording.arrays import read_arrays
+from grader.recording.recording import Recording, RecordingEncoder, from_plain
 from grader.sandbox.program import Isolation
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Scenario
@@ -28,9 +29,6 @@ from grader.scenario.store import from_plain as from_plain_scenario
 from grader.scenario.store import plain as plain_scenario
 from grader.workers.jobs import ListJob
 from grader.workers.pool import WorkerPool
-
-if TYPE_CHECKING:
-    from grader.checking.judge import ListedCheck  # it imports pytest, which the judging process has anyway
 
 #: Increase this when older versions can no longer read the file.
 FORMAT = 2
@@ -55,7 +53,7 @@ def public_part(exercise: Exercise, options: Options, isolation: Isolation, work
         return read_public(exercise)
     every = declared(exercise, options.seed)
     checks: tuple[ListedCheck, ...] = workers.do(ListJob(replace(exercise, public_only=False)))
-    used = {name for check in checks if not check.hidden for name in check.fixtures}
+    used = {name for check in checks if not check.hidden for name in check.scenarios}
     scenarios = tuple(scenario for scenario in every if scenario.name in used)
     if not scenarios:
         problem = "no public check uses a scenario"
@@ -73,9 +71,9 @@ def to_json(exercise: Exercise, public: PublicPart) -> str:
         "exercise": exercise.name,
         "hidden": {"checks": public.hidden_checks, "points": public.hidden_points},
         "scenarios": [_for_students(exercise, scenario) for scenario in public.scenarios],
-        "expected": plain(expected),
+        "expected": expected,
     }
-    return json.dumps(entries, cls=ArrayEncoder, ensure_ascii=False, separators=(",", ":")) + "\n"
+    return json.dumps(entries, cls=RecordingEncoder, ensure_ascii=False, separators=(",", ":")) + "\n"
 
 
 def modules_of(exercise: Exercise, public: PublicPart) -> Iterator[Path]:

@@ -9,16 +9,15 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from grader.checking.verdict import Finding, Verdict
-from grader.grading.grade import Adjustment, Entry, Grade, Student
+from grader.grading.grade import Entry, Grade
 from grader.recording.arrays import LongArray
 from grader.report.checks import ShownCheck, shown_checks
 from grader.report.feedback import tail
 from grader.report.printable import printable
+from groundwork.plain_data import restored
 
 
 def as_json(grade: Grade) -> str:
@@ -77,28 +76,14 @@ def read_grade(file: Path) -> tuple[Entry, str] | None:
     """
     try:
         entries = json.loads(file.read_text(encoding="utf-8"))
-        submitted = entries["submitted"]
-        entry = Entry(
-            student=Student(**entries["student"]),
-            file=entries["file"],
-            grade=_grade(entries["grade"]),
-            submitted=datetime.fromisoformat(submitted) if submitted else None,
-            adjustments=tuple(Adjustment(**adjustment) for adjustment in entries["adjustments"]),
-            submitted_from=entries["submitted_from"],
-        )
-        return entry, str(entries["key"])
+        key = str(entries.pop("key"))
+        # What follows from the rest is there for other programs.
+        del entries["final"]
+        for verdict in entries["grade"]["verdicts"]:
+            del verdict["earned"]
+        return restored(Entry, entries), key
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
-
-
-def _grade(entries: dict[str, Any]) -> Grade:
-    return Grade(**{**entries, "verdicts": tuple(_verdict(verdict) for verdict in entries["verdicts"])})
-
-
-def _verdict(entries: dict[str, Any]) -> Verdict:
-    kept = {name: value for name, value in entries.items() if name != "earned"}
-    finding = Finding(**entries["finding"]) if entries["finding"] else None
-    return Verdict(**{**kept, "finding": finding, "blocked_by": tuple(entries["blocked_by"])})
 
 
 LONGEST_TEXT = 20_000

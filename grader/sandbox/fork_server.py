@@ -12,7 +12,6 @@ import socket
 import subprocess
 from collections.abc import Sequence
 from dataclasses import replace
-from types import TracebackType
 
 from grader.sandbox import bubblewrap, filesystem, landlock, namespaces
 from grader.sandbox.confine import StartRequest
@@ -120,9 +119,7 @@ class SandboxedProgram:
         """Return itself. It is running already."""
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         """Kill everything."""
         self.kill()
 
@@ -206,9 +203,7 @@ class ForkServer:
         """Return itself. It has been started already."""
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         """Close it."""
         self.close()
 

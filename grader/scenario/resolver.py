@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import re
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,6 +13,7 @@ from grader.exercise.imported_files import with_modules
 from grader.exercise.modules import error_in, see_that_students_have
 from grader.recording.events import Fields
 from grader.recording.types import CHANGE_STATE, TRANSITIONS, message_class
+from grader.scenario.code import AuthorCode
 from grader.scenario.command_line import programs_of
 from grader.scenario.scenario import (
     SECOND,
@@ -130,8 +130,7 @@ class Resolver:
         for program in scenario.programs:
             self._check_times(0, program.id, starts=program.starts, killed=program.killed)
         for server in scenario.servers:
-            name = server.service if isinstance(server, Server) else server.action
-            self._check_times(server.line, name, appears=server.appears, gone=server.gone, back=server.back)
+            self._check_times(server.line, server.name, appears=server.appears, gone=server.gone, back=server.back)
 
     def _check_times(self, line: int, name: str, **times: float | None) -> None:
         for word, seconds in times.items():
@@ -171,7 +170,7 @@ class Resolver:
         if rest not in self._interfaces_of(package):
             fix = "Check its name. If the course has just defined it, run: spinbook build"
             self._fault(given.line, f"there is no type {type_name} here", fix)
-        return replace(given, type=type_name) if not isinstance(given, (Server, ActionServer)) else given
+        return replace(given, type=type_name)
 
     def _interfaces_of(self, package: str) -> frozenset[str]:
         """Return the package's types; cached for all messages of a scenario, because this reads files."""
@@ -284,7 +283,7 @@ class Resolver:
 
     def _see_peer(self, step: Leave | ComeBack) -> None:
         known = [message.topic for message in self._scenario.messages]
-        known += [one.service if isinstance(one, Server) else one.action for one in self._scenario.servers]
+        known += [server.name for server in self._scenario.servers]
         known += [one.name for one in self._scenario.steps if isinstance(one, Subscribe)]
         if step.name not in known:
             fix = f"There are: {', '.join(dict.fromkeys(known)) or 'none'}."
@@ -301,36 +300,33 @@ class Resolver:
 
     def _service_server(self, server: Server) -> Server:
         declared = self._type_of(server.service, self._exercise.clients)
-        self._typed(server, server.service, "srv", declared, "client")
-        type_name = server.type or declared or ""
-        replies = server.replies
-        if isinstance(replies, tuple):
-            replies = tuple(self._reply(server, one, type_name) for one in replies)
-        return _with(server, type=type_name, replies=replies)
+        server = self._typed(server, server.service, "srv", declared, "client")
+        if isinstance(server.replies, AuthorCode):
+            return server
+        assert isinstance(server.replies, tuple)
+        return replace(server, replies=tuple(self._reply(server, reply) for reply in server.replies))
 
-    def _reply(self, server: Server, one: Reply, type_name: str) -> Reply:
-        if not isinstance(one, Reply):
-            self._fault(server.line, f"replies has {one!r}", "Give reply(…) or no_reply().")
-        if one.fields is None:
-            return one
-        kind = message_class(type_name).Response
-        fields = self._check(server.line, server.service, kind, one.fields, f"{type_name}_Response")
-        return replace(one, fields=fields)
+    def _reply(self, server: Server, reply: Reply) -> Reply:
+        if not isinstance(reply, Reply):
+            self._fault(server.line, f"replies has {reply!r}", "Give reply(…) or no_reply().")
+        if reply.fields is None:
+            return reply
+        kind = message_class(server.type).Response
+        fields = self._check(server.line, server.service, kind, reply.fields, f"{server.type}_Response")
+        return replace(reply, fields=fields)
 
     def _action_server(self, server: ActionServer) -> ActionServer:
         declared = self._type_of(server.action, self._exercise.action_clients)
-        self._typed(server, server.action, "action", declared, "action_client")
-        type_name = server.type or declared or ""
+        server = self._typed(server, server.action, "action", declared, "action_client")
         if not server.goals:
             self._fault(server.line, f"{server.action}: no script for a goal", "Give goals=succeeds(…), for example.")
-        scripts = tuple(self._script(server, script, type_name) for script in server.scripts)
-        return _with(server, type=type_name, goals=scripts)
+        return replace(server, goals=tuple(self._script(server, script) for script in server.scripts))
 
-    def _script(self, server: ActionServer, script: GoalScript, type_name: str) -> GoalScript:
-        kind = message_class(type_name)
-        result = self._check(server.line, server.action, kind.Result, script.result, f"{type_name}_Result")
+    def _script(self, server: ActionServer, script: GoalScript) -> GoalScript:
+        kind = message_class(server.type)
+        result = self._check(server.line, server.action, kind.Result, script.result, f"{server.type}_Result")
         feedback = tuple(
-            (after, self._check(server.line, server.action, kind.Feedback, fields, f"{type_name}_Feedback"))
+            (after, self._check(server.line, server.action, kind.Feedback, fields, f"{server.type}_Feedback"))
             for after, fields in script.feedback
         )
         return replace(script, result=result, feedback=feedback)
@@ -391,13 +387,3 @@ _EXAMPLES = {
     "srv": "std_srvs/srv/SetBool",
     "action": "example_interfaces/action/Fibonacci",
 }
-
-Peer = TypeVar("Peer", Server, ActionServer)
-
-
-def _with(peer: Peer, **others: Any) -> Peer:
-    """Return the same peer with other values; `replace` would lose its line."""
-    names = [field.name for field in dataclasses.fields(peer) if field.name != "line"]
-    found = type(peer)(**{name: getattr(peer, name) for name in names} | others)
-    object.__setattr__(found, "line", peer.line)
-    return found

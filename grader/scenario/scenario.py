@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, fields
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field, fields, is_dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
@@ -305,7 +305,7 @@ class Scenario:
     @cached_property
     def digest(self) -> str:
         """A digest of everything in the scenario."""
-        return hashlib.sha256(json.dumps(_digestible(self), sort_keys=True).encode()).hexdigest()
+        return hashlib.sha256(json.dumps(entries_of(self, _digestible), sort_keys=True).encode()).hexdigest()
 
 
 def _at(one: Content) -> int:
@@ -320,17 +320,25 @@ def _flat(content: Any) -> Iterator[Any]:
         yield content
 
 
-def _digestible(value: Any) -> Any:
-    """Return plain data of everything that matters, which is all but the lines where authors wrote it."""
+def entries_of(value: Any, converted: Callable[[Any], Any]) -> Any:
+    """Return a scenario, or a part of one, as dictionaries and lists, without the lines where authors wrote it.
+
+    Each part is first `converted`. A dictionary has the name of its class as "is".
+    """
+    value = converted(value)
     if isinstance(value, (list, tuple)):
-        return [_digestible(one) for one in value]
+        return [entries_of(item, converted) for item in value]
     if isinstance(value, dict):
-        return {str(key): _digestible(one) for key, one in value.items()}
+        return {key: entries_of(item, converted) for key, item in value.items()}
+    if not is_dataclass(value):
+        return value
+    entries = {part.name: entries_of(getattr(value, part.name), converted) for part in fields(value)}
+    entries.pop("line", None)
+    return {"is": type(value).__name__, **entries}
+
+
+def _digestible(value: Any) -> Any:
+    """Replace long arrays by their digests, and leave out where the author's course is."""
     if isinstance(value, LongArray):
         return [value.typecode, hashlib.sha256(value).hexdigest()]
-    if not hasattr(value, "__dataclass_fields__"):
-        return value
-    if isinstance(value, AuthorCode):
-        value = value.without_folder()
-    found = {one.name: _digestible(getattr(value, one.name)) for one in fields(value) if one.name != "line"}
-    return {"is": type(value).__name__, **found}
+    return value.without_folder() if isinstance(value, AuthorCode) else value

@@ -49,26 +49,20 @@ class Server:
 
     service: str
     type: str = ""
-    replies: tuple[Reply, ...] | AuthorCode = ()
+    replies: Reply | Sequence[Reply] | Callable[..., Any] | AuthorCode = ()
     appears: float | None = None
     gone: float | None = None
     back: float | None = None
     line: int = field(default_factory=line_of_the_author, compare=False, repr=False)
 
-    def __init__(
-        self,
-        service: str,
-        type: str = "",
-        replies: Reply | Sequence[Reply] | Callable[..., Any] | AuthorCode = (),
-        appears: float | None = None,
-        gone: float | None = None,
-        back: float | None = None,
-    ) -> None:
-        """Accept a single reply for a tuple, and a function for its `AuthorCode`."""
-        fields: dict[str, Any] = {"service": service, "type": type, "replies": _replies(replies)}
-        fields |= {"appears": appears, "gone": gone, "back": back, "line": line_of_the_author()}
-        for name, value in fields.items():
-            object.__setattr__(self, name, value)
+    def __post_init__(self) -> None:
+        """Convert a single reply into a tuple, and a function into its `AuthorCode`."""
+        object.__setattr__(self, "replies", _replies(self.replies))
+
+    @property
+    def name(self) -> str:
+        """The service's name."""
+        return self.service
 
 
 def _replies(replies: Any) -> tuple[Reply, ...] | AuthorCode:
@@ -153,6 +147,11 @@ class ActionServer:
     def __post_init__(self) -> None:
         """Convert a single script into a tuple."""
         object.__setattr__(self, "goals", self.scripts)
+
+    @property
+    def name(self) -> str:
+        """The action's name."""
+        return self.action
 
     @property
     def scripts(self) -> tuple[GoalScript, ...]:

@@ -39,18 +39,15 @@ def code_in(value: Any) -> Iterator[AuthorCode]:
 
 def plain(value: Any) -> Any:
     """Return a scenario, or a part of one, as dictionaries, lists, texts and numbers. Raises `NotForStudents`."""
-    if isinstance(value, AuthorCode):
-        if Path(value.file).name in HIDDEN_FILES:
-            raise NotForStudents(value.name)
-        value = value.for_students()
-    if isinstance(value, (list, tuple)):
-        return [plain(one) for one in value]
-    if isinstance(value, dict):
-        return {key: plain(one) for key, one in value.items()}
-    if not hasattr(value, "__dataclass_fields__"):
+    return scenario.entries_of(value, _for_students)
+
+
+def _for_students(value: Any) -> Any:
+    if not isinstance(value, AuthorCode):
         return value
-    found = {one.name: plain(getattr(value, one.name)) for one in fields(value) if one.name != "line"}
-    return {"is": type(value).__name__, **found}
+    if Path(value.file).name in HIDDEN_FILES:
+        raise NotForStudents(value.name)
+    return value.for_students()
 
 
 def from_plain(value: Any, folder: Path) -> Any:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from grader.audit.check_list import AuditedCheck
 from grader.audit.result import Trial
 from grader.audit.worth import problems_of_checks, worth_running_on
-from grader.checking.verdict import Finding, Status
+from grader.checking.verdict import Finding, ListedCheck, Status
 
 
-def check(name: str, depends: tuple[str, ...] = ()) -> AuditedCheck:
+def check(name: str, depends: tuple[str, ...] = ()) -> ListedCheck:
     """Return a check of its own scenario."""
-    return AuditedCheck(name, name, 1.0, "", depends, "", False, (name,), Path("checks.py"), 1, 0.0)
+    place = {"file": Path("checks.py"), "line": 1}
+    return ListedCheck(1.0, "", depends, "", name=name, title=name, hidden=False, scenarios=(name,), **place)
 
 
 def trial(**statuses: Status) -> Trial:

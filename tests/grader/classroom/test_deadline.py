@@ -39,6 +39,14 @@ def test_without_a_deadline_nothing_is_late(exercise: Exercise) -> None:
     assert Adjuster(None)(plain.entry(plain.RIGHT)) == ()
 
 
+def test_a_file_with_a_byte_order_mark_is_read(exercise: Exercise) -> None:
+    file = exercise.folder / "exercise.toml"
+    file.write_text("\ufeff" + file.read_text(encoding="utf-8"), encoding="utf-8")
+    deadline = saying(exercise, "due = 2026-11-22T23:59:00Z")
+    assert deadline
+    assert deadline.due == DUE
+
+
 @pytest.mark.parametrize(
     ("handed_in", "lost"),
     [

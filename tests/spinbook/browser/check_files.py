@@ -18,8 +18,7 @@ rcl_python.install()
 program_imports.watch()
 
 from grader.exercise import load  # noqa: E402
-from grader.recording.arrays import ArrayEncoder  # noqa: E402
-from grader.recording.recording import plain  # noqa: E402
+from grader.recording.recording import RecordingEncoder  # noqa: E402
 from spinbook.browser.in_page import check  # noqa: E402
 from spinbook.browser.in_page.runner import ProgramText  # noqa: E402
 
@@ -34,7 +33,7 @@ def found(folder: Path, file: Path) -> dict[str, Any]:
     recordings = check.record(exercise, scenarios, ProgramText(exercise.file_name, source))
     verdicts = check.verdicts(exercise, scenarios, recordings, references)
     statuses = {verdict.name: [verdict.status, verdict.finding.text if verdict.finding else ""] for verdict in verdicts}
-    return {"hindrance": "", "recordings": plain(recordings), "verdicts": statuses}
+    return {"hindrance": "", "recordings": recordings, "verdicts": statuses}
 
 
 # What programs print must not get among the answers.
@@ -42,6 +41,6 @@ with os.fdopen(os.dup(1), "w", encoding="utf-8") as answers:
     os.dup2(2, 1)
     for line in sys.stdin:
         checked = found(Path(sys.argv[1]), Path(line.rstrip("\n")))
-        print(json.dumps(checked, cls=ArrayEncoder), file=answers, flush=True)
+        print(json.dumps(checked, cls=RecordingEncoder), file=answers, flush=True)
 # A program's thread that does not end keeps nobody waiting.
 os._exit(0)
