@@ -5,6 +5,7 @@ The names and rules are those of rcl_action and https://design.ros2.org/articles
 
 from __future__ import annotations
 
+from functools import partialmethod
 from typing import Any, Generic, TypeVar
 
 from rcl_python.clock import Clock, Timer
@@ -32,9 +33,9 @@ _NEXT = {
 _UNKNOWN_GOAL, _GOAL_TERMINATED = 2, 3
 
 
-def _parts(name: str) -> dict[str, str]:
+def _parts(name: str, side: str) -> dict[str, str]:
     if not name:
-        raise ValueError("Failed to create action due to invalid topic name '': action name must not be empty")
+        raise ValueError(f"Failed to create action {side} due to invalid topic name '': action name must not be empty")
     parts = ("send_goal", "cancel_goal", "get_result", "feedback", "status")
     return {part: f"{name}/_action/{part}" for part in parts}
 
@@ -51,9 +52,12 @@ class _Action(Destroyable, Generic[_Call, _Topic]):
         profiles: tuple[Profile, ...],
     ) -> None:  # fmt: skip
         self._destroyed = True
-        names = _named(name, side)
+        names = _parts(name, side)
         goal, result, cancel, feedback, status = profiles
-        self.goal: _Call = _made(side, name, call, node, kinds.SendGoalService, names["send_goal"], goal)
+        try:
+            self.goal: _Call = call(node, kinds.SendGoalService, names["send_goal"], goal)
+        except ValueError as error:
+            raise ValueError(f"Failed to create action {side} due to invalid topic name '{name}' : {error}") from None
         self.cancel: _Call = call(node, kinds.CancelGoalService, names["cancel_goal"], cancel)
         self.result: _Call = call(node, kinds.GetResultService, names["get_result"], result)
         self.feedback: _Topic = topic(node, kinds.FeedbackMessage, names["feedback"], feedback)
@@ -98,61 +102,33 @@ class ActionClient(_Action[Client, Subscription]):
         services = all(client.service_server_is_available() for client in (self.goal, self.cancel, self.result))
         return bool(services and all(topic.get_publisher_count() for topic in (self.feedback, self.status)))
 
-    def send_goal_request(self, request: Any) -> int:
-        """Send a goal; return the request's number."""
-        return int(self.goal.send_request(request))
+    def _send(self, part: str, request: Any) -> int:
+        """Send a goal, a request to cancel goals, or a request for a result; return the request's number."""
+        client: Client = getattr(self, part)
+        return client.send_request(request)
 
-    def send_cancel_request(self, request: Any) -> int:
-        """Request that goals be canceled; return the request's number."""
-        return self.cancel.send_request(request)
+    send_goal_request = partialmethod(_send, "goal")
+    send_cancel_request = partialmethod(_send, "cancel")
+    send_result_request = partialmethod(_send, "result")
 
-    def send_result_request(self, request: Any) -> int:
-        """Request a goal's result; return the request's number."""
-        return self.result.send_request(request)
-
-    def take_goal_response(self, response_class: Any) -> tuple[int | None, Any]:
+    def _take_response(self, part: str, response_class: Any) -> tuple[int | None, Any]:
         """Return the number of a request and its response, or (None, None)."""
-        return _numbered(self.goal, response_class)
+        client: Client = getattr(self, part)
+        header, response = client.take_response(response_class)
+        return (header.request_id.sequence_number if header else None), response
 
-    def take_cancel_response(self, response_class: Any) -> tuple[int | None, Any]:
-        """Return the number of a request and its response, or (None, None)."""
-        return _numbered(self.cancel, response_class)
+    take_goal_response = partialmethod(_take_response, "goal")
+    take_cancel_response = partialmethod(_take_response, "cancel")
+    take_result_response = partialmethod(_take_response, "result")
 
-    def take_result_response(self, response_class: Any) -> tuple[int | None, Any]:
-        """Return the number of a request and its response, or (None, None)."""
-        return _numbered(self.result, response_class)
+    def _take_message(self, part: str, message_class: Any) -> Any:
+        """Return feedback, or the states of the server's goals; None if nothing has arrived."""
+        subscription: Subscription = getattr(self, part)
+        taken = subscription.take_message(message_class, False)
+        return taken[0] if taken else None
 
-    def take_feedback(self, message_class: Any) -> Any:
-        """Return feedback, or None."""
-        return _message(self.feedback, message_class)
-
-    def take_status(self, message_class: Any) -> Any:
-        """Return the states of the server's goals, or None."""
-        return _message(self.status, message_class)
-
-
-def _named(name: str, what: str) -> dict[str, str]:
-    try:
-        return _parts(name)
-    except ValueError as error:
-        raise ValueError(str(error).replace("create action", f"create action {what}")) from None
-
-
-def _made(what: str, name: str, kind: Any, *given: Any) -> Any:
-    try:
-        return kind(*given)
-    except ValueError as error:
-        raise ValueError(f"Failed to create action {what} due to invalid topic name '{name}' : {error}") from None
-
-
-def _numbered(client: Client, response_class: Any) -> tuple[int | None, Any]:
-    header, response = client.take_response(response_class)
-    return (header.request_id.sequence_number if header else None), response
-
-
-def _message(subscription: Subscription, message_class: Any) -> Any:
-    taken = subscription.take_message(message_class, False)
-    return taken[0] if taken else None
+    take_feedback = partialmethod(_take_message, "feedback")
+    take_status = partialmethod(_take_message, "status")
 
 
 class ActionServer(_Action[Service, Publisher]):
@@ -182,29 +158,24 @@ class ActionServer(_Action[Service, Publisher]):
             wait_set.add_service(service)
         wait_set.add_timer(self.expiry)
 
-    def take_goal_request(self, request_class: Any) -> tuple[rmw_request_id_t | None, Any]:
+    def _take_request(self, part: str, request_class: Any) -> tuple[rmw_request_id_t | None, Any]:
         """Return a request's header and the request, or (None, None)."""
-        return _headed(self.goal, request_class)
+        service: Service = getattr(self, part)
+        request, header = service.service_take_request(request_class)
+        return (header.request_id if header else None), request
 
-    def take_cancel_request(self, request_class: Any) -> tuple[rmw_request_id_t | None, Any]:
-        """Return a request's header and the request, or (None, None)."""
-        return _headed(self.cancel, request_class)
+    take_goal_request = partialmethod(_take_request, "goal")
+    take_cancel_request = partialmethod(_take_request, "cancel")
+    take_result_request = partialmethod(_take_request, "result")
 
-    def take_result_request(self, request_class: Any) -> tuple[rmw_request_id_t | None, Any]:
-        """Return a request's header and the request, or (None, None)."""
-        return _headed(self.result, request_class)
+    def _send_response(self, part: str, header: rmw_request_id_t, response: Any) -> None:
+        """Say whether a goal is accepted or which goals are being canceled, or send a goal's result."""
+        service: Service = getattr(self, part)
+        service.service_send_response(response, header)
 
-    def send_goal_response(self, header: rmw_request_id_t, response: Any) -> None:
-        """Say whether a goal is accepted."""
-        self.goal.service_send_response(response, header)
-
-    def send_cancel_response(self, header: rmw_request_id_t, response: Any) -> None:
-        """Say which goals are being canceled."""
-        self.cancel.service_send_response(response, header)
-
-    def send_result_response(self, header: rmw_request_id_t, response: Any) -> None:
-        """Send a goal's result."""
-        self.result.service_send_response(response, header)
+    send_goal_response = partialmethod(_send_response, "goal")
+    send_cancel_response = partialmethod(_send_response, "cancel")
+    send_result_response = partialmethod(_send_response, "result")
 
     def publish_feedback(self, message: Any) -> None:
         """Publish feedback."""
@@ -263,11 +234,6 @@ class ActionServer(_Action[Service, Publisher]):
             chosen = [g for g in cancelable if every or _nanoseconds(g.info.stamp) <= stamp or g.identity == identity]
         response.goals_canceling = [goal.info for goal in chosen]
         return response
-
-
-def _headed(service: Service, request_class: Any) -> tuple[rmw_request_id_t | None, Any]:
-    request, header = service.service_take_request(request_class)
-    return (header.request_id if header else None), request
 
 
 def _nanoseconds(stamp: Any) -> int:

@@ -8,10 +8,12 @@ value of the wrong Python type (an int for a double), this reads what it would f
 from __future__ import annotations
 
 import array
+import functools
 import importlib
 import struct
 import sys
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from rcl_python.abort import require_class
@@ -63,6 +65,14 @@ class Cursor:
         return found
 
 
+@dataclass(frozen=True)
+class Codec:
+    """How values of one IDL type are written and read."""
+
+    write: Writer
+    read: Reader
+
+
 def serialize(message: Any) -> bytes:
     """Return the bytes of a message."""
     out = bytearray(HEADER)
@@ -75,51 +85,45 @@ def deserialize(data: bytes, message_class: type) -> Any:
     return _read_fields(Cursor(data), message_class)
 
 
-_writers: dict[type, list[tuple[str, Writer]]] = {}
-_readers: dict[type, list[tuple[str, Reader]]] = {}
-
-
 def _write_fields(out: bytearray, message: Any) -> None:
-    kind = type(message)
-    fields = _writers.get(kind)
-    if fields is None:
-        fields = _writers[kind] = [(name, writer(slot)) for name, slot in slots(kind)]
+    kind: Any = type(message)
+    fields = _fields(kind)
     if not fields:
         out += b"\0"
-    for name, write in fields:
-        write(out, getattr(message, name))
+    for name, codec in fields:
+        codec.write(out, getattr(message, name))
 
 
-def _read_fields(cursor: Cursor, kind: type) -> Any:
-    fields = _readers.get(kind)
-    if fields is None:
-        fields = _readers[kind] = [(name, reader(slot)) for name, slot in slots(kind)]
+def _read_fields(cursor: Cursor, kind: Any) -> Any:
+    fields = _fields(kind)
     message = kind()
     if not fields:
         cursor.take(1)
-    for name, read in fields:
-        setattr(message, name, read(cursor))
+    for name, codec in fields:
+        setattr(message, name, codec.read(cursor))
     return message
 
 
-def slots(kind: Any) -> list[tuple[str, Any]]:
-    """Return the fields of a message class: the slot's name and its IDL type."""
+@functools.cache
+def _fields(kind: Any) -> list[tuple[str, Codec]]:
+    """Return the fields of a message class: the slot's name, and how its values are written and read."""
     names = [name for name in kind.__slots__ if name != "_check_fields"]
-    return list(zip(names, kind.SLOT_TYPES, strict=True))
+    return [(name, _codec(slot)) for name, slot in zip(names, kind.SLOT_TYPES, strict=True)]
 
 
-def writer(slot: Any) -> Writer:
-    """Return a function that writes a value of this IDL type."""
+def _codec(slot: Any) -> Codec:
     kind = type(slot).__name__
     if kind == "BasicType":
-        return _basic_writer(slot.typename)
+        return Codec(_basic_writer(slot.typename), _basic_reader(slot.typename))
     if kind.endswith("WString"):
-        return _write_wide
+        return Codec(_write_wide, _read_wide)
     if kind.endswith("String"):
-        return _write_text
+        return Codec(_write_text, _read_text)
     if kind in ("NamespacedType", "NamedType"):
-        return _message_writer(slot)
-    return _sequence_writer(slot, fixed=kind == "Array")
+        return Codec(_message_writer(slot), _message_reader(slot))
+    element = _codec(slot.value_type)
+    fixed = kind == "Array"
+    return Codec(_sequence_writer(slot, element.write, fixed), _sequence_reader(slot, element.read, fixed))
 
 
 def _message_writer(slot: Any) -> Writer:
@@ -186,8 +190,8 @@ def _write_wide(out: bytearray, value: str) -> None:
     out += struct.pack(f"<I{len(units)}I", len(units), *units)
 
 
-def _sequence_writer(slot: Any, *, fixed: bool) -> Writer:
-    inner, code, size = writer(slot.value_type), *_packed(slot)
+def _sequence_writer(slot: Any, write_element: Writer, fixed: bool) -> Writer:
+    code, size = _packed(slot)
 
     def write(out: bytearray, values: Any) -> None:
         if not fixed:
@@ -197,7 +201,7 @@ def _sequence_writer(slot: Any, *, fixed: bool) -> Writer:
             _write_packed(out, values, size)
         else:
             for value in values:
-                inner(out, value)
+                write_element(out, value)
 
     return write
 
@@ -214,20 +218,6 @@ def _packed(slot: Any) -> tuple[str, int]:
     if name in _ARRAYS:
         return _BASIC[name], struct.calcsize(_BASIC[name])
     return "", 0
-
-
-def reader(slot: Any) -> Reader:
-    """Return a function that reads a value of this IDL type."""
-    kind = type(slot).__name__
-    if kind == "BasicType":
-        return _basic_reader(slot.typename)
-    if kind.endswith("WString"):
-        return _read_wide
-    if kind.endswith("String"):
-        return _read_text
-    if kind in ("NamespacedType", "NamedType"):
-        return _message_reader(slot)
-    return _sequence_reader(slot, fixed=kind == "Array")
 
 
 def _basic_reader(name: str) -> Reader:
@@ -253,17 +243,12 @@ def _read_wide(cursor: Cursor) -> str:
 
 
 def _message_reader(slot: Any) -> Reader:
-    found: list[type] = []
-
-    def read(cursor: Cursor) -> Any:
-        # Looked up when it is needed: a class may be defined after the one that refers to it.
-        if not found:
-            found.append(_class(".".join(slot.namespaces), slot.name))
-        return _read_fields(cursor, found[0])
-
-    return read
+    package = ".".join(slot.namespaces)
+    # The class is looked up when it is needed: it may be defined after the one that refers to it.
+    return lambda cursor: _read_fields(cursor, _class(package, slot.name))
 
 
+@functools.cache
 def _class(package: str, name: str) -> type:
     """Return a message class by its name. Parts of services and actions are only in the module of the whole."""
     whole = getattr(importlib.import_module(package), name.split("_")[0])
@@ -271,13 +256,13 @@ def _class(package: str, name: str) -> type:
     return kind
 
 
-def _sequence_reader(slot: Any, *, fixed: bool) -> Reader:
-    inner, code, size = reader(slot.value_type), *_packed(slot)
+def _sequence_reader(slot: Any, read_element: Reader, fixed: bool) -> Reader:
+    code, size = _packed(slot)
 
     def read(cursor: Cursor) -> Any:
         count = slot.size if fixed else cursor.count()
         if not code:
-            return [inner(cursor) for _ in range(count)]
+            return [read_element(cursor) for _ in range(count)]
         values = array.array(code)
         if count:
             cursor.align(size)

@@ -21,8 +21,6 @@ from rcl_python.values import (
     ServiceIntrospectionState,
     at,
     rcl_duration_t,
-    rcl_publisher_event_type_t,
-    rcl_subscription_event_type_t,
     rmw_liveliness_lost_status_t,
     rmw_message_lost_status_t,
     rmw_request_id_t,
@@ -272,19 +270,17 @@ class Client(_IntrospectedEnd):
         return header_of(arrival), response
 
 
-#: Which of an endpoint's statuses an event takes, and its counts that change.
+#: Which of an endpoint's statuses an event takes.
 _STATUS = {
-    rcl_publisher_event_type_t.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: "offered_deadline",
-    rcl_publisher_event_type_t.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: "incompatible",
-    rcl_publisher_event_type_t.RCL_PUBLISHER_INCOMPATIBLE_TYPE: "other_type",
-    rcl_publisher_event_type_t.RCL_PUBLISHER_MATCHED: "matched",
-}
-_SUBSCRIPTION_STATUS = {
-    rcl_subscription_event_type_t.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: "requested_deadline",
-    rcl_subscription_event_type_t.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: "liveliness",
-    rcl_subscription_event_type_t.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: "incompatible",
-    rcl_subscription_event_type_t.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: "other_type",
-    rcl_subscription_event_type_t.RCL_SUBSCRIPTION_MATCHED: "matched",
+    "RCL_PUBLISHER_OFFERED_DEADLINE_MISSED": "offered_deadline",
+    "RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS": "incompatible",
+    "RCL_PUBLISHER_INCOMPATIBLE_TYPE": "other_type",
+    "RCL_PUBLISHER_MATCHED": "matched",
+    "RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED": "requested_deadline",
+    "RCL_SUBSCRIPTION_LIVELINESS_CHANGED": "liveliness",
+    "RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS": "incompatible",
+    "RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE": "other_type",
+    "RCL_SUBSCRIPTION_MATCHED": "matched",
 }
 
 
@@ -294,9 +290,8 @@ class EventHandle(Destroyable):
     def __init__(self, parent: Publisher | Subscription, event_type: Any) -> None:
         super().__init__()
         self.parent = parent
-        kinds: dict[Any, str] = _STATUS if isinstance(event_type, rcl_publisher_event_type_t) else _SUBSCRIPTION_STATUS
         self._event = event_type
-        self._kind = kinds.get(event_type, "")
+        self._kind = _STATUS.get(event_type.name, "")
 
     def is_ready(self) -> bool:
         """Return whether anything has changed since the last time."""
@@ -322,5 +317,5 @@ class EventHandle(Destroyable):
 
     def _nothing(self) -> Any:
         """Return zeros for lost messages and lost liveliness: neither ever happens here."""
-        kinds = {"RCL_PUBLISHER_LIVELINESS_LOST": rmw_liveliness_lost_status_t}
-        return kinds.get(self._event.name, rmw_message_lost_status_t)()
+        is_liveliness = self._event.name == "RCL_PUBLISHER_LIVELINESS_LOST"
+        return rmw_liveliness_lost_status_t() if is_liveliness else rmw_message_lost_status_t()

@@ -51,6 +51,11 @@ def _ends(over: int, first: int, goals: list[int]) -> list[Transition]:
     return [_transition(first + n, label, over, goals[n]) for n, label in enumerate(labels)]
 
 
+def _service(name: str) -> property:
+    """Return a property: the state machine's service of this name; None without `enable_com_interface`."""
+    return property(lambda machine: machine._services.get(name))
+
+
 class LifecycleStateMachine(Destroyable):
     """The states of one node, and, with `enable_com_interface`, the services that change and show them."""
 
@@ -144,27 +149,8 @@ class LifecycleStateMachine(Destroyable):
         if self._publisher is not None:
             self._publisher.publish(event)
 
-    @property
-    def service_change_state(self) -> Service | None:
-        """The service that changes the state."""
-        return self._services.get("change_state")
-
-    @property
-    def service_get_state(self) -> Service | None:
-        """The service that returns the state."""
-        return self._services.get("get_state")
-
-    @property
-    def service_get_available_states(self) -> Service | None:
-        """The service that lists the states."""
-        return self._services.get("get_available_states")
-
-    @property
-    def service_get_available_transitions(self) -> Service | None:
-        """The service that lists the transitions from the state."""
-        return self._services.get("get_available_transitions")
-
-    @property
-    def service_get_transition_graph(self) -> Service | None:
-        """The service that lists every transition."""
-        return self._services.get("get_transition_graph")
+    service_change_state = _service("change_state")
+    service_get_state = _service("get_state")
+    service_get_available_states = _service("get_available_states")
+    service_get_available_transitions = _service("get_available_transitions")
+    service_get_transition_graph = _service("get_transition_graph")

@@ -78,17 +78,9 @@ def directory() -> str:
     return str(Path(os.environ.get("ROS_LOG_DIR") or os.path.join(home, "log")).expanduser())  # noqa: PTH118
 
 
-def initialize() -> None:
-    """Do nothing: there is nothing to prepare."""
-
-
 def shutdown() -> None:
     """Forget every level."""
     _levels.clear()
-
-
-def finish() -> None:
-    """Do nothing: there is nothing to release."""
 
 
 def log(severity: int, name: str, message: str, function: str, file: str, line: int) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partialmethod
 from typing import Any
 
 from rcl_python import logs, names, participant, qos
@@ -114,28 +115,18 @@ class Node(Destroyable):
         here.pump()
         return here.graph
 
-    def get_count_publishers(self, topic: str) -> int:
-        """Return how many publishers a topic has."""
-        return self._count(PUBLISHER, topic, "publishers", "topic_name")
-
-    def get_count_subscribers(self, topic: str) -> int:
-        """Return how many subscribers a topic has."""
-        return self._count(SUBSCRIPTION, topic, "subscribers", "topic_name")
-
-    def get_count_services(self, service: str) -> int:
-        """Return how many servers a service has."""
-        return self._count(SERVICE, service, "services", "service_name")
-
-    def get_count_clients(self, service: str) -> int:
-        """Return how many clients a service has."""
-        return self._count(CLIENT, service, "clients", "service_name")
-
-    def _count(self, kind: str, topic: str, what: str, argument: str) -> int:
+    def _count(self, kind: str, plural: str, argument: str, topic: str) -> int:
+        """Return how many endpoints of this kind a topic or a service has. Raises RCLError for an invalid name."""
         fault = names.full_topic_fault(topic)
         if fault:
             reason = at(f"{argument} argument is invalid: {fault[0]}", "rmw_count.cpp:60")
-            raise RCLError(f"Error in rcl_count_{what}: {reason}")
+            raise RCLError(f"Error in rcl_count_{plural}: {reason}")
         return len(self.seen().ends(self.info.domain, kind, topic=topic))
+
+    get_count_publishers = partialmethod(_count, PUBLISHER, "publishers", "topic_name")
+    get_count_subscribers = partialmethod(_count, SUBSCRIPTION, "subscribers", "topic_name")
+    get_count_services = partialmethod(_count, SERVICE, "services", "service_name")
+    get_count_clients = partialmethod(_count, CLIENT, "clients", "service_name")
 
     def get_action_names_and_types(self) -> list[tuple[str, list[str]]]:
         """Return every action that a server or a client has."""
@@ -176,14 +167,13 @@ def _actions(ends: Sequence[EndpointInfo]) -> list[tuple[str, list[str]]]:
     return sorted(found)
 
 
-def ends_of(node: Node, name: str, namespace: str, kind: str, what: str) -> list[EndpointInfo]:
+def ends_of(node: Node, name: str, namespace: str, kind: str, role: str) -> list[EndpointInfo]:
     """Return a node's endpoints of one kind. Raises NodeNameNonExistentError if no node has that name."""
     graph = node.seen()
-    found = graph.named(node.info.domain, name, namespace)
-    if not found:
-        text = f"cannot get {what} names and types for nonexistent node: error not set"
-        raise NodeNameNonExistentError(text)
-    return [end for one in found for end in graph.ends(node.info.domain, kind, node=one.key)]
+    owners = graph.named(node.info.domain, name, namespace)
+    if not owners:
+        raise NodeNameNonExistentError(f"cannot get {role} names and types for nonexistent node: error not set")
+    return [end for owner in owners for end in graph.ends(node.info.domain, kind, node=owner.key)]
 
 
 def topic_names_and_types(node: Node, no_demangle: bool) -> list[tuple[str, list[str]]]:
@@ -196,46 +186,29 @@ def service_names_and_types(node: Node) -> list[tuple[str, list[str]]]:
     return names_and_types(node.seen().ends(node.info.domain, SERVICE, CLIENT))
 
 
-def publisher_names_and_types_by_node(
-    node: Node, no_demangle: bool, name: str, namespace: str
+def topics_of(
+    kind: str, role: str, node: Node, no_demangle: bool, name: str, namespace: str
 ) -> list[tuple[str, list[str]]]:
-    """Return what a node publishes."""
-    return names_and_types(ends_of(node, name, namespace, PUBLISHER, "publisher"), mangled=no_demangle)
+    """Return the topics of which a node has endpoints of this kind, and their types."""
+    return names_and_types(ends_of(node, name, namespace, kind, role), mangled=no_demangle)
 
 
-def subscriber_names_and_types_by_node(
-    node: Node, no_demangle: bool, name: str, namespace: str
-) -> list[tuple[str, list[str]]]:
-    """Return what a node subscribes to."""
-    return names_and_types(ends_of(node, name, namespace, SUBSCRIPTION, "subscriber"), mangled=no_demangle)
+def services_of(kind: str, role: str, node: Node, name: str, namespace: str) -> list[tuple[str, list[str]]]:
+    """Return the services of which a node has endpoints of this kind, and their types."""
+    return names_and_types(ends_of(node, name, namespace, kind, role))
 
 
-def service_names_and_types_by_node(node: Node, name: str, namespace: str) -> list[tuple[str, list[str]]]:
-    """Return what a node serves."""
-    return names_and_types(ends_of(node, name, namespace, SERVICE, "service"))
+#: How rclpy numbers what has an endpoint (rmw/types.h).
+_ENDPOINT_TYPES = {PUBLISHER: 1, SUBSCRIPTION: 2}
 
 
-def client_names_and_types_by_node(node: Node, name: str, namespace: str) -> list[tuple[str, list[str]]]:
-    """Return what a node calls."""
-    return names_and_types(ends_of(node, name, namespace, CLIENT, "client"))
-
-
-def publishers_info_by_topic(node: Node, topic: str, no_mangle: bool) -> list[dict[str, object]]:
-    """Return the publishers on a topic, with their profiles."""
-    return _infos(node, PUBLISHER, topic, 1)
-
-
-def subscriptions_info_by_topic(node: Node, topic: str, no_mangle: bool) -> list[dict[str, object]]:
-    """Return the subscribers to a topic, with their profiles."""
-    return _infos(node, SUBSCRIPTION, topic, 2)
-
-
-def _infos(node: Node, kind: str, topic: str, number: int) -> list[dict[str, object]]:
+def infos_by_topic(kind: str, node: Node, topic: str, no_mangle: bool) -> list[dict[str, object]]:
+    """Return the publishers on a topic, or the subscribers to it, with their profiles."""
     graph = node.seen()
-    return [_info(graph, end, number) for end in graph.ends(node.info.domain, kind, topic=topic)]
+    return [_info(graph, end) for end in graph.ends(node.info.domain, kind, topic=topic)]
 
 
-def _info(graph: Any, end: EndpointInfo, number: int) -> dict[str, object]:
+def _info(graph: Any, end: EndpointInfo) -> dict[str, object]:
     owner = graph.nodes.get(end.node)
     version, *digest = type_hash(end.type)
     return {
@@ -243,7 +216,7 @@ def _info(graph: Any, end: EndpointInfo, number: int) -> dict[str, object]:
         "node_namespace": owner.namespace if owner else "_NODE_NAMESPACE_UNKNOWN_",
         "topic_type": end.type,
         "topic_type_hash": {"version": version, "value": bytes(digest)},
-        "endpoint_type": number,
+        "endpoint_type": _ENDPOINT_TYPES[end.kind],
         "endpoint_gid": _gid(end.gid),
         "qos_profile": qos.reported(end.qos).to_dict(),
     }

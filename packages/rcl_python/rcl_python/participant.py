@@ -11,7 +11,7 @@ import itertools
 import os
 from collections import deque
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from rcl_python import qos as quality
@@ -54,20 +54,22 @@ class Arrival:
     source: str
 
 
-@dataclass
 class Statuses:
     """What an endpoint can report as events; each counts what has changed since it was last taken."""
 
-    matched: rmw_matched_status_t = field(default_factory=rmw_matched_status_t)
-    incompatible: rmw_requested_qos_incompatible_event_status_t = field(
-        default_factory=rmw_requested_qos_incompatible_event_status_t
-    )
-    other_type: rmw_incompatible_type_status_t = field(default_factory=rmw_incompatible_type_status_t)
-    liveliness: rmw_liveliness_changed_status_t = field(default_factory=rmw_liveliness_changed_status_t)
-    offered_deadline: rmw_offered_deadline_missed_status_t = field(default_factory=rmw_offered_deadline_missed_status_t)
-    requested_deadline: rmw_requested_deadline_missed_status_t = field(
-        default_factory=rmw_requested_deadline_missed_status_t
-    )
+    def __init__(self) -> None:
+        self.matched = rmw_matched_status_t()
+        self.incompatible = rmw_requested_qos_incompatible_event_status_t()
+        self.other_type = rmw_incompatible_type_status_t()
+        self.liveliness = rmw_liveliness_changed_status_t()
+        self.offered_deadline = rmw_offered_deadline_missed_status_t()
+        self.requested_deadline = rmw_requested_deadline_missed_status_t()
+
+
+def _add(status: object, count: str, number: int) -> None:
+    """Change one of a status's counts, and by how much it has changed since it was last taken."""
+    for name in (count, f"{count}_change"):
+        setattr(status, name, getattr(status, name) + number)
 
 
 class LocalEndpoint:
@@ -130,19 +132,15 @@ class LocalEndpoint:
         if policy is None:
             self._match(other)
         else:
-            status = self.statuses.incompatible
-            status.total_count += 1
-            status.total_count_change += 1
-            status.last_policy_kind = policy
+            _add(self.statuses.incompatible, "total_count", 1)
+            self.statuses.incompatible.last_policy_kind = policy
 
     def part(self, gid: str) -> None:
         """Forget another endpoint, which has gone."""
         if self.matched.pop(gid, None) is None:
             return
-        self.statuses.matched.current_count -= 1
-        self.statuses.matched.current_count_change -= 1
-        self.statuses.liveliness.alive_count -= 1
-        self.statuses.liveliness.alive_count_change -= 1
+        _add(self.statuses.matched, "current_count", -1)
+        _add(self.statuses.liveliness, "alive_count", -1)
 
     def _incompatible(self, other: EndpointInfo) -> Any:
         if self.info.kind == PUBLISHER:
@@ -153,13 +151,9 @@ class LocalEndpoint:
 
     def _match(self, other: EndpointInfo) -> None:
         self.matched[other.gid] = other
-        status = self.statuses.matched
-        status.total_count += 1
-        status.total_count_change += 1
-        status.current_count += 1
-        status.current_count_change += 1
-        self.statuses.liveliness.alive_count += 1
-        self.statuses.liveliness.alive_count_change += 1
+        _add(self.statuses.matched, "total_count", 1)
+        _add(self.statuses.matched, "current_count", 1)
+        _add(self.statuses.liveliness, "alive_count", 1)
         if self.history and other.qos.durability == TRANSIENT_LOCAL:
             now = self.participant.link.system()
             for message in self.history:
@@ -177,10 +171,9 @@ class LocalEndpoint:
         now = self.participant.link.steady()
         while self.due is not None and self.due <= now:
             self.due += self.info.qos.deadline
-            mine = self.statuses
-            missed = mine.offered_deadline if self.info.kind == PUBLISHER else mine.requested_deadline
-            missed.total_count += 1
-            missed.total_count_change += 1
+            is_publisher = self.info.kind == PUBLISHER
+            missed = self.statuses.offered_deadline if is_publisher else self.statuses.requested_deadline
+            _add(missed, "total_count", 1)
 
 
 def _outlived(message: Arrival, profile: Profile, now: int) -> bool:
@@ -307,7 +300,7 @@ class Participant:
         """Process what others have sent, until nothing is left or `enough` returns true."""
         with self.link.lock:
             for frame, data in self.link.receive():
-                _HANDLERS[frame["op"]](self, frame, data)
+                getattr(self, f"_on_{frame['op']}")(frame, data)
                 if enough():
                     return
 
@@ -354,14 +347,14 @@ class Participant:
         for mine in self._here(frame["to"]):
             mine.get(Arrival(data, frame["sent"], self.link.system(), frame["n"], frame["from"]))
 
+    def _on_request(self, frame: Frame, data: bytes) -> None:
+        for mine in self._here(frame["to"]):
+            mine.inbox.append(Arrival(data, frame["sent"], self.link.system(), frame["n"], frame["from"]))
+
     def _on_response(self, frame: Frame, data: bytes) -> None:
         for hear in self.overhearing:
             hear(frame, data)
-        self._on_exchange(frame, data)
-
-    def _on_exchange(self, frame: Frame, data: bytes) -> None:
-        for mine in self._here(frame["to"]):
-            mine.inbox.append(Arrival(data, frame["sent"], self.link.system(), frame["n"], frame["from"]))
+        self._on_request(frame, data)
 
     def _on_signal(self, frame: Frame, data: bytes) -> None:
         self.on_signal(frame["name"])
@@ -369,19 +362,6 @@ class Participant:
     def _here(self, gids: Iterable[str]) -> list[LocalEndpoint]:
         return [self.local[gid] for gid in gids if gid in self.local]
 
-
-_HANDLERS: dict[str, Callable[[Participant, Frame, bytes], None]] = {
-    "hello": Participant._on_hello,
-    "node": Participant._on_node,
-    "node_gone": Participant._on_node_gone,
-    "endpoint": Participant._on_endpoint,
-    "endpoint_gone": Participant._on_endpoint_gone,
-    "bye": Participant._on_bye,
-    "message": Participant._on_message,
-    "request": Participant._on_exchange,
-    "response": Participant._on_response,
-    "signal": Participant._on_signal,
-}
 
 _current = Participant(LocalLink(), f"p{os.getpid()}")
 

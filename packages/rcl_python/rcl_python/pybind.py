@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import types
+from functools import partial
 from typing import Any
 
 from rcl_python import (
@@ -22,6 +23,7 @@ from rcl_python import (
     values,
     wait_set,
 )
+from rcl_python.graph import CLIENT, PUBLISHER, SERVICE, SUBSCRIPTION
 
 RMW_IDENTIFIER = "rmw_python"
 
@@ -58,26 +60,26 @@ _FUNCTIONS: dict[str, Any] = {
     "assert_liveliness": lambda publisher: None,
     "deserialize": endpoints.read,
     "expand_topic_name": names.expand,
-    "get_client_names_and_types_by_node": node.client_names_and_types_by_node,
-    "get_publisher_names_and_types_by_node": node.publisher_names_and_types_by_node,
-    "get_publishers_info_by_topic": node.publishers_info_by_topic,
+    "get_client_names_and_types_by_node": partial(node.services_of, CLIENT, "client"),
+    "get_publisher_names_and_types_by_node": partial(node.topics_of, PUBLISHER, "publisher"),
+    "get_publishers_info_by_topic": partial(node.infos_by_topic, PUBLISHER),
     "get_rmw_implementation_identifier": lambda: RMW_IDENTIFIER,
     "get_service_names_and_types": node.service_names_and_types,
-    "get_service_names_and_types_by_node": node.service_names_and_types_by_node,
-    "get_subscriber_names_and_types_by_node": node.subscriber_names_and_types_by_node,
-    "get_subscriptions_info_by_topic": node.subscriptions_info_by_topic,
+    "get_service_names_and_types_by_node": partial(node.services_of, SERVICE, "service"),
+    "get_subscriber_names_and_types_by_node": partial(node.topics_of, SUBSCRIPTION, "subscriber"),
+    "get_subscriptions_info_by_topic": partial(node.infos_by_topic, SUBSCRIPTION),
     "get_topic_names_and_types": node.topic_names_and_types,
     "get_validation_error_for_full_topic_name": names.full_topic_fault,
     "get_validation_error_for_namespace": names.namespace_fault,
     "get_validation_error_for_node_name": names.node_name_fault,
     "get_validation_error_for_topic_name": names.topic_fault,
     "logging_configure": context.configure_logging,
-    "logging_fini": logs.finish,
+    "logging_fini": lambda: None,
     "logging_get_logger_effective_level": logs.effective_level,
     "logging_get_logger_level": logs.get_level,
     "logging_get_logging_directory": logs.directory,
     "logging_get_separator_string": lambda: ".",
-    "logging_initialize": logs.initialize,
+    "logging_initialize": lambda: None,
     "logging_logger_is_enabled_for": logs.is_enabled_for,
     "logging_rcutils_log": logs.log,
     "logging_rosout_add_sublogger": logs.add_sublogger,

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partialmethod
 from typing import Any
 
 from rcl_python import participant
-from rcl_python.context import Context, GuardCondition
+from rcl_python.context import Context
 from rcl_python.handle import Destroyable
 from rcl_python.values import RCLError
 
@@ -30,33 +31,17 @@ class WaitSet(Destroyable):
         self._entities: dict[str, list[Any]] = {kind: [] for kind in KINDS}
         self._ready: dict[str, list[bool]] = {kind: [] for kind in KINDS}
 
-    def add_subscription(self, entity: Any) -> int:
-        """Wait for a subscription's messages; return its index."""
-        return self._add("subscription", entity)
-
-    def add_guard_condition(self, entity: GuardCondition) -> int:
-        """Wait for a guard condition; return its index."""
-        return self._add("guard_condition", entity)
-
-    def add_timer(self, entity: Any) -> int:
-        """Wait for a timer; return its index."""
-        return self._add("timer", entity)
-
-    def add_client(self, entity: Any) -> int:
-        """Wait for a client's responses; return its index."""
-        return self._add("client", entity)
-
-    def add_service(self, entity: Any) -> int:
-        """Wait for a service's requests; return its index."""
-        return self._add("service", entity)
-
-    def add_event(self, entity: Any) -> int:
-        """Wait for an event; return its index."""
-        return self._add("event", entity)
-
     def _add(self, kind: str, entity: Any) -> int:
+        """Wait for an entity of this kind; return its index among them."""
         self._entities[kind].append(entity)
         return len(self._entities[kind]) - 1
+
+    add_subscription = partialmethod(_add, "subscription")
+    add_guard_condition = partialmethod(_add, "guard_condition")
+    add_timer = partialmethod(_add, "timer")
+    add_client = partialmethod(_add, "client")
+    add_service = partialmethod(_add, "service")
+    add_event = partialmethod(_add, "event")
 
     def wait(self, timeout: int) -> None:
         """Wait until something is ready, or for `timeout` ns; without a limit if it is negative."""
@@ -123,7 +108,7 @@ class WaitSet(Destroyable):
     def found_ready(self, entity: Any) -> bool:
         """Return whether the last wait found this very thing ready."""
         return any(
-            ready and one is entity
+            ready and waited is entity
             for kind in KINDS
-            for one, ready in zip(self._entities[kind], self._ready[kind], strict=False)
+            for waited, ready in zip(self._entities[kind], self._ready[kind], strict=False)
         )
