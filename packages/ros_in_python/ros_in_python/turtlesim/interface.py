@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any
 
+from geometry_msgs.msg import Twist
 from rclpy.action.server import ActionServer, CancelResponse, GoalResponse
 from rclpy.node import Node
 from rclpy.task import Future
+from std_srvs.srv import Empty
 
 from ros_in_python.turtlesim.events import (
     ColorReport,
@@ -18,6 +21,7 @@ from ros_in_python.turtlesim.events import (
     PoseReport,
     RotationEnded,
     RotationFeedback,
+    TurtleKilled,
     TurtleSpawned,
 )
 from ros_in_python.turtlesim.messages import (
@@ -32,47 +36,19 @@ from ros_in_python.turtlesim.messages import (
 )
 from ros_in_python.turtlesim.world import TurtleWorld
 
-# No message type is imported here: whatever has the fields will do.
-
-
-Message = TypeVar("Message", bound=Any)
-
-
-def fill_pose(message: Message, pose: PoseReport) -> Message:
-    """Fill a turtlesim/msg/Pose."""
-    message.x, message.y, message.theta = pose.x, pose.y, pose.theta
-    message.linear_velocity, message.angular_velocity = pose.linear_velocity, pose.angular_velocity
-    return message
-
-
-def fill_color(message: Message, color: ColorReport) -> Message:
-    """Fill a turtlesim/msg/Color."""
-    message.r, message.g, message.b = color.r, color.g, color.b
-    return message
-
-
-def spawn(world: TurtleWorld, request: Any) -> list[Event]:
-    """Spawn a turtle; `request` has the fields of turtlesim/srv/Spawn."""
-    return world.spawn(request.x, request.y, request.theta, request.name)
-
-
-def set_pen(world: TurtleWorld, turtle: str, request: Any) -> list[Event]:
-    """Set a pen; `request` has the fields of turtlesim/srv/SetPen."""
-    return world.set_pen(turtle, request.r, request.g, request.b, request.width, request.off)
-
-
-def teleport_absolute(world: TurtleWorld, turtle: str, request: Any) -> list[Event]:
-    """Teleport a turtle; `request` has the fields of turtlesim/srv/TeleportAbsolute."""
-    return world.teleport_absolute(turtle, request.x, request.y, request.theta)
-
-
-def teleport_relative(world: TurtleWorld, turtle: str, request: Any) -> list[Event]:
-    """Teleport a turtle; `request` has the fields of turtlesim/srv/TeleportRelative."""
-    return world.teleport_relative(turtle, request.linear, request.angular)
-
-
 #: Depth of every queue, as in turtlesim.
 DEPTH = 7
+
+
+@dataclass(frozen=True)
+class TurtleEndpoints:
+    """The topics, services and the action of one turtle."""
+
+    pose: Any
+    color: Any
+    command: Any
+    services: tuple[Any, ...]
+    rotation: ActionServer
 
 
 class Interface:
@@ -85,31 +61,47 @@ class Interface:
         self._node = node
         self._world = world
         self._perform = perform
-        self._poses: dict[str, Any] = {}
-        self._colors: dict[str, Any] = {}
-        self._services: dict[str, list[Any]] = {}
-        self._actions: dict[str, ActionServer] = {}
+        self._turtles: dict[str, TurtleEndpoints] = {}
         #: Goals that are under way, and what their clients wait for, by the number they have in the world.
         self._goals: dict[int, tuple[Any, Future]] = {}
         self._accepted = 0
         node.create_service(Spawn, "spawn", self._spawn)
-        node.create_service(Kill, "kill", self._kill)
+        self._serve(Kill, "kill", lambda request: world.kill(request.name))
+        self._serve(Empty, "clear", lambda _: world.clear())
+        self._serve(Empty, "reset", lambda _: world.reset())
 
-    def add(self, turtle: str) -> None:
-        """Open the topics, services and the action of a turtle."""
-        node = self._node
-        self._poses[turtle] = node.create_publisher(Pose, f"{turtle}/pose", DEPTH)
-        self._colors[turtle] = node.create_publisher(Color, f"{turtle}/color_sensor", DEPTH)
-        requests: list[tuple[str, type, Callable[[TurtleWorld, str, Any], list[Event]]]] = [
-            ("set_pen", SetPen, set_pen),
-            ("teleport_absolute", TeleportAbsolute, teleport_absolute),
-            ("teleport_relative", TeleportRelative, teleport_relative),
-        ]
-        self._services[turtle] = [
-            node.create_service(kind, f"{turtle}/{name}", partial(self._answer, act, turtle))
-            for name, kind, act in requests
-        ]
-        self._actions[turtle] = ActionServer(
+    def publish(self, event: Event) -> None:
+        """Publish what has happened; a turtle's topics, services and action come and go with it."""
+        if isinstance(event, TurtleSpawned):
+            self._turtles[event.turtle] = self._open(event.turtle)
+        elif isinstance(event, TurtleKilled):
+            self._close(self._turtles.pop(event.turtle))
+        elif isinstance(event, PoseReport):
+            self._turtles[event.turtle].pose.publish(Pose(**_without_turtle(event)))
+        elif isinstance(event, ColorReport):
+            self._turtles[event.turtle].color.publish(Color(**_without_turtle(event)))
+        elif isinstance(event, RotationFeedback):
+            goal, _ = self._goals[event.goal]
+            goal.publish_feedback(RotateAbsolute.Feedback(remaining=event.remaining))
+        elif isinstance(event, RotationEnded):
+            self._end(event)
+
+    def _open(self, turtle: str) -> TurtleEndpoints:
+        node, world = self._node, self._world
+        services = (
+            self._serve(SetPen, f"{turtle}/set_pen", lambda r: world.set_pen(turtle, r.r, r.g, r.b, r.width, r.off)),
+            self._serve(
+                TeleportAbsolute,
+                f"{turtle}/teleport_absolute",
+                lambda request: world.teleport_absolute(turtle, request.x, request.y, request.theta),
+            ),
+            self._serve(
+                TeleportRelative,
+                f"{turtle}/teleport_relative",
+                lambda request: world.teleport_relative(turtle, request.linear, request.angular),
+            ),
+        )
+        rotation = ActionServer(
             node,
             RotateAbsolute,
             f"{turtle}/rotate_absolute",
@@ -119,42 +111,41 @@ class Interface:
             handle_accepted_callback=partial(self._begin, turtle),
             cancel_callback=partial(self._cancel, turtle),
         )
+        return TurtleEndpoints(
+            node.create_publisher(Pose, f"{turtle}/pose", DEPTH),
+            node.create_publisher(Color, f"{turtle}/color_sensor", DEPTH),
+            node.create_subscription(Twist, f"{turtle}/cmd_vel", partial(self._command, turtle), DEPTH),
+            services,
+            rotation,
+        )
 
-    def remove(self, turtle: str) -> None:
-        """Close the topics, services and the action of a turtle."""
-        self._node.destroy_publisher(self._poses.pop(turtle))
-        self._node.destroy_publisher(self._colors.pop(turtle))
-        for service in self._services.pop(turtle):
+    def _close(self, ends: TurtleEndpoints) -> None:
+        self._node.destroy_publisher(ends.pose)
+        self._node.destroy_publisher(ends.color)
+        self._node.destroy_subscription(ends.command)
+        for service in ends.services:
             self._node.destroy_service(service)
-        self._actions.pop(turtle).destroy()
+        ends.rotation.destroy()
 
-    def publish(self, event: Event) -> None:
-        """Publish what has happened."""
-        if isinstance(event, PoseReport):
-            self._poses[event.turtle].publish(fill_pose(Pose(), event))
-        elif isinstance(event, ColorReport):
-            self._colors[event.turtle].publish(fill_color(Color(), event))
-        elif isinstance(event, RotationFeedback):
-            goal, _ = self._goals[event.goal]
-            goal.publish_feedback(RotateAbsolute.Feedback(remaining=event.remaining))
-        elif isinstance(event, RotationEnded):
-            self._end(event)
+    def _serve(self, kind: Any, name: str, act: Callable[[Any], list[Event]]) -> Any:
+        """Offer a service whose requests `act` passes to the world, and whose answer is empty."""
+
+        def answer(request: Any, response: Any) -> Any:
+            self._perform(act(request))
+            return response
+
+        return self._node.create_service(kind, name, answer)
 
     def _spawn(self, request: Spawn.Request, response: Spawn.Response) -> Spawn.Response:
-        events = spawn(self._world, request)
+        events = self._world.spawn(request.x, request.y, request.theta, request.name)
         self._perform(events)
         response.name = next((event.turtle for event in events if isinstance(event, TurtleSpawned)), "")
         return response
 
-    def _kill(self, request: Kill.Request, response: Kill.Response) -> Kill.Response:
-        self._perform(self._world.kill(request.name))
-        return response
-
-    def _answer(
-        self, act: Callable[[TurtleWorld, str, Any], list[Event]], turtle: str, request: Any, response: Any
-    ) -> Any:
-        self._perform(act(self._world, turtle, request))
-        return response
+    def _command(self, turtle: str, twist: Twist) -> None:
+        left = twist.linear.y if self._node.get_parameter("holonomic").value else None
+        now_ns = self._node.get_clock().now().nanoseconds
+        self._perform(self._world.command(turtle, twist.linear.x, left, twist.angular.z, now_ns))
 
     def _begin(self, turtle: str, goal: Any) -> None:
         """Begin an accepted goal: from the next tick on, the world turns the turtle."""
@@ -175,6 +166,11 @@ class Interface:
         if number is not None:
             self._world.cancel_rotation(turtle, number)
         return CancelResponse.ACCEPT
+
+
+def _without_turtle(report: PoseReport | ColorReport) -> dict[str, Any]:
+    """Return a report's fields as those of its message, which does not say whose it is."""
+    return {name: value for name, value in vars(report).items() if name != "turtle"}
 
 
 async def _wait_for(ended: Future, _: Any) -> RotateAbsolute.Result:

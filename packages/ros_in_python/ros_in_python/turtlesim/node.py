@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import sys
 
-from geometry_msgs.msg import Twist
 from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
 from rclpy.clock import ROSClock
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
-from rclpy.subscription import Subscription
-from std_srvs.srv import Empty, Trigger
+from std_srvs.srv import Trigger
 
 from ros_in_python.spinning import spin_until_stopped
-from ros_in_python.turtlesim.events import TICK_NS, Event, LogLevel, LogLine, TurtleKilled, TurtleSpawned
-from ros_in_python.turtlesim.interface import DEPTH, Interface
+from ros_in_python.turtlesim.events import TICK_NS, Event, LogLevel, LogLine
+from ros_in_python.turtlesim.interface import Interface
 from ros_in_python.turtlesim.world import TurtleWorld
 from ros_in_python.turtlesim.world_picture import BLUE, picture_of
 
@@ -57,10 +55,7 @@ class Turtlesim:
         self._declare_parameters()
         self._world = TurtleWorld()
         self._pacing = Pacing()
-        self._commands: dict[str, Subscription] = {}
         self._interface = Interface(self.node, self._world, self._perform)
-        self.node.create_service(Empty, "clear", self._clear)
-        self.node.create_service(Empty, "reset", self._reset)
         self.node.create_service(Trigger, "~/picture", self._picture)
         self.node.get_logger().info(f"Starting turtlesim with node name {self.node.get_fully_qualified_name()}")
         self._perform(self._world.start())
@@ -80,11 +75,6 @@ class Turtlesim:
         for event in events:
             if isinstance(event, LogLine):
                 self._log(event)
-            elif isinstance(event, TurtleSpawned):
-                self._add(event.turtle)
-            elif isinstance(event, TurtleKilled):
-                self.node.destroy_subscription(self._commands.pop(event.turtle))
-                self._interface.remove(event.turtle)
             else:
                 self._interface.publish(event)
 
@@ -96,23 +86,6 @@ class Turtlesim:
             self.node.get_logger().warning(line.text)
         else:
             self.node.get_logger().error(line.text)
-
-    def _add(self, turtle: str) -> None:
-        def command(twist: Twist) -> None:
-            left = twist.linear.y if self.node.get_parameter("holonomic").value else None
-            now_ns = self.node.get_clock().now().nanoseconds
-            self._perform(self._world.command(turtle, twist.linear.x, left, twist.angular.z, now_ns))
-
-        self._commands[turtle] = self.node.create_subscription(Twist, f"{turtle}/cmd_vel", command, DEPTH)
-        self._interface.add(turtle)
-
-    def _clear(self, _: Empty.Request, response: Empty.Response) -> Empty.Response:
-        self._perform(self._world.clear())
-        return response
-
-    def _reset(self, _: Empty.Request, response: Empty.Response) -> Empty.Response:
-        self._perform(self._world.reset())
-        return response
 
     def _picture(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         r, g, b = (self.node.get_parameter(f"background_{part}").value for part in "rgb")
