@@ -9,8 +9,9 @@ import click
 
 from ros_in_python.ros2 import interfaces
 from ros_in_python.ros2.cli import CommandError, Menu, StopSignal, held_back, show_names, stdin_option
-from ros_in_python.ros2.names import absolute, seen
+from ros_in_python.ros2.names import absolute
 from ros_in_python.ros2.opening import with_graph
+from ros_in_python.ros2.typed_names import existing, show, show_types_option
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
@@ -30,10 +31,10 @@ CANCELLING = 2.0
 
 
 @action.command(name="list")
-@click.option("-t", "--show-types", is_flag=True, help="Show each action's type too.")
-@click.option("-c", "--count-actions", is_flag=True, help="Print only the number.")
+@show_types_option
+@click.option("-c", "--count-actions", "only_count", is_flag=True, help="Print only the number.")
 @with_graph
-def list_(graph: GraphView, show_types: bool, count_actions: bool) -> None:
+def list_(graph: GraphView, show_types: bool, only_count: bool) -> None:
     """All actions.
 
     \b
@@ -41,8 +42,7 @@ def list_(graph: GraphView, show_types: bool, count_actions: bool) -> None:
       /fibonacci [test_msgs/action/Fibonacci]
     """
     graph.settle()
-    actions = graph.actions()
-    show_names([str(found) if show_types else found.name for found in actions], count_actions)
+    show(graph.actions(), show_types=show_types, only_count=only_count)
 
 
 @action.command(name="type")
@@ -54,13 +54,7 @@ def type_(graph: GraphView, action_name: str) -> None:
     \b
       ros2 action type /fibonacci
     """
-    name = absolute(action_name, "action")
-    graph.settle(lambda: any(found.name == name for found in graph.actions()))
-    actions = graph.actions()
-    types = [kind for found in actions if found.name == name for kind in found.types]
-    if not types:
-        raise CommandError(f"Unknown action '{action_name}'", seen("Actions", (found.name for found in actions)))
-    show_names(types, only_count=False)
+    show_names(existing(graph, graph.actions, "action", action_name).types, only_count=False)
 
 
 @action.command()
@@ -77,7 +71,7 @@ def info(graph: GraphView, action_name: str, show_types: bool, count: bool) -> N
     from rclpy.action import get_action_client_names_and_types_by_node, get_action_server_names_and_types_by_node
 
     name = absolute(action_name, "action")
-    graph.settle(lambda: any(found.name == name for found in graph.actions()))
+    graph.settle(lambda: any(each.name == name for each in graph.actions()))
     ends = {
         "clients": _nodes_with(graph, name, get_action_client_names_and_types_by_node),
         "servers": _nodes_with(graph, name, get_action_server_names_and_types_by_node),
@@ -179,7 +173,7 @@ def _wait_for_server(graph: GraphView, client: Any, name: str, type_name: str) -
     def ready_or_never() -> bool:
         if client.server_is_ready():
             return True
-        others = [kind for found in graph.actions() if found.name == name for kind in found.types if kind != type_name]
+        others = [kind for each in graph.actions() if each.name == name for kind in each.types if kind != type_name]
         if others:
             raise CommandError(f"The action '{name}' is of type {' or '.join(others)}, not {type_name}.")
         return False
@@ -217,10 +211,9 @@ def _status(number: int) -> str:
 
 def _nodes_with(graph: GraphView, action_name: str, ask: Any) -> list[tuple[str, list[str]]]:
     """Return the nodes that have an end of an action, with its types, as `ask` finds them."""
-    found = [
+    return sorted(
         (node.full_name, types)
         for node in graph.nodes()
         for name, types in ask(graph.node, node.name, node.namespace)
         if name == action_name
-    ]
-    return sorted(found)
+    )

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ros_in_python.ros2.cli import CommandError, Menu, show_names
-from ros_in_python.ros2.names import absolute_node, seen
 from ros_in_python.ros2.opening import with_graph
+from ros_in_python.ros2.typed_names import existing_node
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
@@ -58,7 +58,7 @@ def get(graph: GraphView, node_name: str | None, include_hidden_nodes: bool) -> 
       unconfigured [1]
     """
     if node_name is not None:
-        click.echo(_state(graph, _found(graph, node_name, include_hidden_nodes)))
+        click.echo(_state(graph, _existing(graph, node_name, include_hidden_nodes)))
         return
     graph.settle()
     for name in _nodes(graph, include_hidden_nodes):
@@ -76,11 +76,11 @@ def list_(graph: GraphView, node_name: str, all_transitions: bool, include_hidde
     \b
       ros2 lifecycle list /camera
     """
-    name = _found(graph, node_name, include_hidden_nodes)
+    name = _existing(graph, node_name, include_hidden_nodes)
     service = "get_transition_graph" if all_transitions else "get_available_transitions"
-    found = call(graph, name, "GetAvailableTransitions", service).available_transitions
-    for one in found:
-        click.echo(f"- {_named(one.transition)}\n\tStart: {one.start_state.label}\n\tGoal: {one.goal_state.label}")
+    for offered in call(graph, name, "GetAvailableTransitions", service).available_transitions:
+        start, goal = offered.start_state.label, offered.goal_state.label
+        click.echo(f"- {_named(offered.transition)}\n\tStart: {start}\n\tGoal: {goal}")
 
 
 @lifecycle.command(name="set")
@@ -94,13 +94,13 @@ def set_(graph: GraphView, node_name: str, transition: str, include_hidden_nodes
     \b
       ros2 lifecycle set /camera configure
     """
-    name = _found(graph, node_name, include_hidden_nodes)
+    name = _existing(graph, node_name, include_hidden_nodes)
     possible = call(graph, name, "GetAvailableTransitions", "get_available_transitions").available_transitions
-    chosen = [one.transition for one in possible if transition in (one.transition.label, str(one.transition.id))]
+    chosen = [each.transition for each in possible if transition in (each.transition.label, str(each.transition.id))]
     if not chosen:
         raise CommandError(
             "Unknown transition requested, available ones are:",
-            *(f"- {_named(one.transition)}" for one in possible),
+            *(f"- {_named(each.transition)}" for each in possible),
             f"The node is {_state(graph, name)}.",
         )
     result = call(graph, name, "ChangeState", "change_state", transition=chosen[0])
@@ -114,14 +114,8 @@ def _nodes(graph: GraphView, include_hidden: bool) -> list[str]:
     return sorted(named.intersection(graph.node_names(include_hidden)))
 
 
-def _found(graph: GraphView, node_name: str, include_hidden: bool) -> str:
-    """Return the full name of a node with a life cycle. Raises `CommandError`, with those that there are."""
-    full = absolute_node(node_name)
-    graph.settle(lambda: full in _nodes(graph, include_hidden))
-    there = _nodes(graph, include_hidden)
-    if full not in there:
-        raise CommandError("Node not found", seen("Nodes with a life cycle", there))
-    return full
+def _existing(graph: GraphView, node_name: str, include_hidden: bool) -> str:
+    return existing_node(graph, lambda: _nodes(graph, include_hidden), node_name, "Nodes with a life cycle")
 
 
 def call(graph: GraphView, node: str, kind: str, service: str, **fields: Any) -> Any:

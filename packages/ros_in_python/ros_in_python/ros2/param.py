@@ -12,8 +12,8 @@ import click
 import yaml
 
 from ros_in_python.ros2.cli import CommandError, F, Menu
-from ros_in_python.ros2.names import absolute_node, seen
 from ros_in_python.ros2.opening import with_graph
+from ros_in_python.ros2.typed_names import existing_node
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
@@ -22,29 +22,19 @@ if TYPE_CHECKING:
 #: Time limit for a node's parameter services to appear, and then to answer, in seconds.
 READY, ANSWER = 5.0, 10.0
 
-# By rcl_interfaces/msg/ParameterType: the type's name in `describe`, how `get` begins its line, and its field.
+# By rcl_interfaces/msg/ParameterType: the type's name in `describe`, and how `get` begins its line.
 _TYPES = {
-    0: ("not set", "Parameter not set.", ""),
-    1: ("boolean", "Boolean value is:", "bool_value"),
-    2: ("integer", "Integer value is:", "integer_value"),
-    3: ("double", "Double value is:", "double_value"),
-    4: ("string", "String value is:", "string_value"),
-    5: ("byte array", "Byte values are:", "byte_array_value"),
-    6: ("boolean array", "Boolean values are:", "bool_array_value"),
-    7: ("integer array", "Integer values are:", "integer_array_value"),
-    8: ("double array", "Double values are:", "double_array_value"),
-    9: ("string array", "String values are:", "string_array_value"),
+    0: ("not set", "Parameter not set."),
+    1: ("boolean", "Boolean value is:"),
+    2: ("integer", "Integer value is:"),
+    3: ("double", "Double value is:"),
+    4: ("string", "String value is:"),
+    5: ("byte array", "Byte values are:"),
+    6: ("boolean array", "Boolean values are:"),
+    7: ("integer array", "Integer values are:"),
+    8: ("double array", "Double values are:"),
+    9: ("string array", "String values are:"),
 }
-
-
-def find_node(graph: GraphView, node_name: str, include_hidden: bool) -> str:
-    """Return the full name of a running node. Raises `CommandError`, with those that run, if it does not run."""
-    full = absolute_node(node_name)
-
-    graph.settle(lambda: full in graph.node_names(include_hidden))
-    if full not in (names := graph.node_names(include_hidden)):
-        raise CommandError("Node not found", seen("Nodes", names))
-    return full
 
 
 def client_of(graph: GraphView, name: str) -> Any:
@@ -91,7 +81,7 @@ def parameters_of_file(file: Path, node: str, *, use_wildcard: bool) -> list[Any
     from rclpy.parameter import parameter_dict_from_yaml_file
 
     try:
-        found = parameter_dict_from_yaml_file(str(file), use_wildcard, target_nodes=[node])
+        parameters = parameter_dict_from_yaml_file(str(file), use_wildcard, target_nodes=[node])
     except OSError as error:
         raise CommandError(f"{file}: {error.strerror}") from None
     except yaml.YAMLError as error:
@@ -101,13 +91,7 @@ def parameters_of_file(file: Path, node: str, *, use_wildcard: bool) -> list[Any
             f"{file} has no parameters for {node}: {error}",
             f"It needs the node's name, then ros__parameters, then the parameters: {node}: {{ros__parameters: {{…}}}}",
         ) from None
-    return list(found.values())
-
-
-def value_of(value: Any) -> Any:
-    """Return the value of a rcl_interfaces/msg/ParameterValue; None if it is not set."""
-    field = _TYPES.get(value.type, _TYPES[0])[2]
-    return getattr(value, field) if field else None
+    return list(parameters.values())
 
 
 param = Menu(
@@ -123,13 +107,17 @@ param = Menu(
 _hidden_nodes = click.option("-a", "--include-hidden-nodes", is_flag=True, help="Hidden nodes too.")
 
 
+def _existing(graph: GraphView, node_name: str, include_hidden: bool) -> str:
+    return existing_node(graph, lambda: graph.node_names(include_hidden), node_name)
+
+
 def _of_a_node(command: F) -> F:
     """Give a command the graph, and the full name and a client of the node that is its argument `node_name`."""
 
     @functools.wraps(command)
-    def run(graph: GraphView, node_name: str, include_hidden_nodes: bool, **given: Any) -> Any:
-        name = find_node(graph, node_name, include_hidden_nodes)
-        return command(graph, name, client_of(graph, name), **given)
+    def run(graph: GraphView, node_name: str, include_hidden_nodes: bool, **named: Any) -> Any:
+        name = _existing(graph, node_name, include_hidden_nodes)
+        return command(graph, name, client_of(graph, name), **named)
 
     return cast("F", _hidden_nodes(with_graph(run)))
 
@@ -160,7 +148,7 @@ def list_(
         graph.settle()
         names = sorted(set(graph.node_names(include_hidden_nodes)))
     else:
-        names = [find_node(graph, node_name, include_hidden_nodes)]
+        names = [_existing(graph, node_name, include_hidden_nodes)]
     for name in names:
         try:
             client = client_of(graph, name)
@@ -190,12 +178,12 @@ def get(graph: GraphView, name: str, client: Any, parameter_name: str, hide_type
       ros2 param get /joint_state_monitor use_sim_time
       Boolean value is: False
     """
+    from rclpy.parameter import parameter_value_to_python
+
     values = answer(graph, name, client.get_parameters([parameter_name])).values
     if not values:
         raise CommandError("Parameter not set", _parameters_of(graph, name, client))
-    kind = values[0].type
-    label = _TYPES[kind][1] if kind in _TYPES else f"Unknown parameter type '{kind}'"
-    value = _plain(value_of(values[0]))
+    label, value = _TYPES[values[0].type][1], parameter_value_to_python(values[0])
     if hide_type:
         click.echo(str(value))
     else:
@@ -268,6 +256,8 @@ def dump(graph: GraphView, name: str, client: Any) -> None:
     \b
       ros2 param dump /joint_state_monitor > monitor.yaml
     """
+    from rclpy.parameter import parameter_value_to_python
+
     names = sorted(answer(graph, name, client.list_parameters()).result.names)
     values = answer(graph, name, client.get_parameters(names)).values if names else []
     tree: dict[str, Any] = {}
@@ -276,7 +266,7 @@ def dump(graph: GraphView, name: str, client: Any) -> None:
         branch = tree
         for step in branches:
             branch = branch.setdefault(step, {})
-        branch[leaf] = _plain(value_of(value))
+        branch[leaf] = parameter_value_to_python(value)
     click.echo(yaml.dump({name: {"ros__parameters": tree}}, default_flow_style=False))
 
 
@@ -336,10 +326,6 @@ def _description(descriptor: Any) -> list[str]:
     if descriptor.additional_constraints:
         lines.append(f"    Additional constraints: {descriptor.additional_constraints}")
     return lines
-
-
-def _plain(value: Any) -> Any:
-    return value if isinstance(value, (bool, int, float, str, type(None))) else list(value)
 
 
 def _with_reason(text: str, reason: str) -> str:

@@ -3,98 +3,90 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeVar
+import functools
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from ros_in_python.ros2.cli import CommandError
+from ros_in_python.ros2.cli import CommandError, F
 
 if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
 
     from ros_in_python.ros2.graph import GraphView
 
-F = TypeVar("F", bound=Callable[..., Any])
+_PREFIX = "qos_"
 
 
 @dataclass(frozen=True)
 class QosOptions:
-    """The QoS options of one call, as typed; None where they were not."""
+    """The QoS options of one call: a profile's name, and the policies that were typed, by rclpy's names."""
 
     profile: str
-    depth: int | None = None
-    history: str | None = None
-    reliability: str | None = None
-    durability: str | None = None
-    liveliness: str | None = None
-    liveliness_lease_duration_seconds: float | None = None
-
-    @property
-    def anything(self) -> bool:
-        """Whether a policy was given, so that none is chosen automatically."""
-        return any(value is not None for name, value in vars(self).items() if name != "profile")
+    policies: Mapping[str, Any] = field(default_factory=dict)
 
 
 def qos_options(default_profile: str) -> Callable[[F], F]:
-    """Add the seven `--qos-…` options. The function gets each by name; `asked` collects them."""
+    """Add the seven `--qos-…` options. The function gets `qos`, a `QosOptions`."""
 
     def add(command: F) -> F:
-        options = [
-            ("--qos-profile", {"default": default_profile, "show_default": True, "metavar": "NAME"}),
-            ("--qos-depth", {"type": click.IntRange(min=0), "metavar": "N", "help": "Queue size."}),
-            ("--qos-history", {"metavar": "POLICY", "help": "keep_last or keep_all."}),
-            ("--qos-reliability", {"metavar": "POLICY", "help": "reliable or best_effort."}),
-            ("--qos-durability", {"metavar": "POLICY", "help": "volatile or transient_local."}),
-            ("--qos-liveliness", {"metavar": "POLICY", "help": "automatic or manual_by_topic."}),
-            ("--qos-liveliness-lease-duration-seconds", {"type": float, "metavar": "N"}),
-        ]
-        for name, attributes in reversed(options):
-            command = click.option(name, **attributes)(command)  # type: ignore[arg-type]
-        return command
+        @click.option("--qos-profile", default=default_profile, show_default=True, metavar="NAME")
+        @click.option("--qos-depth", type=click.IntRange(min=0), metavar="N", help="Queue size.")
+        @click.option("--qos-history", metavar="POLICY", help="keep_last or keep_all.")
+        @click.option("--qos-reliability", metavar="POLICY", help="reliable or best_effort.")
+        @click.option("--qos-durability", metavar="POLICY", help="volatile or transient_local.")
+        @click.option("--qos-liveliness", metavar="POLICY", help="automatic or manual_by_topic.")
+        @click.option(
+            "--qos-liveliness-lease-duration-seconds", "qos_liveliness_lease_duration", type=float, metavar="N"
+        )
+        @functools.wraps(command)
+        def run(*arguments: Any, qos_profile: str, **named: Any) -> Any:
+            typed = {name: named.pop(name) for name in list(named) if name.startswith(_PREFIX)}
+            policies = {name.removeprefix(_PREFIX): value for name, value in typed.items() if value is not None}
+            return command(*arguments, qos=QosOptions(qos_profile, policies), **named)
+
+        return cast("F", run)
 
     return add
 
 
-def asked(options: dict[str, Any]) -> QosOptions:
-    """Take the `qos_…` entries out of a function's options."""
-    mine = {name: options.pop(name) for name in list(options) if name.startswith("qos_")}
-    return QosOptions(**{name.removeprefix("qos_"): value for name, value in mine.items()})
-
-
-def profile(asked: QosOptions) -> QoSProfile:
+def profile(options: QosOptions) -> QoSProfile:
     """Return the profile with the chosen policies. Raises `CommandError` for an unknown name."""
-    from rclpy.duration import Duration
-    from rclpy.qos import (
-        DurabilityPolicy,
-        HistoryPolicy,
-        LivelinessPolicy,
-        QoSPresetProfiles,
-        ReliabilityPolicy,
-    )
+    from rclpy.qos import QoSPresetProfiles
 
-    if asked.profile.lower() not in QoSPresetProfiles.short_keys():
-        raise CommandError(
-            f"There is no QoS profile '{asked.profile}'.", f"There is: {', '.join(QoSPresetProfiles.short_keys())}."
-        )
-    chosen: QoSProfile = copy.copy(QoSPresetProfiles.get_from_short_key(asked.profile))
-    if asked.depth is not None:
-        chosen.depth = asked.depth
-    if asked.history is not None:
-        chosen.history = _policy(HistoryPolicy, asked.history)
-    if asked.reliability is not None:
-        chosen.reliability = _policy(ReliabilityPolicy, asked.reliability)
-    if asked.durability is not None:
-        chosen.durability = _policy(DurabilityPolicy, asked.durability)
-    if asked.liveliness is not None:
-        chosen.liveliness = _policy(LivelinessPolicy, asked.liveliness)
-    if asked.liveliness_lease_duration_seconds is not None:
-        chosen.liveliness_lease_duration = Duration(seconds=asked.liveliness_lease_duration_seconds)
+    names = QoSPresetProfiles.short_keys()
+    if options.profile.lower() not in names:
+        raise CommandError(f"There is no QoS profile '{options.profile}'.", f"There is: {', '.join(names)}.")
+    chosen: QoSProfile = copy.copy(QoSPresetProfiles.get_from_short_key(options.profile))
+    for policy, typed in options.policies.items():
+        setattr(chosen, policy, _value(policy, typed))
     return chosen
 
 
-def suiting(graph: GraphView, topic: str, asked: QosOptions) -> QoSProfile:
+def _value(policy: str, typed: Any) -> Any:
+    """Return what was typed for a policy as rclpy has it."""
+    from rclpy.duration import Duration
+    from rclpy.qos import DurabilityPolicy, HistoryPolicy, LivelinessPolicy, ReliabilityPolicy
+
+    if policy == "depth":
+        return typed
+    if policy == "liveliness_lease_duration":
+        return Duration(seconds=typed)
+    kinds: dict[str, Any] = {
+        "history": HistoryPolicy,
+        "reliability": ReliabilityPolicy,
+        "durability": DurabilityPolicy,
+        "liveliness": LivelinessPolicy,
+    }
+    kind = kinds[policy]
+    if typed.lower() not in kind.short_keys():
+        raise CommandError(f"There is no QoS policy '{typed}'.", f"There is: {', '.join(kind.short_keys())}.")
+    return kind.get_from_short_key(typed)
+
+
+def suiting(graph: GraphView, topic: str, options: QosOptions) -> QoSProfile:
     """Return the profile for a subscription that matches every publisher on `topic`.
 
     Reliable and transient local if all publishers are; otherwise what connects to all, which is then said. What was
@@ -102,9 +94,9 @@ def suiting(graph: GraphView, topic: str, asked: QosOptions) -> QoSProfile:
     """
     from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
-    chosen = profile(asked)
+    chosen = profile(options)
     offered = [end.qos_profile for end in graph.publishers(topic)]
-    if asked.anything or not offered:
+    if options.policies or not offered:
         return chosen
     chosen.reliability = _common(
         [offer.reliability for offer in offered], ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT
@@ -127,9 +119,3 @@ def _common(offered: list[Any], stronger: Any, weaker: Any) -> Any:
             flush=True,
         )
     return weaker
-
-
-def _policy(kind: Any, name: str) -> Any:
-    if name.lower() not in kind.short_keys():
-        raise CommandError(f"There is no QoS policy '{name}'.", f"There is: {', '.join(kind.short_keys())}.")
-    return kind.get_from_short_key(name)

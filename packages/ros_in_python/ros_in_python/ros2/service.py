@@ -11,12 +11,13 @@ import click
 
 from ros_in_python.ros2 import interfaces
 from ros_in_python.ros2.cli import CommandError, Menu, show_names, stdin_option
-from ros_in_python.ros2.names import absolute, seen
+from ros_in_python.ros2.names import absolute
 from ros_in_python.ros2.opening import with_graph
 from ros_in_python.ros2.topic.selection import reading_options
+from ros_in_python.ros2.typed_names import existing, listing_options, show, show_of_type, show_types_option
 
 if TYPE_CHECKING:
-    from ros_in_python.ros2.graph import GraphView, TypedName
+    from ros_in_python.ros2.graph import GraphView
 
 service = Menu(
     name="service",
@@ -30,19 +31,17 @@ service = Menu(
 
 
 @service.command(name="list")
-@click.option("-t", "--show-types", is_flag=True, help="Show each service's type too.")
-@click.option("-c", "--count-services", is_flag=True, help="Print only the number.")
-@click.option("-a", "--include-hidden-services", is_flag=True, help="Hidden ones too.")
+@show_types_option
+@listing_options("service")
 @with_graph
-def list_(graph: GraphView, show_types: bool, count_services: bool, include_hidden_services: bool) -> None:
+def list_(graph: GraphView, show_types: bool, only_count: bool, include_hidden: bool) -> None:
     """All services.
 
     \b
       ros2 service list -t
     """
     graph.settle()
-    services = _visible(graph, include_hidden_services)
-    show_names([str(found) if show_types else found.name for found in services], count_services)
+    show(graph.services(), show_types=show_types, only_count=only_count, include_hidden=include_hidden)
 
 
 @service.command(name="type")
@@ -54,25 +53,20 @@ def type_(graph: GraphView, service_name: str) -> None:
     \b
       ros2 service type /joint_monitor/get_parameters
     """
-    found = _wanted(graph, service_name)
-    show_names(found.types, only_count=False)
+    show_names(existing(graph, graph.services, "service", service_name).types, only_count=False)
 
 
 @service.command()
 @click.argument("service_type")
-@click.option("-c", "--count-services", is_flag=True, help="Print only the number.")
-@click.option("-a", "--include-hidden-services", is_flag=True, help="Hidden ones too.")
+@listing_options("service")
 @with_graph
-def find(graph: GraphView, service_type: str, count_services: bool, include_hidden_services: bool) -> None:
+def find(graph: GraphView, service_type: str, only_count: bool, include_hidden: bool) -> None:
     """The services of a type.
 
     \b
       ros2 service find std_srvs/srv/Trigger
     """
-    type_name = interfaces.full_name(service_type, "srv")
-    graph.settle(lambda: any(type_name in found.types for found in graph.services()))
-    names = [found.name for found in _visible(graph, include_hidden_services) if type_name in found.types]
-    show_names(names, count_services)
+    show_of_type(graph, graph.services, interfaces.full_name(service_type, "srv"), only_count, include_hidden)
 
 
 @service.command()
@@ -84,9 +78,9 @@ def info(graph: GraphView, service_name: str) -> None:
     \b
       ros2 service info /stand_up
     """
-    found = _wanted(graph, service_name)
-    clients, servers = graph.node.count_clients(found.name), graph.node.count_services(found.name)
-    click.echo(f"Type: {found.types[0] if len(found.types) == 1 else list(found.types)}")
+    about = existing(graph, graph.services, "service", service_name)
+    clients, servers = graph.node.count_clients(about.name), graph.node.count_services(about.name)
+    click.echo(f"Type: {about.types[0] if len(about.types) == 1 else list(about.types)}")
     click.echo(f"Clients count: {clients}")
     click.echo(f"Services count: {servers}")
 
@@ -142,7 +136,7 @@ def _wait_until_ready(graph: GraphView, client: Any, name: str, type_name: str) 
             print(f"There is no service '{name}' yet. Did you mean {alike}? Ctrl-C ends the wait.", file=sys.stderr)
 
     def ready_or_never() -> bool:
-        types = next((found.types for found in graph.services() if found.name == name), (type_name,))
+        types = next((each.types for each in graph.services() if each.name == name), (type_name,))
         # The client of this call is in the graph with its own type.
         others = [kind for kind in types if kind != type_name]
         if others and not client.service_is_ready() and graph.node.count_services(name):
@@ -160,24 +154,8 @@ def _wait_until_ready(graph: GraphView, client: Any, name: str, type_name: str) 
 
 def _alike(graph: GraphView, name: str) -> str:
     """Return the services whose names are similar to `name`, joined by 'or'; empty if there are none."""
-    names = [found.name for found in graph.services() if found.name != name]
+    names = [other.name for other in graph.services() if other.name != name]
     return " or ".join(difflib.get_close_matches(name, names, n=2, cutoff=0.75))
-
-
-def _visible(graph: GraphView, include_hidden: bool) -> list[TypedName]:
-    return [found for found in graph.services() if include_hidden or not found.hidden]
-
-
-def _wanted(graph: GraphView, service_name: str) -> TypedName:
-    """Return the service of this name. Raises `CommandError`, with those that there are, if it does not exist."""
-    name = absolute(service_name, "service")
-    graph.settle(lambda: any(found.name == name for found in graph.services()))
-    for found in graph.services():
-        if found.name == name:
-            return found
-    raise CommandError(
-        f"Unknown service '{service_name}'", seen("Services", (found.name for found in _visible(graph, False)))
-    )
 
 
 @service.command()
@@ -197,7 +175,7 @@ def echo(graph: GraphView, service_name: str, service_type: str | None, **option
 
     name = absolute(service_name, "service")
     if service_type is None:
-        service_type = _wanted(graph, service_name).types[0]
+        service_type = existing(graph, graph.services, "service", service_name).types[0]
     topic, kind = f"{name}/_service_event", interfaces.service_class(service_type)
     graph.settle(lambda: bool(graph.publishers(topic)))
     if not graph.publishers(topic):

@@ -11,10 +11,18 @@ import click
 import yaml
 
 from ros_in_python.field_path import Step
-from ros_in_python.ros2 import interfaces, qos
+from ros_in_python.ros2 import interfaces
 from ros_in_python.ros2.names import absolute
 from ros_in_python.ros2.opening import with_graph
-from ros_in_python.ros2.topic.selection import check_path, field, field_path, filter_option, reading_options
+from ros_in_python.ros2.qos import QosOptions, profile, qos_options, suiting
+from ros_in_python.ros2.topic.selection import (
+    check_path,
+    field,
+    field_path,
+    filter_option,
+    reading_options,
+    type_or_refusal,
+)
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
@@ -32,9 +40,9 @@ if TYPE_CHECKING:
 @click.option("--raw", is_flag=True, help="The bytes as they arrived.")
 @click.option("--no-lost-messages", is_flag=True, help="Don't report lost messages.")
 @click.option("--lost-messages", is_flag=True, expose_value=False, hidden=True)
-@qos.qos_options("sensor_data")
+@qos_options("sensor_data")
 @with_graph
-def echo(graph: GraphView, topic_name: str, message_type: str | None, **options: Any) -> None:
+def echo(graph: GraphView, topic_name: str, message_type: str | None, qos: QosOptions, **options: Any) -> None:
     """Print the messages of a topic; Ctrl-C ends it.
 
     \b
@@ -44,19 +52,16 @@ def echo(graph: GraphView, topic_name: str, message_type: str | None, **options:
 
     It asks for the QoS that the topic's publishers offer, so that it hears every one.
     """
-    asked = qos.asked(options)
-    from ros_in_python.ros2.topic.selection import type_or_refusal
-
     name = absolute(topic_name)
     path = field_path(options["field"])
     message = None if message_type is None else interfaces.message_class(message_type)
-    qos.profile(asked)
+    profile(qos)  # an unknown name should show at once
     graph.settle(lambda: bool(graph.publishers(name)))
     if message is None:
         message = type_or_refusal(graph, name)
     if not options["raw"]:
         check_path(message, path)
-    listen(graph, name, message, path, qos.suiting(graph, name, asked), options)
+    listen(graph, name, message, path, suiting(graph, name, qos), options)
 
 
 def listen(

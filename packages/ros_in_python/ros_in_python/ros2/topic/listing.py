@@ -7,21 +7,20 @@ from typing import TYPE_CHECKING
 import click
 
 from ros_in_python.ros2 import interfaces
-from ros_in_python.ros2.cli import CommandError, show_names
-from ros_in_python.ros2.names import absolute, seen
+from ros_in_python.ros2.cli import show_names
 from ros_in_python.ros2.opening import with_graph
+from ros_in_python.ros2.typed_names import existing, listing_options, show, show_of_type, show_types_option
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
 
 
 @click.command(name="list")
-@click.option("-t", "--show-types", is_flag=True, help="Show each topic's type too.")
+@show_types_option
 @click.option("-v", "--verbose", is_flag=True, help="Count publishers and subscribers.")
-@click.option("-c", "--count-topics", is_flag=True, help="Print only the number of topics.")
-@click.option("-a", "--include-hidden-topics", is_flag=True, help="Also hidden topics (an underscore before a part).")
+@listing_options("topic")
 @with_graph
-def list_(graph: GraphView, show_types: bool, verbose: bool, count_topics: bool, include_hidden_topics: bool) -> None:
+def list_(graph: GraphView, show_types: bool, verbose: bool, only_count: bool, include_hidden: bool) -> None:
     """All topics.
 
     \b
@@ -29,9 +28,9 @@ def list_(graph: GraphView, show_types: bool, verbose: bool, count_topics: bool,
       /joint_commands [sensor_msgs/msg/JointState]
     """
     graph.settle()
-    topics = [topic for topic in graph.topics() if include_hidden_topics or not topic.hidden]
-    if count_topics or not verbose:
-        show_names([str(topic) if show_types else topic.name for topic in topics], count_topics)
+    topics = [topic for topic in graph.topics() if include_hidden or not topic.hidden]
+    if only_count or not verbose:
+        show(topics, show_types=show_types, only_count=only_count)
     elif topics:
         published = [(str(topic), len(graph.publishers(topic.name))) for topic in topics]
         subscribed = [(str(topic), len(graph.subscriptions(topic.name))) for topic in topics]
@@ -39,27 +38,23 @@ def list_(graph: GraphView, show_types: bool, verbose: bool, count_topics: bool,
         click.echo(_counted("Subscribed topics:", subscribed, "subscriber"))
 
 
-def _counted(title: str, topics: list[tuple[str, int]], what: str) -> str:
-    lines = [f" * {topic} {count} {what}{'s' if count > 1 else ''}" for topic, count in topics if count]
+def _counted(title: str, topics: list[tuple[str, int]], noun: str) -> str:
+    lines = [f" * {topic} {count} {noun}{'s' if count > 1 else ''}" for topic, count in topics if count]
     return "".join(f"{line}\n" for line in (title, *lines))
 
 
 @click.command()
 @click.argument("topic_type")
-@click.option("-c", "--count-topics", is_flag=True, help="Print only the number.")
-@click.option("-a", "--include-hidden-topics", is_flag=True, help="Also hidden topics (an underscore before a part).")
+@listing_options("topic")
 @with_graph
-def find(graph: GraphView, topic_type: str, count_topics: bool, include_hidden_topics: bool) -> None:
+def find(graph: GraphView, topic_type: str, only_count: bool, include_hidden: bool) -> None:
     """The topics of a type.
 
     \b
       ros2 topic find sensor_msgs/msg/JointState
       /joint_commands
     """
-    type_name = interfaces.full_name(topic_type, "msg")
-    graph.settle(lambda: any(type_name in topic.types for topic in graph.topics()))
-    topics = [topic for topic in graph.topics() if include_hidden_topics or not topic.hidden]
-    show_names([topic.name for topic in topics if type_name in topic.types], count_topics)
+    show_of_type(graph, graph.topics, interfaces.full_name(topic_type, "msg"), only_count, include_hidden)
 
 
 @click.command()
@@ -72,12 +67,11 @@ def info(graph: GraphView, topic_name: str, verbose: bool) -> None:
     \b
       ros2 topic info -v /joint_commands
     """
-    name = absolute(topic_name)
-    types = _types(graph, name, topic_name)
-    publishers, subscriptions = graph.publishers(name), graph.subscriptions(name)
+    topic = existing(graph, graph.topics, "topic", topic_name)
     gap = "\n\n" if verbose else "\n"
-    click.echo(f"Type: {types[0] if len(types) == 1 else list(types)}{gap}", nl=False)
-    for role, ends in (("Publisher", publishers), ("Subscription", subscriptions)):
+    click.echo(f"Type: {topic.types[0] if len(topic.types) == 1 else list(topic.types)}{gap}", nl=False)
+    ends_by_role = {"Publisher": graph.publishers(topic.name), "Subscription": graph.subscriptions(topic.name)}
+    for role, ends in ends_by_role.items():
         click.echo(f"{role} count: {len(ends)}{gap}", nl=False)
         if verbose:
             for end in ends:
@@ -94,13 +88,4 @@ def type_(graph: GraphView, topic_name: str) -> None:
       ros2 topic type /joint_commands
       sensor_msgs/msg/JointState
     """
-    show_names(_types(graph, absolute(topic_name), topic_name), only_count=False)
-
-
-def _types(graph: GraphView, name: str, written: str) -> tuple[str, ...]:
-    """Return the types of the topic `name`, once it exists. Raises `CommandError`, which calls it `written`."""
-    graph.settle(lambda: bool(graph.topic_types(name)))
-    types = graph.topic_types(name)
-    if not types:
-        raise CommandError(f"Unknown topic '{written}'", seen("Topics", (topic.name for topic in graph.topics())))
-    return types
+    show_names(existing(graph, graph.topics, "topic", topic_name).types, only_count=False)

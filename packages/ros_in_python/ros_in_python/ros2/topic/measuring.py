@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from statistics import fmean, pstdev
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
@@ -20,87 +19,68 @@ if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
 
 
-@dataclass(frozen=True)
-class Spread:
-    """Mean, least, greatest and population standard deviation of `count` values, in the values' unit."""
-
-    mean: float
-    least: float
-    greatest: float
-    deviation: float
-    count: int
-
-
-def spread(values: deque[int]) -> Spread:
-    """Return the spread of one or more values; the standard deviation is divided by n, not by n - 1."""
-    count = len(values)
-    mean = sum(values) / count
-    deviation = math.sqrt(sum((value - mean) ** 2 for value in values) / count)
-    return Spread(mean, min(values), max(values), deviation, count)
-
-
-class Rate:
-    """The rate of arrivals over the last `window` intervals. Times are in ns."""
+class _LastValues:
+    """The values (ns) of the last `window` messages: none of the first, and none from before the clock went back."""
 
     def __init__(self, window: int) -> None:
-        self._intervals: deque[int] = deque(maxlen=window)
+        self._values: deque[int] = deque(maxlen=window)
         self._latest: int | None = None
-        self._reported = 0
+        self._reported: int | None = None
+
+    def _take(self, now: int, value: int) -> None:
+        if self._latest is None or now < self._latest:
+            self._values.clear()
+        else:
+            self._values.append(value)
+        self._latest = now
+
+    def _spread(self) -> str:
+        """Return the line about the values; the standard deviation is divided by n, not by n - 1."""
+        least, most, deviation = (1e-9 * of(self._values) for of in (min, max, pstdev))
+        return f"min: {least:.3f}s max: {most:.3f}s std dev: {deviation:.5f}s window: {len(self._values)}"
+
+
+class Rate(_LastValues):
+    """The rate of arrivals over the last `window` intervals. Times are in ns."""
 
     def arrived(self, now: int) -> None:
         """Count a message that arrived at `now`; start over if the clock went back."""
-        if self._latest is None or now < self._latest:
-            self._intervals.clear()
-        else:
-            self._intervals.append(now - self._latest)
-        self._latest = now
+        self._take(now, now - (self._latest or 0))
 
     def reset(self) -> bool:
         """Forget the intervals, as when a simulation starts over; return whether there were any."""
-        had = bool(self._intervals)
-        self._intervals.clear()
+        had = bool(self._values)
+        self._values.clear()
         return had
 
     def report(self) -> str | None:
         """Return the two lines to print, at most once per second of arrivals; None if none are due."""
-        if not self._intervals or self._latest is None:
+        if not self._values or self._latest is None:
             return None
-        if self._reported == 0 or self._latest < self._reported:
+        if self._reported is None or self._latest < self._reported:
             self._reported = self._latest
-            return None
         if self._latest < self._reported + 1_000_000_000:
             return None
         self._reported = self._latest
-        result = spread(self._intervals)
-        rate = 1e9 / result.mean if result.mean > 0 else 0.0
-        return f"average rate: {rate:.3f}\n\t" + _seconds(result)
+        mean = fmean(self._values)
+        return f"average rate: {1e9 / mean if mean > 0 else 0:.3f}\n\t{self._spread()}"
 
 
-class Delay:
+class Delay(_LastValues):
     """The age of messages on arrival over the last `window`. Times are in ns."""
-
-    def __init__(self, window: int) -> None:
-        self._delays: deque[int] = deque(maxlen=window)
-        self._latest: int | None = None
-        self._reported: int | None = None
 
     def arrived(self, now: int, stamp: int) -> None:
         """Count a message with the header stamp `stamp` that arrived at `now`; like the real command, not the first."""
-        if self._latest is None or now < self._latest:
-            self._delays.clear()
-        else:
-            self._delays.append(now - stamp)
-        self._latest = now
+        self._take(now, now - stamp)
 
     def report(self) -> str | None:
         """Return the lines to print this second; None before the first message."""
-        if not self._delays:
+        if not self._values:
             return None
         if self._latest == self._reported:
             return "no new messages"
         self._reported = self._latest
-        result = spread(self._delays)
-        return f"average delay: {result.mean * 1e-9:.3f}\n\t" + _seconds(result)
+        return f"average delay: {fmean(self._values) * 1e-9:.3f}\n\t{self._spread()}"
 
 
 class Bandwidth:
@@ -124,13 +104,6 @@ class Bandwidth:
         unit = _unit(rate)
         mean, least, greatest = (unit(value) for value in (total / count, min(self._sizes), max(self._sizes)))
         return f"{unit(rate)}/s from {count} messages\n\tMessage size mean: {mean} min: {least} max: {greatest}"
-
-
-def _seconds(result: Spread) -> str:
-    return (
-        f"min: {result.least * 1e-9:.3f}s max: {result.greatest * 1e-9:.3f}s "
-        f"std dev: {result.deviation * 1e-9:.5f}s window: {result.count}"
-    )
 
 
 def _unit(rate: float) -> Callable[[float], str]:

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ros_in_python.ros2 import interfaces, qos
+from ros_in_python.ros2 import interfaces
 from ros_in_python.ros2.cli import CommandError, discovery_options, stdin_option
 from ros_in_python.ros2.names import absolute
 from ros_in_python.ros2.opening import open_graph
+from ros_in_python.ros2.qos import QosOptions, profile, qos_options
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
@@ -50,9 +51,9 @@ CONFIRMATION = 2.0
     "--keep-alive", type=float, default=0.1, show_default=True, metavar="N", help="Stay N seconds after the last."
 )
 @click.option("-n", "--node-name", metavar="NAME", help="The publishing node's name.")
-@qos.qos_options("default")
+@qos_options("default")
 @discovery_options
-def pub(topic_name: str, message_type: str, values: str, **options: Any) -> None:
+def pub(topic_name: str, message_type: str, values: str, qos: QosOptions, **options: Any) -> None:
     """Publish messages whose fields are given in YAML; fields not named are zero or empty.
 
     \b
@@ -64,7 +65,6 @@ def pub(topic_name: str, message_type: str, values: str, **options: Any) -> None
     """
     if options["once"] and options["times"]:
         raise CommandError("Cannot pass both -1 and -t <times>")
-    profile = qos.asked(options)
     with open_graph(
         node_name=options["node_name"], spin_time=options["spin_time"], use_sim_time=options["use_sim_time"]
     ) as graph:
@@ -81,7 +81,7 @@ def pub(topic_name: str, message_type: str, values: str, **options: Any) -> None
             wait_for = 1 if times else 0
         # Existing subscribers must get the first message.
         graph.settle(lambda: len(graph.subscriptions(topic)) >= wait_for)
-        publisher = graph.node.create_publisher(kind, topic, qos.profile(profile))
+        publisher = graph.node.create_publisher(kind, topic, profile(qos))
         _wait_for_subscriptions(graph, publisher, wait_for, options["max_wait_time_secs"])
         _publish(graph, publisher, message, setters, times, options)
 
