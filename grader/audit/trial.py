@@ -13,7 +13,7 @@ from grader.audit.result import RecordingDifference, Trial, Until
 from grader.audit.store import RecordedRuns
 from grader.checking.verdict import Finding, ListedCheck, Status, Verdict
 from grader.grading.grading import Grading
-from grader.recording.recording import Ending, ReceivedMessage, Recording
+from grader.recording.recording import Ending, ReceivedMessage, Recording, not_run
 from grader.scenario.scenario import Scenario
 from grader.submission.submission import Submission
 from grader.workers.pool import Worker
@@ -139,8 +139,7 @@ class Trials:
         """Return the trial of a program that does not complete the first scenario: it was run in no other."""
         [first] = recordings.values()
         ending = Ending(first.ending.outcome, first.ending.message)
-        names = [scenario.name for scenario in self.grading.runner.scenarios]
-        every = {name: Recording(name, (), (), (), (), False, ending) for name in names} | recordings
+        every = not_run(self.grading.references, ending) | recordings
         return self._trial(first.ending.message, recordings, self._judged(every), self.checks)
 
     def _shorter_first(self) -> list[Scenario]:
@@ -161,9 +160,7 @@ class Trials:
         return self.runs.run(submission, scenario, next(self._turn), process)
 
     def _nothing(self, problem: str) -> Trial:
-        scenarios = self.grading.runner.scenarios
-        ending = Ending("did-not-start", problem)
-        recordings = {s.name: Recording(s.name, (), (), (), (), False, ending) for s in scenarios}
+        recordings = not_run(self.grading.references, Ending("did-not-start", problem))
         return self._trial(problem, {}, self._judged(recordings), self.checks)
 
     def _judged(self, recordings: dict[str, Recording]) -> dict[str, Verdict]:
@@ -177,11 +174,7 @@ class Trials:
         references = self.grading.references
         if not any(_differs(recording, references[name]) for name, recording in recordings.items()):
             return {c.name: Verdict(c.name, c.title, "passed", c.points, c.hint) for c in self.checks}
-        missing = Ending("did-not-start", "not run")
-        places = {
-            name: Recording(name, (), (), (), (), False, missing) for name in references if name not in recordings
-        }
-        return self._judged({**recordings, **places})
+        return self._judged(not_run(references, Ending("did-not-start", "not run")) | recordings)
 
     def _needed(
         self, names: set[str], verdicts: dict[str, Verdict], recordings: dict[str, Recording]

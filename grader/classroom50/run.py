@@ -14,15 +14,15 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.exercise import ExerciseError
 from grader.exercise.loading import load
-from grader.gradescope.run import cache_next_to_course, submission
-from grader.grading.grade import Grade, Options
-from grader.grading.grading import grading_of
+from grader.gradescope.run import cache_next_to_course, options_of, submission
+from grader.grading.grade import Grade
+from grader.grading.grading import grade_submission
 from grader.report.checks import ShownCheck, shown_checks
 from grader.report.printable import printable
-from grader.sandbox.program import Isolation, SandboxUnavailable
-from grader.workers.pool import HostFault, WorkerPool
+from grader.sandbox.program import SandboxUnavailable
+from grader.workers.pool import HostFault
 from groundwork.files import write_if_changed
 from groundwork.plain_text import print_in_any_encoding
 
@@ -32,7 +32,7 @@ def main(folder: Path, repository: Path, isolation: str = "") -> int:
     cache_next_to_course(folder)
     try:
         exercise = load(folder)
-        grade = _grade(exercise, repository, isolation)
+        grade = grade_submission(exercise, submission(repository, exercise), options_of(isolation))
     except (ExerciseError, SandboxUnavailable, HostFault) as error:
         return _fault(str(error))
     if not grade.has_score:
@@ -49,12 +49,6 @@ def main(folder: Path, repository: Path, isolation: str = "") -> int:
             file.write(text)
     print(f"{grade.score:g} of {grade.points:g} points")
     return 0
-
-
-def _grade(exercise: Exercise, repository: Path, isolation: str) -> Grade:
-    with WorkerPool() as workers:
-        options = Options(Isolation(isolation) if isolation else None)
-        return grading_of(exercise, options, workers).grade(submission(repository, exercise))
 
 
 def _fault(text: str) -> int:

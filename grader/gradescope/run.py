@@ -20,7 +20,7 @@ from typing import Any
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
 from grader.grading.grade import Entry, Options, Student
-from grader.grading.grading import grading_of
+from grader.grading.grading import grade_submission, grading_of
 from grader.report.as_json import gradescope_results, no_score
 from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.submission.reader import read
@@ -35,6 +35,11 @@ def cache_next_to_course(exercise: Path) -> None:
     os.environ.setdefault("SPINBOOK_CACHE", str(exercise.resolve().parents[1] / "cache"))
 
 
+def options_of(isolation: str) -> Options:
+    """Return how to grade at this level of isolation; without one, at the strongest that works."""
+    return Options(Isolation(isolation) if isolation else None)
+
+
 def prepare(folder: Path, isolation: str = "") -> None:
     """Run the solution, and test the exercise with it. A fault of the exercise ends the build, with status 1.
 
@@ -45,7 +50,7 @@ def prepare(folder: Path, isolation: str = "") -> None:
     try:
         exercise = load(folder)
         with WorkerPool() as workers:
-            grading = grading_of(exercise, Options(Isolation(isolation) if isolation else None), workers)
+            grading = grading_of(exercise, options_of(isolation), workers)
         print(f"Ready to grade {exercise.name}, isolation: {grading.runner.isolation}.")
     except (SandboxUnavailable, HostFault) as error:
         print(f"The solution could not be tried while the container was built:\n{error}")
@@ -71,9 +76,7 @@ def main(folder: Path, root: Path, isolation: str = "") -> None:
 
 def _entry(exercise: Exercise, root: Path, isolation: str) -> Entry:
     handed_in = submission(root / "submission", exercise)
-    with WorkerPool() as workers:
-        options = Options(Isolation(isolation) if isolation else None)
-        grade = grading_of(exercise, options, workers).grade(handed_in)
+    grade = grade_submission(exercise, handed_in, options_of(isolation))
     if not grade.has_score:
         print(grade.message)
     student, submitted = _metadata(root / "submission_metadata.json")

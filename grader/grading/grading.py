@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 from grader.checking.ending_message import message_of
 from grader.checking.verdict import Verdict
@@ -13,7 +15,7 @@ from grader.grading.public import PublicPart, public_part
 from grader.grading.reference import reference, solution_file, versions
 from grader.grading.scenario_runner import ScenarioRunner
 from grader.recording.printed_paths import without_paths
-from grader.recording.recording import Ending, Recording
+from grader.recording.recording import Ending, Recording, not_run
 from grader.runner.tracebacks import in_cells
 from grader.sandbox.isolation import choose
 from grader.sandbox.program import Isolation, SandboxUnavailable
@@ -36,22 +38,18 @@ class Grading:
         """Return the grade of one submission. A fault of the machine or the grader becomes a `host-error`, never a
         score.
         """
-        began = time.monotonic()
         if submission.question:
-            return self._grade(submission, {}, (), "undecided", submission.question, began)
-        try:
-            recordings = self._recordings(submission)
-        except HostFault as fault:
-            text = str(fault).strip().splitlines()[-1]
-            return self._grade(submission, {}, (), "host-error", f"This is not your fault: {text}", began)
-        return self._judged(submission, recordings, began)
+            return self._grade(submission, {}, (), "undecided", submission.question, time.monotonic())
+        return self._graded(submission, partial(self._recordings, submission))
 
     def judge(self, submission: Submission, recordings: dict[str, Recording]) -> Grade:
         """Return the grade of a submission from its recordings, by scenario, without running anything."""
-        return self._judged(submission, recordings, time.monotonic())
+        return self._graded(submission, lambda: recordings)
 
-    def _judged(self, submission: Submission, recordings: dict[str, Recording], began: float) -> Grade:
+    def _graded(self, submission: Submission, record: Callable[[], dict[str, Recording]]) -> Grade:
+        began = time.monotonic()
         try:
+            recordings = record()
             verdicts = self.runner.judge(recordings, self.references)
         except HostFault as fault:
             text = str(fault).strip().splitlines()[-1]
@@ -67,10 +65,8 @@ class Grading:
     def _recordings(self, submission: Submission) -> dict[str, Recording]:
         if submission.program:
             return self.runner.run(submission)
-        ending = Ending("did-not-start", submission.problem)
-        return {
-            scenario.name: Recording(scenario.name, (), (), (), (), False, ending) for scenario in self.runner.scenarios
-        }
+        names = (scenario.name for scenario in self.runner.scenarios)
+        return not_run(names, Ending("did-not-start", submission.problem))
 
     def _grade(
         self,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, Literal
@@ -150,6 +151,11 @@ class Recording:
             found += _of_goal(goal)
         found += [Event(one.at_ns, f"exit {one.program}", one) for one in self.exits]
         return tuple(sorted(found, key=lambda event: event.at_ns))
+
+
+def not_run(scenarios: Iterable[str], ending: Ending) -> dict[str, Recording]:
+    """Return the recordings of scenarios in which nothing ran, by their names."""
+    return {name: Recording(name, (), (), (), (), False, ending) for name in scenarios}
 
 
 def not_run_because(first: Recording, scenario: str) -> Recording:

@@ -98,7 +98,6 @@ class RealTimeRun:
 
     def recording(self) -> Recording:
         """Return what has happened so far."""
-        script = self._script
         return Recording(
             scenario=self._scenario.name,
             sent=tuple(self._publishers.sent),
@@ -107,8 +106,5 @@ class RealTimeRun:
             end_points=(),
             uses_sim_time=False,
             ending=Ending("completed"),
-            calls=script.calls(),
-            goals=script.goals(),
-            parameters=script.changes(),
-            readings=script.readings(),
+            **self._script.recorded(),
         )

@@ -146,13 +146,9 @@ class ScenarioRun:
         if script is None:
             return {}
         return {
-            "calls": script.calls(),
-            "goals": script.goals(),
-            "parameters": script.changes(),
-            "readings": script.readings(),
+            **script.recorded(),
             "exits": tuple(self._team.exits) if self._team else (),
             "programs": starts(self._task.exercise, self._task.scenario),
-            "truth": script.truth(),
         }
 
     def _ending(self) -> Ending:

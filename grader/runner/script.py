@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.imported_files import place_of
-from grader.recording.events import Call, Goal, ParameterChange, ParameterReading, Truth
 from grader.runner.action_clients import CancelStep, Goals
 from grader.runner.action_servers import ScriptedActionServer
 from grader.runner.calls import Calls, CallStep
@@ -133,30 +133,22 @@ class Script:
             fix = "Fix it: it runs inside the grader, and a student's node may send it anything that the type allows."
             raise ExerciseError(place[0], found, fix, place[1]) from None
 
-    # --- outcomes
+    def recorded(self) -> dict[str, Any]:
+        """Return what has happened so far, by the fields of a `Recording`.
 
-    def calls(self) -> tuple[Call, ...]:
-        """Return all calls, by any caller, in the order in which they were made."""
-        found = [*self._calls.calls(), *unserved(self._ends, self._task.exercise)]
+        Calls are in the order in which they were made, and goals in that in which they were sent, by whomever.
+        """
+        calls = [*self._calls.calls(), *unserved(self._ends, self._task.exercise)]
+        goals = [*self._goals.goals()]
         for peer in self._servers.values():
-            found += peer.calls() if isinstance(peer, ServiceServer) else ()
-        return tuple(sorted(found, key=lambda call: call.at))
-
-    def goals(self) -> tuple[Goal, ...]:
-        """Return all goals, by any sender, in the order in which they were sent."""
-        found = list(self._goals.goals())
-        for peer in self._servers.values():
-            found += peer.goals() if isinstance(peer, ScriptedActionServer) else ()
-        return tuple(found)
-
-    def truth(self) -> tuple[Truth, ...]:
-        """Return what the world's truth() returned after each step."""
-        return tuple(self._world.truth) if self._world else ()
-
-    def changes(self) -> tuple[ParameterChange, ...]:
-        """Return the parameters that were set."""
-        return self._calls.changes()
-
-    def readings(self) -> tuple[ParameterReading, ...]:
-        """Return the parameters that were read."""
-        return self._calls.readings()
+            if isinstance(peer, ServiceServer):
+                calls += peer.calls()
+            else:
+                goals += peer.goals()
+        return {
+            "calls": tuple(sorted(calls, key=lambda call: call.at)),
+            "goals": tuple(goals),
+            "parameters": self._calls.changes(),
+            "readings": self._calls.readings(),
+            "truth": tuple(self._world.truth) if self._world else (),
+        }

@@ -109,13 +109,13 @@ def of_content(name: str, content: bytes, exercise: Exercise) -> Submission:
         return _without_program(name, _digest(content), exercise, error)
 
 
-def of_source(name: str, code: bytes, exercise: Exercise, digest: str = "") -> Submission:
+def of_source(name: str, code: bytes, exercise: Exercise) -> Submission:
     """Return the submission of this Python source. It always runs under the exercise's file name."""
     try:
-        return of_code(name, code_of_python(code, exercise), exercise, digest or _digest(code))
+        return of_code(name, code_of_python(code, exercise), exercise, _digest(code))
     except Unreadable as error:
         source = code.decode("utf-8", errors="replace")
-        return replace(_without_program(name, digest or _digest(code), exercise, error), source=source)
+        return replace(_without_program(name, _digest(code), exercise, error), source=source)
 
 
 def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:

@@ -14,9 +14,9 @@ from interface_compiler.prefixes import PYTHON
 VARIABLE = "COMPILED_INTERFACES"
 
 
-def active(environment: MutableMapping[str, str] | None = None) -> list[Path]:
+def active() -> list[Path]:
     """Return the prefixes in use that still exist."""
-    named = (os.environ if environment is None else environment).get(VARIABLE, "").split(os.pathsep)
+    named = os.environ.get(VARIABLE, "").split(os.pathsep)
     return [Path(entry) for entry in named if entry and Path(entry).is_dir()]
 
 

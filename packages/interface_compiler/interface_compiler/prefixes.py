@@ -26,11 +26,8 @@ def installed() -> list[Path]:
 
 def packages(prefixes: Iterable[Path]) -> dict[str, Path]:
     """Return package -> its prefix; the first prefix that has it wins."""
-    found: dict[str, Path] = {}
-    for prefix in prefixes:
-        for marker in sorted(_markers(prefix, "packages")):
-            found.setdefault(marker.name, prefix)
-    return found
+    markers = resources("packages", prefixes)
+    return {name: marker.parents[len(RESOURCES.parts) + 1] for name, marker in markers.items()}
 
 
 def prefix_of(package: str, prefixes: Iterable[Path]) -> Path | None:

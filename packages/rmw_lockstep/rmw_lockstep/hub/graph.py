@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
-from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndpointFrame, NodeFrame
+from rmw_lockstep.hub.frames import PUBLISHER, SERVER, SUBSCRIPTION, EndpointFrame, NodeFrame
 from rmw_lockstep.qos import compatible
 
 #: The number of the hub among the processes.
@@ -68,11 +66,9 @@ class HubGraph:
         """Return the nodes that are not the hub's own, by name."""
         return tuple(sorted((n for n in self.nodes.values() if n.id >> 32 != HUB), key=lambda n: n.full_name))
 
-    def program_endpoints(
-        self, kinds: Iterable[int] = (PUBLISHER, SUBSCRIPTION, SERVER, CLIENT)
-    ) -> list[EndpointFrame]:
+    def program_endpoints(self) -> list[EndpointFrame]:
         """Return the endpoints that are not the hub's own."""
-        return [e for e in self.endpoints.values() if e.process != HUB and e.kind in kinds]
+        return [e for e in self.endpoints.values() if e.process != HUB]
 
     def of_program(self, name: str, kind: int) -> list[EndpointFrame]:
         """Return the program's own endpoints of this kind and name."""

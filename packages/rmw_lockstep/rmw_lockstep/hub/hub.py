@@ -165,7 +165,7 @@ class Hub:
         """Send what is queued, and wait until the program has nothing left to do. Raises `Violation`."""
         while True:
             self._flush()
-            if not self._is_idle():
+            if not self.is_idle():
                 self._flush()  # including ASK, or the answers would never come
                 self._take()
             elif not self._go_on():
@@ -175,13 +175,9 @@ class Hub:
         """Send what is queued and take what arrives, for 20 ms at most, whether or not the program is idle."""
         self._flush()
         self._take()
-        if self._is_idle():
+        if self.is_idle():
             self._router.deliver()
         self._flush()
-
-    def is_idle(self) -> bool:
-        """Return whether the program has nothing left to do, according to everything that has arrived so far."""
-        return self._is_idle()
 
     def drain(self) -> None:
         """Take everything that processes sent before they ended. The program must be dead. Raises `Violation`.
@@ -261,8 +257,11 @@ class Hub:
 
     # --- connections
 
-    def _is_idle(self) -> bool:
-        """Return whether every process is idle, including the children that they report."""
+    def is_idle(self) -> bool:
+        """Return whether the program has nothing left to do, according to everything that has arrived so far.
+
+        That is so if every process is idle, including the children that they report.
+        """
         links = self.links
         self._awaited = False
         if not links or not all(link.is_idle for link in links if link.began):

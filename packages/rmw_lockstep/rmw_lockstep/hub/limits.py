@@ -94,8 +94,7 @@ class HubUsage:
     def frame(self) -> None:
         """Count a frame."""
         self.frames += 1
-        if self.frames > self.limits.frames:
-            raise _exceeded("frames", "frames", self.frames, self.limits.frames)
+        _check("frames", "frames", self.frames, self.limits.frames)
         if not self.frames % FRAMES_PER_LOOK:
             self._look_at_cpu()
 
@@ -103,27 +102,20 @@ class HubUsage:
         """Count a message of `size` bytes."""
         self.messages += 1
         self.data_bytes += size
-        limits = self.limits
-        if size > limits.message_bytes:
-            raise _exceeded("message", "bytes in one message", size, limits.message_bytes)
-        if self.data_bytes > limits.data_bytes:
-            raise _exceeded("bytes", "bytes in all messages together", self.data_bytes, limits.data_bytes)
-        if self.messages > limits.messages:
-            raise _exceeded("messages", "messages", self.messages, limits.messages)
+        _check("message", "bytes in one message", size, self.limits.message_bytes)
+        _check("bytes", "bytes in all messages together", self.data_bytes, self.limits.data_bytes)
+        _check("messages", "messages", self.messages, self.limits.messages)
 
     def connection(self, alive: int) -> None:
         """Count a connection in addition to `alive` others."""
         self.connections += 1
-        if alive >= self.limits.connections:
-            raise _exceeded("connections", "processes", alive + 1, self.limits.connections)
-        if self.connections > self.limits.all_connections:
-            raise _exceeded("connections", "processes", self.connections, self.limits.all_connections)
+        _check("connections", "processes", alive + 1, self.limits.connections)
+        _check("connections", "processes", self.connections, self.limits.all_connections)
 
     def wake_up(self) -> None:
         """Count a grant of time."""
         self.wake_ups += 1
-        if self.wake_ups > self.limits.wake_ups:
-            raise _exceeded("wake-ups", "wake-ups", self.wake_ups, self.limits.wake_ups)
+        _check("wake-ups", "wake-ups", self.wake_ups, self.limits.wake_ups)
 
     @contextmanager
     def cpu(self) -> Iterator[None]:
@@ -135,30 +127,27 @@ class HubUsage:
     def _look_at_cpu(self) -> None:
         now = time.thread_time()
         self.cpu_s, self._since = self.cpu_s + now - self._since, now
-        if self.cpu_s > self.limits.cpu_s:
-            raise _exceeded("cpu", "CPU seconds of the hub", self.cpu_s, self.limits.cpu_s)
+        _check("cpu", "CPU seconds of the hub", self.cpu_s, self.limits.cpu_s)
 
     def nodes(self, count: int) -> None:
         """Check that there may be `count` nodes."""
-        if count > self.limits.nodes:
-            raise _exceeded("nodes", "nodes", count, self.limits.nodes)
+        _check("nodes", "nodes", count, self.limits.nodes)
 
     def endpoints(self, count: int) -> None:
         """Check that there may be `count` endpoints."""
-        if count > self.limits.endpoints:
-            raise _exceeded("endpoints", "publishers, subscriptions, clients and servers", count, self.limits.endpoints)
+        _check("endpoints", "publishers, subscriptions, clients and servers", count, self.limits.endpoints)
 
     def unread(self, size: int) -> None:
         """Count `size` more bytes that are kept for a process until it reads them; fewer if `size` is negative."""
         self.unread_bytes += size
-        if size > 0 and self.unread_bytes > self.limits.unread_bytes:
-            raise _exceeded("unread", "unread bytes", self.unread_bytes, self.limits.unread_bytes)
+        if size > 0:
+            _check("unread", "unread bytes", self.unread_bytes, self.limits.unread_bytes)
 
     def unanswered(self, count: int) -> None:
         """Check that `count` requests may be left unanswered."""
-        if count > self.limits.unanswered:
-            raise _exceeded("unanswered", "unanswered requests", count, self.limits.unanswered)
+        _check("unanswered", "unanswered requests", count, self.limits.unanswered)
 
 
-def _exceeded(reason: Reason, what: str, found: float, limit: float) -> Violation:
-    return Violation(reason, f"{found:,} {what}; the limit is {limit:,}", found=found, limit=limit)
+def _check(reason: Reason, counted: str, number: float, limit: float) -> None:
+    if number > limit:
+        raise Violation(reason, f"{number:,} {counted}; the limit is {limit:,}", found=number, limit=limit)

@@ -41,7 +41,7 @@ class ProcessLink:
         self, sock: socket.socket, number: int, use: HubUsage, listener: int = 0, pid: int | None = None
     ) -> None:
         self.socket, self.number, self.listener = sock, number, listener
-        self.pid = self._peer() if pid is None else pid
+        self.pid = peer(sock) if pid is None else pid
         self.hello: HelloFrame | None = None
         self.began = self.joined = False
         self.sent = 0
@@ -66,9 +66,6 @@ class ProcessLink:
         self.began = True
         self.now = self.granted = now
         self._first_mark = published
-
-    def _peer(self) -> int:
-        return peer(self.socket)
 
     @property
     def pid_inside(self) -> int:
