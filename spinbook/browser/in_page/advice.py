@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import ast
-import json
 import re
 import warnings
 from collections.abc import Iterator
+from typing import Any
 
 from spinbook.chapter.interface_fields import InterfaceFields
 from spinbook.chapter.node_classes import NODE_CLASSES
@@ -21,26 +21,26 @@ _MAGIC = re.compile(r"^[%!]{1,2}\w.*$", re.MULTILINE)
 _DOTTED = re.compile(r"[\w.\[\]()]*\.\w*$")
 
 
-def problems(source: str) -> str:
-    """Return a program's syntax error, or the fields that its messages do not have: JSON, lines from 1."""
+def problems(source: str) -> list[dict[str, Any]]:
+    """Return a program's syntax error, or the fields that its messages do not have; lines from 1."""
     source = _MAGIC.sub("pass", source)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             compile(source, "<editor>", "exec")
     except SyntaxError as error:
-        return json.dumps([_syntax_error(error)])
+        return [_syntax_error(error)]
     except (ValueError, RecursionError, MemoryError) as error:
-        return json.dumps([{"line": 1, "text": str(error)}])
+        return [{"line": 1, "text": str(error)}]
     wrong = [{"line": item.line, "text": f"{item.problem} {item.fix}"} for item in wrong_fields(source)]
     # The text changes with each key: its trees would only take memory.
     syntax_tree.cache_clear()
     descendants.cache_clear()
-    return json.dumps(wrong)
+    return wrong
 
 
-def _syntax_error(error: SyntaxError) -> dict[str, object]:
-    found: dict[str, object] = {"line": error.lineno or 1, "text": f"{type(error).__name__}: {error.msg}"}
+def _syntax_error(error: SyntaxError) -> dict[str, Any]:
+    found: dict[str, Any] = {"line": error.lineno or 1, "text": f"{type(error).__name__}: {error.msg}"}
     if error.offset:
         found["from"] = error.offset - 1
         ends_there = error.end_lineno == error.lineno and error.end_offset
@@ -48,15 +48,15 @@ def _syntax_error(error: SyntaxError) -> dict[str, object]:
     return found
 
 
-def completions(source: str, at: int) -> str:
-    """Return the names that can be at this place, the innermost first: JSON of `label` and `detail`; [] if unknown."""
+def completions(source: str, at: int) -> list[dict[str, str]]:
+    """Return the names that can be at this place, the innermost first, with what they are; none if unknown."""
     for text in _completed(source, at):
         try:
             tree = ast.parse(text)
         except (SyntaxError, ValueError, RecursionError):
             continue
-        return json.dumps([{"label": label, "detail": detail} for label, detail in _names(tree)])
-    return "[]"
+        return [{"label": label, "detail": detail} for label, detail in _names(tree)]
+    return []
 
 
 def _completed(source: str, at: int) -> Iterator[str]:

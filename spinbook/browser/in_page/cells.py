@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import json
 import os
 import shlex
 import signal
@@ -36,13 +35,13 @@ def _run(source: str) -> None:
             print(repr(value))
 
 
-def set_environment(variables: Mapping[str, str]) -> None:
+def set_environment(environment: Mapping[str, str]) -> None:
     """Set the variables that `%env` and `export` have set in the page."""
-    os.environ.update(variables)
+    os.environ.update(environment)
 
 
-def commands(source: str) -> str:
-    """Read a terminal cell's commands as a chapter's are read: JSON of kind, words and text, or why it can't run."""
+def commands(source: str) -> list[dict[str, Any]]:
+    """Read a terminal cell's commands as a chapter's are read: kind, words and text, or why it can't run."""
     from spinbook.chapter.terminal import Command, UnsupportedCommand, read_commands
 
     def as_data(item: Command | UnsupportedCommand) -> dict[str, Any]:
@@ -52,7 +51,7 @@ def commands(source: str) -> str:
             return {"kind": "ros2", "words": item.text.split(), "text": item.text}
         return {"text": item.text, "why": f"{item.why}. Did you mean `{item.meant}`?" if item.meant else f"{item.why}."}
 
-    return json.dumps([as_data(item) for item in read_commands(source)])
+    return [as_data(item) for item in read_commands(source)]
 
 
 _SHARE = Path("/opt/ros/share")

@@ -38,34 +38,34 @@ _SEVERAL_FILES = "A web page can't check a program of several files. Check it wi
 _SEVERAL = "This exercise has several programs, which a web page can't check together. Check it in the notebook."
 
 
-def check(name: str, source: str) -> str:
-    """Return the results of the public checks, as JSON: `problem` alone, or `total`, `full`, `rows` and more."""
+def check(name: str, source: str) -> dict[str, Any]:
+    """Return the results of the public checks: `problem` alone, or `total`, `full`, `rows` and more."""
     hindrance = hindrance_of(source)
     if hindrance:
-        return json.dumps({"problem": hindrance})
+        return {"problem": hindrance}
     exercise = load(unpacked(name)).public()
     scenarios, references, hidden = public_part(exercise)
     if exercise.programs or any(scenario.companions or scenario.programs for scenario in scenarios):
-        return json.dumps({"problem": _SEVERAL})
+        return {"problem": _SEVERAL}
     if (lacks := exercise.folder / LACKS).exists():
-        return json.dumps({"problem": lacks.read_text()})
+        return {"problem": lacks.read_text()}
     recordings = record(exercise, scenarios, ProgramText(exercise.file_name, source))
     judged = CheckedProgram(verdicts(exercise, scenarios, recordings, references), recordings, references)
-    return json.dumps(shown(exercise, judged, hidden))
+    return shown(exercise, judged, hidden)
 
 
-def read(name: str, file: str, content: memoryview) -> str:
-    """Return the program in a file, for the editor, as JSON: `source` and `notes`, or `problem` alone."""
+def read(name: str, file: str, content: memoryview) -> dict[str, Any]:
+    """Return the program in a file, for the editor: `source` and `notes`, or `problem` alone."""
     from grader.submission.code import code_of, uses_other_files
     from grader.submission.problems import AmbiguousProgram, Unreadable
 
     try:
         code = code_of(file, bytes(content), load(unpacked(name)))
     except (Unreadable, AmbiguousProgram) as error:
-        return json.dumps({"problem": str(error)})
+        return {"problem": str(error)}
     if uses_other_files(code):
-        return json.dumps({"problem": f"{_SEVERAL_FILES} {' '.join(code.notes)}".strip()})
-    return json.dumps({"source": code.source.lstrip("\n"), "notes": code.notes})
+        return {"problem": f"{_SEVERAL_FILES} {' '.join(code.notes)}".strip()}
+    return {"source": code.source.lstrip("\n"), "notes": code.notes}
 
 
 def hindrance_of(source: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import SimpleNamespace
@@ -109,8 +108,8 @@ def _unresolved(package: str, executable: str, cwd: Path) -> SimpleNamespace:
     return SimpleNamespace(argv=(package, executable), env={})
 
 
-def plan(line: str) -> str:
-    """Return what `ros2 launch …` starts, as JSON: its exit status and the steps. Errors are printed."""
+def plan(line: str) -> dict[str, Any]:
+    """Return what `ros2 launch …` starts: its exit status and the steps. Errors are printed."""
     from spinbook.browser.in_page.cells import run_command
 
     # Processes of the page replace those of the system.
@@ -118,4 +117,4 @@ def plan(line: str) -> str:
     setattr(plan_module, "find", _unresolved)  # noqa: B010
     _planned.clear()
     status = run_command(line)
-    return json.dumps({"status": status, "steps": _planned})
+    return {"status": status, "steps": _planned}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+from typing import Any
 
 from rcl_python import participant
 from rcl_python.graph import PUBLISHER, SUBSCRIPTION, EndpointInfo, Graph, NodeInfo
@@ -12,24 +12,24 @@ from spinbook.graph.model import INTERNAL, GraphEndpoint, GraphNode, GraphTopic,
 from spinbook.graph.picture import in_words, node_graph_svgs
 
 
-def now() -> str:
-    """Return the graph as JSON: `pictures`, an SVG element for each part, and `words`. Never waits."""
+def now() -> dict[str, Any]:
+    """Return the graph: `pictures`, an SVG element for each part, and `words`. Never waits."""
     here = participant.current()
     here.join()
     here.pump()
     return _shown(node_graph(here.graph))
 
 
-def counted(seconds: float) -> str:
+def counted(seconds: float) -> dict[str, Any]:
     """Return the same as `now`, with message rates measured over this many seconds."""
     from spinbook.graph.watcher import graph_now
 
     return _shown(graph_now(seconds))
 
 
-def _shown(graph: NodeGraph) -> str:
+def _shown(graph: NodeGraph) -> dict[str, Any]:
     pictures = node_graph_svgs(graph) if graph.nodes else []
-    return json.dumps({"pictures": pictures, "words": in_words(drawings(graph))})
+    return {"pictures": pictures, "words": in_words(drawings(graph))}
 
 
 def node_graph(graph: Graph) -> NodeGraph:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable, Sequence
 
@@ -16,17 +15,17 @@ from spinbook.kernel.plot.recorder import PlotRecorder
 from spinbook.kernel.plot.recording import APPEAR_S, PlotRecording, RecordingTime
 
 
-def plot(paths: Sequence[str], seconds: float, title: str) -> str:
+def plot(paths: Sequence[str], seconds: float, title: str) -> dict[str, str]:
     """Record these paths for this many seconds from the first sample on.
 
-    Return the picture as JSON: `picture`, `words` and `problem`, "" if there is none.
+    Return `picture`, `words` and `problem`, "" if there is none.
     """
     recording = PlotRecording()
     record(recording, lambda context: PlotRecorder(paths, recording.note, context), seconds)
     problem = recording.error or ("" if recording.curves else recording.why_empty(paths))
     if problem:
-        return json.dumps({"picture": "", "words": "", "problem": problem})
-    return json.dumps({"picture": plot_svg(recording, title) or "", "words": in_words(recording), "problem": ""})
+        return {"picture": "", "words": "", "problem": problem}
+    return {"picture": plot_svg(recording, title) or "", "words": in_words(recording), "problem": ""}
 
 
 def record(

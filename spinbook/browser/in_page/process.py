@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import builtins
 import errno
+import importlib
+import inspect
+import json
 import linecache
 import os
 import random
@@ -62,6 +65,18 @@ def open_process(page: Any, identity: str) -> None:
     random.seed()
 
 
+def answer(page: Any, op: str, arguments: Mapping[str, Any]) -> str:
+    """Call a function of this package, such as `cells.run_python`, and return its result as JSON.
+
+    A function with a parameter `page` gets the worker's JavaScript side.
+    """
+    module, _, name = op.partition(".")
+    function = getattr(importlib.import_module(f"spinbook.browser.in_page.{module}"), name)
+    if "page" in inspect.signature(function).parameters:
+        return json.dumps(function(page, **arguments))
+    return json.dumps(function(**arguments))
+
+
 def _abort(text: str) -> None:
     raise SystemExit(text)
 
@@ -94,20 +109,25 @@ def find_grader_in(archive: str) -> None:
 def run_program(source: str, file: str, args: Sequence[str], environment: Mapping[str, str]) -> int:
     """Run a program; return its exit status. Its output, tracebacks included, goes to the page."""
     os.environ.update(environment)
+    become_main(source, file, args)
+    program_imports.begin_program()
+    return status_of(lambda: run_main(source, file))
+
+
+def become_main(source: str, file: str, args: Sequence[str]) -> None:
+    """Make a program `__main__`, with these arguments, as Python does with a script."""
     main = types.ModuleType("__main__")
     main.__file__ = file
     sys.modules["__main__"] = main
     sys.argv = [file, *args]
     # Tracebacks show lines of the program, which is not in a file.
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
-    program_imports.begin_program()
-    return status_of(lambda: _to_its_end(source, file, main))
 
 
-def _to_its_end(source: str, file: str, main: types.ModuleType) -> None:
-    """Run a program, and wait for its threads, as Python does at exit."""
+def run_main(source: str, file: str) -> None:
+    """Run the program that is `__main__`, and wait for its threads, as Python does at exit."""
     try:
-        exec(compile(source, file, "exec"), main.__dict__)
+        exec(compile(source, file, "exec"), sys.modules["__main__"].__dict__)
     finally:
         threads.wait_for_all()
 
@@ -117,7 +137,7 @@ def status_of(program: Any) -> int:
     try:
         program()
     except SystemExit as error:
-        return _exit_status(error)
+        return exit_status(error.code)
     except KeyboardInterrupt as error:
         print_error(error)
         return _INTERRUPTED
@@ -131,10 +151,11 @@ def status_of(program: Any) -> int:
     return 0
 
 
-def _exit_status(error: SystemExit) -> int:
-    if error.code is None or isinstance(error.code, int):
-        return error.code or 0
-    print(error.code, file=sys.stderr)
+def exit_status(code: object) -> int:
+    """Return the status with which `sys.exit(code)` ends a process, which prints what is no number."""
+    if code is None or isinstance(code, int):
+        return code or 0
+    print(code, file=sys.stderr)
     return _FAILED
 
 

@@ -17,10 +17,10 @@ from spinbook.kernel.robot_recorder import APPEAR_S, RobotRecorder, RobotRecordi
 _PERIOD_S = 0.05
 
 
-def show(page: Any, source: str, seconds: float) -> str:
+def show(page: Any, source: str, seconds: float) -> dict[str, Any]:
     """Send the page a robot's data and then its joints' positions, for this many seconds from the first one on.
 
-    Return JSON: `problem`, "" if there is a robot, and `moves`, whether any positions arrived.
+    Return `problem`, "" if there is a robot, and `moves`, whether any positions arrived.
     """
     recording = _LiveRecording(page)
     try:
@@ -29,7 +29,7 @@ def show(page: Any, source: str, seconds: float) -> str:
         record(recording, recording.recorder, seconds, APPEAR_S)
     except InvalidUrdf as error:
         recording.error = str(error)
-    return json.dumps({"problem": recording.problem, "moves": bool(recording.curves)})
+    return {"problem": recording.problem, "moves": bool(recording.curves)}
 
 
 class _LiveRecording(RobotRecording):

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import gc
 import io
-import linecache
 import os
 import re
 import signal
@@ -29,6 +28,7 @@ from grader.scenario.scenario import Scenario
 from rcl_python import abort, logs
 from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.hub import PageHub, RunFinished, Turns
+from spinbook.browser.in_page.process import become_main, exit_status, run_main
 from spinbook.browser.in_page.program_link import ProgramLink, join
 
 
@@ -139,14 +139,11 @@ def _main(program: ProgramText, running: PageProgram, log: io.StringIO) -> None:
     """Run the program as Python runs a script, up to its exit status."""
     program_imports.begin_program()
     try:
-        try:
-            exec(compile(program.source, program.file, "exec"), sys.modules["__main__"].__dict__)
-        finally:
-            threads.wait_for_all()
+        run_main(program.source, program.file)
     except RunFinished:
         raise
     except SystemExit as error:
-        running.code = _status(error.code, log)
+        running.code = exit_status(error.code)
     except BaseException as error:
         traceback.print_exception(type(error), error, _without_runner(error.__traceback__), file=log)
         running.code = 130 if isinstance(error, KeyboardInterrupt) else 1
@@ -154,15 +151,8 @@ def _main(program: ProgramText, running: PageProgram, log: io.StringIO) -> None:
         gc.collect()  # only the traceback held its nodes: they leave the graph now, as when a process ends
 
 
-def _status(code: object, log: io.StringIO) -> int:
-    if code is None or isinstance(code, int):
-        return code or 0
-    print(code, file=log)
-    return 1
-
-
 def _without_runner(trace: types.TracebackType | None) -> types.TracebackType | None:
-    while trace is not None and re.search(r"in_page[/\\]runner\.py$", trace.tb_frame.f_code.co_filename):
+    while trace is not None and re.search(r"in_page[/\\](runner|process)\.py$", trace.tb_frame.f_code.co_filename):
         trace = trace.tb_next
     return trace
 
@@ -182,13 +172,7 @@ def _as_main(program: ProgramText, scenario: Scenario, log: io.StringIO, link: P
     """Make the program `__main__`, with the grader's arguments, and keep what it prints; clean up afterwards."""
     before = sys.modules["__main__"], sys.argv, logs.write, abort.end, dict(os.environ)
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    main = types.ModuleType("__main__")
-    main.__file__ = program.file
-    linecache.cache[program.file] = (
-        len(program.source), None, program.source.splitlines(keepends=True), program.file
-    )  # fmt: skip
-    sys.modules["__main__"] = main
-    sys.argv = [program.file, *arguments(scenario)]
+    become_main(program.source, program.file, arguments(scenario))
     logs.write = lambda line: print(line, file=log)
     abort.end = link.abort
     threads.use_scheduler(link.scheduler)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterable, Sequence
 
@@ -15,8 +14,8 @@ def record(names: Sequence[str]) -> None:
     timeline_recorder.main()
 
 
-def drawn(names: Sequence[str], lines: Iterable[str], title: str) -> str:
-    """Return the picture of what was recorded, as JSON: `picture`, `words` and `problem`, "" if there is none."""
+def drawn(names: Sequence[str], lines: Iterable[str], title: str) -> dict[str, str]:
+    """Return the picture of what was recorded: `picture`, `words` and `problem`, "" if there is none."""
     from spinbook.kernel.timeline import RecordedEvents, in_words, lanes
     from spinbook.kernel.timeline_picture import moving_timeline, span_of
 
@@ -27,6 +26,6 @@ def drawn(names: Sequence[str], lines: Iterable[str], title: str) -> str:
     drawn_lanes = lanes(recorded)
     if recorded.error or not any(lane.marks for lane in drawn_lanes):
         nothing = f"Nothing has happened on {', '.join(names)} since `%timeline --record`."
-        return json.dumps({"picture": "", "words": "", "problem": recorded.error or nothing})
+        return {"picture": "", "words": "", "problem": recorded.error or nothing}
     words = in_words(drawn_lanes, span_of(drawn_lanes)[0])
-    return json.dumps({"picture": moving_timeline(drawn_lanes, title), "words": words, "problem": ""})
+    return {"picture": moving_timeline(drawn_lanes, title), "words": words, "problem": ""}

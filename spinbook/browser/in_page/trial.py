@@ -21,21 +21,21 @@ from spinbook.kernel.timeline import in_words, lanes
 from spinbook.kernel.timeline_picture import moving_timeline, span_of
 
 
-def plan(name: str, chosen: str) -> str:
-    """Return how to try an exercise out, as JSON: the arguments of the node, and all scenarios; or `problem` alone."""
+def plan(name: str, chosen: str) -> dict[str, Any]:
+    """Return how to try an exercise out: the arguments of the node, and all scenarios; or `problem` alone."""
     exercise = load(unpacked(name)).public()
     scenarios, _, _ = public_part(exercise)
     scenario = _chosen(scenarios, chosen)
     if exercise.programs or scenario.companions or scenario.programs:
-        return json.dumps({"problem": SEVERAL.format(scenario.name)})
+        return {"problem": SEVERAL.format(scenario.name)}
     if (lacks := exercise.folder / LACKS).exists():
-        return json.dumps({"problem": lacks.read_text()})
+        return {"problem": lacks.read_text()}
     words = arguments(scenario, always=("--ros-args",))
-    return json.dumps({"args": words, "scenario": scenario.name, "scenarios": [one.name for one in scenarios]})
+    return {"args": words, "scenario": scenario.name, "scenarios": [each.name for each in scenarios]}
 
 
 def _chosen(scenarios: list[Scenario], name: str) -> Scenario:
-    return next((one for one in scenarios if one.name == name), scenarios[0])
+    return next((each for each in scenarios if each.name == name), scenarios[0])
 
 
 def play_around(page: Any, name: str, chosen: str) -> None:

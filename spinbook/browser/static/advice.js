@@ -20,7 +20,7 @@ async function ask(op, given) {
 }
 
 // Return a program's errors, each with its line from 1, maybe its columns from 0, and its text.
-export const problems = (source) => ask("problems", { source });
+export const problems = (source) => ask("advice.problems", { source });
 
 // Return the names that can be at this place in a program, with what they are.
-export const completions = (source, at) => ask("completions", { source, at });
+export const completions = (source, at) => ask("advice.completions", { source, at });

@@ -8,9 +8,7 @@ let place = null;
 // Show the bar from now on, whenever something runs.
 export function bar() {
   if (place) return;
-  place = document.body.appendChild(element("div", { className: "running", hidden: true }));
-  place.setAttribute("role", "region");
-  place.setAttribute("aria-label", "Running nodes");
+  place = document.body.appendChild(element("div", { className: "running", hidden: true, role: "region", ariaLabel: "Running nodes" }));
   const list = element("ul");
   const every = button("Stop all", "Stop all nodes", () => Promise.all(entries().map((each) => each.stop())));
   const graph = follow();

@@ -1,7 +1,7 @@
 // A cell of the page: its code, its output, and its kind.
 import { Edits } from "./edits.js";
 import { createEditor } from "./editor.js";
-import { element, save } from "./elements.js";
+import { after, element, save } from "./elements.js";
 import { Now } from "./now.js";
 
 const LINES = 500;
@@ -78,9 +78,7 @@ class Cell {
   clear() {
     this.shown?.remove();
     if (this.recorded) this.recorded.hidden = true;
-    this.output = element("pre", { tabIndex: 0 });
-    this.output.setAttribute("role", "log");
-    this.output.setAttribute("aria-label", `Output of ${this.name}`);
+    this.output = element("pre", { tabIndex: 0, role: "log", ariaLabel: `Output of ${this.name}` });
     this.shown = element("div", { className: "ran" }, this.output);
     this.node.append(this.shown);
     this.edits.note("run");
@@ -120,7 +118,7 @@ class Cell {
 
   // Wait until the output contains the text that the chapter names, or for as long as the chapter shows output (s).
   shows(seconds) {
-    return Promise.race([this.seen, new Promise((resolve) => setTimeout(resolve, 1000 * (this.about.seconds ?? seconds)))]);
+    return Promise.race([this.seen, after(1000 * (this.about.seconds ?? seconds))]);
   }
 
   // What to do with the messages of a process.

@@ -43,8 +43,7 @@ export function codeView({ parent, text, label, language, before, onchange }) {
   // Whether it was changed: only then is Python asked, which may have to be loaded. Set while the page changes the text.
   let edited = false;
   // The first error in words, for who can't hover over it.
-  const said = element("p", { className: "code-problem", hidden: true });
-  said.setAttribute("aria-live", "polite");
+  const said = element("p", { className: "code-problem", hidden: true, ariaLive: "polite" });
   let filling = false;
   const view = new EditorView({
     parent,

@@ -1,5 +1,6 @@
 // The download that all nodes of a course share: shows its progress, and caches the files for use without a network.
 import { VERSION, addressOf } from "./address.js";
+import { after } from "./elements.js";
 
 const base = new URL("./", import.meta.url);
 const COURSE = new URL("../", base).href;
@@ -77,5 +78,5 @@ async function serviceWorker() {
   }
   await known;
   const controlled = new Promise((resolve) => navigator.serviceWorker.addEventListener("controllerchange", () => resolve(true)));
-  return Promise.race([controlled, new Promise((resolve) => setTimeout(resolve, READY_MS, false))]);
+  return Promise.race([controlled, after(READY_MS, false)]);
 }

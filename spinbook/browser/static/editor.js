@@ -7,8 +7,11 @@ import { element } from "./elements.js";
 // page's. `language` is "python" or "". `before` is what precedes the code in its program.
 export function createEditor(place, name, language = "", before = "") {
   // A field of its own: the page gives the <pre> another role if it scrolls.
-  const still = element("span", { className: "editor", tabIndex: 0 });
-  still.append(...place.childNodes);
+  const still = element(
+    "span",
+    { className: "editor", tabIndex: 0, role: "textbox", ariaMultiLine: "true", ariaReadOnly: "true", ariaLabel: `Code of ${name}. Enter edits it.` },
+    ...place.childNodes,
+  );
   place.append(still);
   const written = still.textContent;
   const label = `Code of ${name}. Escape, then Tab, leaves it.`;
@@ -62,10 +65,6 @@ export function createEditor(place, name, language = "", before = "") {
       else opening ??= show();
     },
   };
-  still.setAttribute("role", "textbox");
-  still.setAttribute("aria-multiline", "true");
-  still.setAttribute("aria-readonly", "true");
-  still.setAttribute("aria-label", `Code of ${name}. Enter edits it.`);
   still.addEventListener("keydown", (event) => {
     if (event.key !== "Enter" || event.shiftKey) return run(event);
     event.preventDefault();
@@ -76,8 +75,7 @@ export function createEditor(place, name, language = "", before = "") {
 
 // The editor if CodeMirror can't be loaded.
 function plainView({ parent, text, label, onchange }) {
-  const area = element("textarea", { value: text, spellcheck: false, rows: text.split("\n").length + 1 });
-  area.setAttribute("aria-label", label);
+  const area = element("textarea", { value: text, spellcheck: false, rows: text.split("\n").length + 1, ariaLabel: label });
   area.addEventListener("input", () => onchange(area.value));
   parent.append(area);
   return { focus: () => area.focus(), fill: (now) => (area.value = now) };

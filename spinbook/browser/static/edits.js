@@ -15,9 +15,8 @@ export class Edits {
     this.badge = element("span", { className: "edited", textContent: "edited" });
     this.reset = button("Reset", `Reset ${name}`, () => this.restore());
     this.changes = button("Changes", `Changes in ${name}`, () => this.#toggle());
-    this.changes.setAttribute("aria-expanded", "false");
-    this.notes = element("div", { className: "edit-notes" });
-    this.notes.setAttribute("aria-live", "polite");
+    this.changes.ariaExpanded = "false";
+    this.notes = element("div", { className: "edit-notes", ariaLive: "polite" });
     this.panel = element("div", { className: "changes", hidden: true });
     buttons.prepend(this.badge, this.changes, this.reset);
     after.after(this.notes, this.panel);
@@ -108,7 +107,7 @@ export class Edits {
 
   #open(yes) {
     this.panel.hidden = !yes;
-    this.changes.setAttribute("aria-expanded", String(yes));
+    this.changes.ariaExpanded = String(yes);
   }
 
   // Show what differs from a version, which the reader chooses.
@@ -117,9 +116,7 @@ export class Edits {
     if (this.draft.isOutdated) others.push({ label: "the course's earlier code", text: this.draft.original });
     others.push(...this.draft.versions.map(({ text, why, time }) => ({ label: `${timeOf(time)}, ${why}`, text })));
     const choice = element("select", {}, ...others.map(({ label }) => element("option", { textContent: label })));
-    const lines = element("pre", { className: "diff", tabIndex: 0 });
-    lines.setAttribute("aria-label", "Lines that differ");
-    lines.setAttribute("role", "group");
+    const lines = element("pre", { className: "diff", tabIndex: 0, role: "group", ariaLabel: "Lines that differ" });
     const show = () => lines.replaceChildren(...shownDifference(others[choice.selectedIndex].text, this.editor.text));
     choice.addEventListener("change", show);
     const use = button("Use that version", `Use that version of ${this.name}`, () => {

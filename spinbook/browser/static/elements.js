@@ -27,6 +27,7 @@ export function failure(error) {
   return `It could not run here: ${words.at(-1) ?? text.split("\n")[0]}`;
 }
 
+// Make an element. `properties` may be ARIA's, such as ariaLabel.
 export function element(tag, properties = {}, ...children) {
   const made = Object.assign(document.createElement(tag), properties);
   made.append(...children);
@@ -34,11 +35,13 @@ export function element(tag, properties = {}, ...children) {
 }
 
 export function button(text, label, act) {
-  const made = element("button", { type: "button", className: "run-button", textContent: text });
-  made.setAttribute("aria-label", label);
+  const made = element("button", { type: "button", className: "run-button", textContent: text, ariaLabel: label });
   made.addEventListener("click", act);
   return made;
 }
+
+// Resolves after a while (ms), with `value`.
+export const after = (ms, value) => new Promise((resolve) => setTimeout(resolve, ms, value));
 
 // Let the reader save a text as a file.
 export function save(name, text) {

@@ -2,7 +2,7 @@
 import { download as load } from "./download.js";
 import { Edits } from "./edits.js";
 import { createEditor } from "./editor.js";
-import { announce, button, element, failure, hindrance, save, style } from "./elements.js";
+import { after, announce, button, element, failure, hindrance, save, style } from "./elements.js";
 import { fill } from "./picture.js";
 import { take } from "./processes.js";
 import { tryOut } from "./trial.js";
@@ -51,15 +51,14 @@ function checker(hears) {
 async function read(exercise, file, say) {
   const worker = checker({ progress: (part) => say(`Loading ${part} …`) });
   await worker.ready;
-  return worker.call("read", { exercise, file: file.name, content: new Uint8Array(await file.arrayBuffer()) });
+  return worker.call("check.read", { name: exercise, file: file.name, content: new Uint8Array(await file.arrayBuffer()) });
 }
 
 async function check(exercise, source, say) {
   const worker = checker({ progress: (part) => say(`Loading ${part} …`) });
   await worker.ready;
   say("Checking …");
-  const late = new Promise((resolve) => setTimeout(resolve, 1000 * LIMIT_S, "late"));
-  const result = await Promise.race([worker.call("check", { exercise, source }), late]);
+  const result = await Promise.race([worker.call("check.check", { name: exercise, source }), after(1000 * LIMIT_S, "late")]);
   if (result !== "late") return result;
   worker.end();
   return { problem: `The check did not finish within ${LIMIT_S} s. Is there a loop in your program that never ends?` };
@@ -135,51 +134,48 @@ function opening(section) {
   code.addEventListener("click", ({ clientX: x, clientY: y }) => getSelection().isCollapsed && editor.open({ x, y }));
   const buttons = element("span", { className: "draft-tools" });
   const edits = new Edits(editor, location.pathname, file, buttons, code.closest('[class*="highlight-"]') ?? code);
-  const state = element("p", { className: "run-state" });
-  state.setAttribute("role", "status");
+  const state = element("p", { className: "run-state", role: "status" });
   const result = element("div", { className: "check-result" });
   const say = (text) => (state.textContent = text);
   // On a phone, the results are below the visible part of the page.
   const show = (part) => part.scrollIntoView({ block: "nearest" });
 
-  const act = async () => {
-    result.replaceChildren();
-    edits.note("checked");
+  // Load what runs programs, then act. Say so if something prevents it.
+  const attempt = async (act) => {
     const hindered = hindrance();
     if (hindered) return say(hindered);
     tellUpdate();
     say("Starting …");
     show(state);
-    checking.disabled = true;
     try {
       await load(say);
-      const checked = await check(name, editor.text, say);
-      say("");
-      result.replaceChildren(...panel(checked, name));
-      show(result);
-      announce(checked.problem ?? checked.total);
+      await act();
     } catch (error) {
       say(failure(error));
-    } finally {
-      checking.disabled = false;
     }
   };
-  const checking = button("Check", `Check ${file}`, act);
-  const play = async (scenario) => {
-    const hindered = hindrance();
-    if (hindered) return say(hindered);
+  const runChecks = async () => {
+    const checked = await check(name, editor.text, say);
+    say("");
+    result.replaceChildren(...panel(checked, name));
+    show(result);
+    announce(checked.problem ?? checked.total);
+  };
+  const checking = button("Check", `Check ${file}`, async () => {
+    result.replaceChildren();
+    edits.note("checked");
+    checking.disabled = true;
+    await attempt(runChecks);
+    checking.disabled = false;
+  });
+  const play = (scenario) => {
     edits.note("tried");
-    tellUpdate();
-    say("Starting …");
-    show(state);
-    await load(say);
-    await tryOut({ exercise: name, file, source: editor.text, scenario, place: result, say });
+    return attempt(() => tryOut({ exercise: name, file, source: editor.text, scenario, place: result, say }));
   };
   const trying = button("Try it", `Try ${file} in real time`, () => play(""));
   result.addEventListener("play", ({ detail }) => play(detail));
   editor.onrun = () => checking.click();
-  const upload = element("input", { type: "file", className: "hidden-text", tabIndex: -1 });
-  upload.setAttribute("aria-label", "A file to continue with");
+  const upload = element("input", { type: "file", className: "hidden-text", tabIndex: -1, ariaLabel: "A file to continue with" });
   const take = async () => {
     const [file] = upload.files;
     upload.value = "";
@@ -187,16 +183,11 @@ function opening(section) {
     result.replaceChildren();
     const text = await file.text();
     if (/\.py$/i.test(file.name) && !/^(\s*\{|PK)/.test(text)) return edits.take(text, `Your program is from ${file.name}.`);
-    const hindered = hindrance();
-    if (hindered) return say(hindered);
-    try {
-      await load(say);
+    await attempt(async () => {
       const program = await read(name, file, say);
       say(program.problem ?? "");
       if (!program.problem) edits.take(program.source, [`Your program is from ${file.name}.`, ...program.notes].join(" "));
-    } catch (error) {
-      say(failure(error));
-    }
+    });
   };
   upload.addEventListener("change", take);
   const tools = element(

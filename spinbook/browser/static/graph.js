@@ -7,15 +7,16 @@ const REFRESH_MS = 1000;
 
 // Return a button, and a panel that shows the current graph while it is open.
 export function follow() {
-  const panel = element("div", { className: "graph-panel", hidden: true, tabIndex: 0 });
-  panel.setAttribute("role", "region");
-  panel.setAttribute("aria-label", "Node graph");
+  const panel = element("div", { className: "graph-panel", tabIndex: 0, role: "region", ariaLabel: "Node graph" });
   const toggle = button("Graph", "Node graph", () => {
-    panel.hidden = !panel.hidden;
-    toggle.setAttribute("aria-expanded", String(!panel.hidden));
+    open(panel.hidden);
     refresh();
   });
-  toggle.setAttribute("aria-expanded", "false");
+  const open = (yes) => {
+    panel.hidden = !yes;
+    toggle.ariaExpanded = String(yes);
+  };
+  open(false);
   let shown = "";
   let timer = 0;
 
@@ -23,7 +24,7 @@ export function follow() {
     clearTimeout(timer);
     if (panel.hidden) return;
     if (!shown) panel.textContent = "Loading the graph …";
-    const current = await (await observer()).call("graph");
+    const current = await (await observer()).call("node_graph.now");
     if (!current || panel.hidden) return;
     if (JSON.stringify(current) !== shown) {
       shown = JSON.stringify(current);
@@ -36,8 +37,7 @@ export function follow() {
   const changed = (count) => {
     if (count > 0) return;
     clearTimeout(timer);
-    panel.hidden = true;
-    toggle.setAttribute("aria-expanded", "false");
+    open(false);
     shown = "";
   };
   return { panel, toggle, changed };

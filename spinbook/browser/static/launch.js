@@ -115,7 +115,7 @@ const FILE = /([^/\s]+?)[._]launch\.(py|ya?ml|xml)\b/;
 // that runs is ended only when the new one can start.
 export async function launch(cell, process, line) {
   const name = FILE.exec(line)?.[1].split(".")[0] ?? "launch";
-  const { status, steps } = (await process.call("launch", { source: line, files: files() })) ?? { status: 1 };
+  const { status, steps } = (await process.call("launch_plan.plan", { line, files: files() })) ?? { status: 1 };
   if (status) return void cell.fail();
   const unknown = programs(steps).find((step) => !programOf(cell, step.package, step.executable));
   if (unknown) return cell.fail(`There is no node ${unknown.executable} on this page.`);

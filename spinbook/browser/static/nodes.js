@@ -1,6 +1,6 @@
 // The nodes of a page: started by their cells or by `ros2 run`, listed and stopped as in a notebook.
 import { cellOf, cells, logs } from "./cell.js";
-import { failure } from "./elements.js";
+import { after, failure } from "./elements.js";
 import { files } from "./workspace.js";
 import { named, take } from "./processes.js";
 import { turtle } from "./turtle.js";
@@ -54,31 +54,20 @@ export async function runNode(cell, into = cell, args = []) {
     started.delete(earlier.name);
   }
   await start(cell.name, into, cell.program, cell.file, args);
-  await Promise.race([into.ended, new Promise((resolve) => setTimeout(resolve, 500))]);
+  await Promise.race([into.ended, after(500)]);
 }
 
 // `ros2 run PACKAGE EXECUTABLE …`: a node of this page, turtlesim, or a demo node.
 export async function runExecutable(cell, [, , pack, executable, ...args]) {
   const name = args.map((word) => /^__(?:node|name):=(.*)/.exec(word)?.[1]).find(Boolean);
-  if (executable === "turtlesim_node") {
-    await start(name ?? executable, cell, TURTLESIM, "turtlesim_node.py", args);
-    await cell.shows(SHOWN_S);
-    return cell.say("turtlesim_node runs. Show its window with %turtle.", "running");
-  }
-  const demo = demoNode(cell, pack, executable);
-  if (demo) {
-    await start(name ?? executable, cell, demo.source, demo.file, args);
-    return void (await Promise.race([cell.shows(SHOWN_S), cell.ended]));
-  }
-  if (!isPackage(pack)) return cell.fail(`Package '${pack}' not found.`);
-  const wanted = cellOf(cell, executable, `${pack}/${executable}`);
-  if (wanted && name) {
-    await start(name, cell, wanted.program, wanted.file, args);
-    return void (await Promise.race([cell.shows(SHOWN_S), cell.ended]));
-  }
-  if (!wanted) return cell.fail(`There is no node ${executable} on this page.`);
-  await runNode(wanted, cell, args);
+  const program = programOf(cell, pack, executable);
+  if ((!program || program.cell) && !isPackage(pack)) return cell.fail(`Package '${pack}' not found.`);
+  if (!program) return cell.fail(`There is no node ${executable} on this page.`);
+  // Under its own name, it replaces the earlier version of its cell's node.
+  if (program.cell && !name) await runNode(program.cell, cell, args);
+  else await start(name ?? executable, cell, program.source, program.file, args);
   await Promise.race([cell.shows(SHOWN_S), cell.ended]);
+  if (executable === "turtlesim_node" && named(name ?? executable)) cell.say("turtlesim_node runs. Show its window with %turtle.", "running");
 }
 
 // Return whether the course or a command of this page, as it is written, has this package.
@@ -95,13 +84,13 @@ export function showNodes(cell) {
   }
 }
 
-// Return the program that a launch file names: its text and its file.
+// Return the program that `ros2 run` or a launch file names: its text, its file, and its cell if it has one.
 export function programOf(from, pack, executable) {
   if (executable === "turtlesim_node") return { source: TURTLESIM, file: "turtlesim_node.py" };
   const demo = demoNode(from, pack, executable);
   if (demo) return demo;
   const cell = cellOf(from, executable, `${pack}/${executable}`);
-  return cell && { source: cell.program, file: cell.file };
+  return cell && { source: cell.program, file: cell.file, cell };
 }
 
 // Return the program of a node of demo_nodes_cpp or demo_nodes_py, which are part of Spinbook.
@@ -125,7 +114,7 @@ async function logHolds(name, text, seconds) {
   const end = Date.now() + 1000 * seconds;
   const holds = () => (logs.get(name) ?? []).some((line) => line.includes(text));
   while (!holds() && Date.now() < end && started.get(name)?.running) {
-    await new Promise((resolve) => setTimeout(resolve, 50));
+    await after(50);
   }
   return holds();
 }

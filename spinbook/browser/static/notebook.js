@@ -39,7 +39,7 @@ async function workFor(cell, process, act) {
   cell.now.runs(stop);
   try {
     await process.ready;
-    await process.call("environment", { environment });
+    await process.call("cells.set_environment", { environment });
     return await act(process);
   } finally {
     // A node that the command has started goes on.
@@ -86,7 +86,7 @@ async function runPython(cell, source) {
   cell.say("Waiting for the cells before …");
   const status = await inNotebook(cell, (process) => {
     cell.say("Running …", "running");
-    return process.call("python", { source });
+    return process.call("cells.run_python", { source });
   });
   if (status === null) cell.fail(cell.say("It was ended, so the variables of the cells above are lost. Run those cells again."));
   else if (status) cell.fail();
@@ -153,13 +153,13 @@ function setVariable(cell, line) {
 
 async function drawPlot(cell, process, { words: paths, seconds = secondsOf(cell), title = "" }) {
   cell.say(`Recording for ${seconds} s …`, "running");
-  const drawn = await process.call("plot", { paths, seconds, title });
+  const drawn = await process.call("plot.plot", { paths, seconds, title });
   if (drawn) show(cell, drawn, "live-plot");
 }
 
 async function drawGraph(cell, process, { seconds = GRAPH_S }) {
   cell.say(`Counting messages for ${seconds} s …`, "running");
-  const counted = await process.call("count", { seconds });
+  const counted = await process.call("node_graph.counted", { seconds });
   if (counted?.pictures.length) cell.shown?.append(graph(counted));
   else cell.print("No node runs. Run one.");
 }
@@ -169,7 +169,7 @@ export async function runTerminal(cell) {
 }
 
 async function runCommands(cell, process, source) {
-  const commands = (await process.call("commands", { source })) ?? [];
+  const commands = (await process.call("cells.commands", { source })) ?? [];
   for (const command of commands) {
     await runCommand(cell, process, command);
     if (cell.failed) return;
@@ -216,7 +216,7 @@ async function bounded(cell, process, line) {
   if (cell.until) cell.seen.then(() => over || interrupt("Ended, as all that the chapter shows is here."));
   cell.say("Running …", "running");
   try {
-    const status = await result(cell, process, "command", { source: line, files: files() });
+    const status = await result(cell, process, "cells.run_command", { line, files: files() });
     if (!why || status === null) return;
     cell.failed = false;
     cell.say(why, "ended");
@@ -231,5 +231,5 @@ export async function runFile(cell) {
 }
 
 export async function runInterface(cell) {
-  await inTerminal(cell, (process) => result(cell, process, "define", { name: cell.file, text: cell.source }));
+  await inTerminal(cell, (process) => result(cell, process, "cells.define", { path: cell.file, text: cell.source }));
 }

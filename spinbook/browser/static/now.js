@@ -5,11 +5,9 @@ const TICK_MS = 1000;
 
 export class Now {
   constructor(head, name) {
-    this.state = element("p", { className: "run-state" });
-    this.state.setAttribute("role", "status");
+    this.state = element("p", { className: "run-state", role: "status" });
     this.seconds = element("span", { className: "run-seconds" });
-    this.part = element("progress", { max: 1, hidden: true });
-    this.part.setAttribute("aria-label", "How much of the download is there");
+    this.part = element("progress", { max: 1, hidden: true, ariaLabel: "How much of the download is there" });
     this.last = element("code", { className: "run-last" });
     this.interrupt = button("Ctrl-C", `Ctrl-C: end ${name}`, () => this.stop?.());
     this.interrupt.hidden = true;

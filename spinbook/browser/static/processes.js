@@ -1,5 +1,6 @@
 // The processes of a page, each a web worker, and the hub between them, which forwards each one's frames to the others.
 import { VERSION, addressOf } from "./address.js";
+import { after } from "./elements.js";
 
 const STOP_MS = 2000;
 // How often to check that a program still responds, and how long it may take before it counts as blocked.
@@ -58,7 +59,6 @@ export const named = (name) => running().find((process) => process.name === name
 
 const changed = () => changes.dispatchEvent(new Event("change"));
 const processOf = (key) => key.slice(0, key.lastIndexOf("."));
-const after = (ms) => new Promise((resolve) => setTimeout(resolve, ms, "late"));
 
 // Frames to named endpoints go to the processes that have them; all others go to all processes.
 function route(from, head, data) {
@@ -138,7 +138,7 @@ export class Process {
     if (!this.alive) return;
     this.signal("SIGINT");
     const ended = this.ended ?? this.idle;
-    if ((await Promise.race([ended, after(STOP_MS)])) !== "late") return;
+    if ((await Promise.race([ended, after(STOP_MS, "late")])) !== "late") return;
     this.forced = true;
     this.end();
     await ended;
@@ -150,7 +150,7 @@ export class Process {
     changed();
     this.ended = this.ready
       .then(() => this.#watch())
-      .then(() => this.call("program", { source, file, args, environment, files }))
+      .then(() => this.call("process.run_program", { source, file, args, environment, files }))
       .finally(() => this.end());
     return this.ended;
   }

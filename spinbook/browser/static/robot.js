@@ -16,7 +16,7 @@ export async function robot(cell, process, { words: [source = ""], seconds }) {
   };
   cell.shown?.append(place);
   cell.say(`Recording for ${seconds} s …`, "running");
-  const { problem, moves } = (await process.call("robot", { source, seconds })) ?? {};
+  const { problem, moves } = (await process.call("robot.show", { source, seconds })) ?? {};
   if (!view) place.remove();
   if (problem) cell.fail(problem);
   else if (moves === false) view?.say("Nobody publishes joint positions. Run this cell again to see the robot move.");

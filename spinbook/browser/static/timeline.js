@@ -1,4 +1,5 @@
 // `%timeline`: records services, actions and topics while other cells run, and draws what happened.
+import { after } from "./elements.js";
 import { show } from "./picture.js";
 import { take } from "./processes.js";
 
@@ -7,8 +8,6 @@ const APPEAR_MS = 20_000;
 const LATE_MS = 300;
 
 let recording = null;
-
-const after = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
 async function begin(cell, names) {
   recording?.process.end();
@@ -26,7 +25,7 @@ async function begin(cell, names) {
   process.overhears = true;
   recording = { process, names, lines };
   await process.ready;
-  process.call("timeline", { names });
+  process.call("timeline.record", { names });
   await Promise.race([appeared, after(APPEAR_MS)]);
   cell.print(`Recording ${names.join(", ")}. %timeline draws what happens from now on.`);
   const missing = names.filter((name) => !found.has(name));
@@ -39,7 +38,7 @@ async function finish(cell, process, title) {
   recording = null;
   await after(LATE_MS);
   recorder.end();
-  show(cell, await process.call("drawn", { names, lines, title }), "live-timeline");
+  show(cell, await process.call("timeline.drawn", { names, lines, title }), "live-timeline");
 }
 
 export async function timeline(cell, process, { record, title = "" }) {

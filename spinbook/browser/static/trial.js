@@ -1,7 +1,7 @@
 // "Try it" on an exercise's page: the node in the editor runs among what surrounds it in the exercise, in real time, with
 // a picture. Nothing is judged.
 import { bar } from "./bar.js";
-import { button, element, failure } from "./elements.js";
+import { button, element } from "./elements.js";
 import { fill } from "./picture.js";
 import { take } from "./processes.js";
 
@@ -14,6 +14,7 @@ export async function tryOut({ exercise, file, source, scenario, place, say }) {
   await Promise.all(playing.map((process) => process.stop()));
   bar();
   const figure = element("figure");
+  const log = (label) => element("pre", { tabIndex: 0, role: "log", ariaLabel: label });
   const around = log("What surrounds your node");
   const own = log(`What ${file} prints`);
   const heads = [around, own].map((pre) => element("p", { className: "try-head", textContent: pre.ariaLabel }));
@@ -26,7 +27,7 @@ export async function tryOut({ exercise, file, source, scenario, place, say }) {
   playing = [surroundings];
   try {
     await surroundings.ready;
-    const plan = await surroundings.call("plan", { exercise, scenario });
+    const plan = await surroundings.call("trial.plan", { name: exercise, chosen: scenario });
     if (!plan) return say("Stopped.");
     if (plan.problem) return say(plan.problem);
     const node = take(file.replace(/\.py$/, ""), { output: (text) => print(own, text) });
@@ -36,11 +37,9 @@ export async function tryOut({ exercise, file, source, scenario, place, say }) {
     say(`Scenario ${plan.scenario} runs in real time …`);
     place.append(element("p", { className: "try-scenarios" }, "Play ", ...plan.scenarios.flatMap((name) => choice(name, place))));
     ended.then((status) => status && print(own, `— ended with ${status} —`));
-    await surroundings.call("play", { exercise, scenario: plan.scenario }).finally(() => surroundings.work(""));
+    await surroundings.call("trial.play_around", { name: exercise, chosen: plan.scenario }).finally(() => surroundings.work(""));
     await node.stop();
     say(`Scenario ${plan.scenario} is over. Nothing was judged: Check does that.`);
-  } catch (error) {
-    say(failure(error));
   } finally {
     surroundings.end();
   }
@@ -48,13 +47,6 @@ export async function tryOut({ exercise, file, source, scenario, place, say }) {
 
 function choice(name, place) {
   return [button(name, `Play the scenario ${name}`, () => place.dispatchEvent(new CustomEvent("play", { detail: name }))), " "];
-}
-
-function log(label) {
-  const pre = element("pre", { tabIndex: 0 });
-  pre.setAttribute("role", "log");
-  pre.ariaLabel = label;
-  return pre;
 }
 
 function print(pre, text) {

@@ -21,7 +21,7 @@ function painterOf(node) {
   if (painter?.alive) return painter;
   const process = take("turtle window", { picture: (text) => paint(JSON.parse(text)) });
   painter = process;
-  process.ready.then(() => process.call("turtle")).catch((error) => figures.forEach((figure) => figure.say(error.message)));
+  process.ready.then(() => process.call("turtle.show")).catch((error) => figures.forEach((figure) => figure.say(error.message)));
   node.ended.then(() => {
     process.end();
     figures.forEach((figure) => figure.say("turtlesim has ended."));
@@ -32,9 +32,7 @@ function painterOf(node) {
 
 // Return a figure that shows the running turtlesim `node`.
 export function turtle(node) {
-  const picture = element("div", { className: "turtle-picture", tabIndex: 0 });
-  picture.setAttribute("role", "img");
-  picture.setAttribute("aria-label", "Turtlesim");
+  const picture = element("div", { className: "turtle-picture", tabIndex: 0, role: "img", ariaLabel: "Turtlesim" });
   const caption = element("figcaption", { textContent: "Loading the picture …" });
   const figure = element("figure", { className: "turtle" }, picture, caption);
   figure.say = (text) => (caption.textContent = text);
@@ -42,7 +40,7 @@ export function turtle(node) {
     if (!picture.firstChild) figure.say("Click the picture, then drive with the arrow keys.");
     // Drawn by Spinbook's own code, which escapes names.
     picture.innerHTML = svg;
-    picture.setAttribute("aria-label", `Turtlesim: ${words}`);
+    picture.ariaLabel = `Turtlesim: ${words}`;
   };
   picture.addEventListener("keydown", (event) => {
     if (!KEYS[event.key] || !picture.firstChild || !figures.has(figure)) return;

@@ -10,7 +10,6 @@ export async function tellUpdate() {
   const answer = await fetch(NUMBER, { cache: "no-store" }).catch(() => null);
   if (!answer?.ok || (await answer.text()).trim() === opened) return;
   const reload = button("Reload", "Reload this page", () => location.reload());
-  const note = element("div", { className: "updated" }, element("p", { textContent: UPDATED }), reload);
-  note.setAttribute("role", "alert");
+  const note = element("div", { className: "updated", role: "alert" }, element("p", { textContent: UPDATED }), reload);
   document.body.append(note);
 }

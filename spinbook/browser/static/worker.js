@@ -131,97 +131,28 @@ async function start(identity, memory) {
 
 let ready = null;
 
-const does = {
-  start: ({ version, identity, compiled, memory }) => {
-    if (version !== VERSION) throw new Error("another version");
-    code = compiled;
-    ready = start(identity, memory);
-    return ready.then(() => null);
-  },
-  program: async ({ source, file, args, environment, files }) => {
-    const { py, process } = await ready;
-    await put(py, files);
-    try {
-      return await process.run_program.callPromising(source, file, py.toPy(args), py.toPy(environment));
-    } catch (error) {
-      // `os._exit` ends Python itself, with a status.
-      if (Number.isInteger(error?.status)) return error.status;
-      throw error;
-    }
-  },
-  environment: async ({ environment }) => (await cells()).set_environment((await ready).py.toPy(environment)),
-  python: async ({ source }) => (await cells()).run_python.callPromising(source),
-  command: async ({ source, files }) => {
-    const { py } = await ready;
-    await shares(py);
-    await put(py, files);
-    return (await cells()).run_command.callPromising(source);
-  },
-  launch: async ({ source, files }) => {
-    const { py } = await ready;
-    await shares(py);
-    await put(py, files);
-    return JSON.parse(await py.pyimport("spinbook.browser.in_page.launch_plan").plan.callPromising(source));
-  },
-  timeline: async ({ names }) => {
-    const { py } = await ready;
-    await shares(py);
-    return py.pyimport("spinbook.browser.in_page.timeline").record.callPromising(py.toPy(names));
-  },
-  drawn: async ({ names, lines, title }) => {
-    const { py } = await ready;
-    return JSON.parse(py.pyimport("spinbook.browser.in_page.timeline").drawn(py.toPy(names), py.toPy(lines), title));
-  },
-  problems: async ({ source }) => JSON.parse((await advice()).problems(source)),
-  completions: async ({ source, at }) => JSON.parse((await advice()).completions(source, at)),
-  commands: async ({ source }) => JSON.parse((await cells()).commands(source)),
-  define: async ({ name, text }) => {
-    await shares((await ready).py);
-    return (await cells()).define(name, text);
-  },
-  graph: async () => JSON.parse((await pictures()).now()),
-  count: async ({ seconds }) => JSON.parse(await (await pictures()).counted.callPromising(seconds)),
-  plot: async ({ paths, seconds, title }) => {
-    const { py } = await ready;
-    await shares(py);
-    return JSON.parse(await py.pyimport("spinbook.browser.in_page.plot").plot.callPromising(py.toPy(paths), seconds, title));
-  },
-  turtle: async () => {
-    const { py } = await ready;
-    return py.pyimport("spinbook.browser.in_page.turtle").show.callPromising(page);
-  },
-  robot: async ({ source, seconds }) => {
-    const { py } = await ready;
-    await shares(py);
-    return JSON.parse(await py.pyimport("spinbook.browser.in_page.robot").show.callPromising(page, source, seconds));
-  },
-  check: async ({ exercise, source }) => {
-    const result = await (await checks()).check.callPromising(exercise, source);
-    return JSON.parse(result);
-  },
-  plan: async ({ exercise, scenario }) => JSON.parse((await trials()).plan(exercise, scenario)),
-  play: async ({ exercise, scenario }) => (await trials()).play_around.callPromising(page, exercise, scenario),
-  read: async ({ exercise, file, content }) => {
-    const read = (await checks()).read;
-    return JSON.parse(read(exercise, file, (await ready).py.toPy(content)));
-  },
-};
+// What functions of in_page need besides ros.zip: interfaces with their files, or the checks and these.
+const NEEDS_SHARES = /^((advice|launch_plan|plot|robot)\.|cells\.(define|run_command)$|timeline\.record$)/;
+const NEEDS_CHECKS = /^(check|trial)\./;
 
-async function checks() {
+// Do what the page asks for: start, or call a function of in_page by its module and name, and its arguments by theirs.
+async function answer({ op, id, files, ...given }) {
+  if (op === "start") {
+    if (given.version !== VERSION) throw new Error("another version");
+    code = given.compiled;
+    ready = start(given.identity, given.memory);
+    return void (await ready);
+  }
   const { py, process } = await ready;
+  if (NEEDS_SHARES.test(op)) await shares(py);
+  if (NEEDS_CHECKS.test(op)) await checks(py, process);
+  await put(py, files);
+  return JSON.parse(await process.answer.callPromising(page, op, py.toPy(given)));
+}
+
+function checks(py, process) {
   py.checks ??= unpackChecks(py, process);
-  await Promise.all([py.checks, shares(py)]);
-  return py.pyimport("spinbook.browser.in_page.check");
-}
-
-async function trials() {
-  await checks();
-  return (await ready).py.pyimport("spinbook.browser.in_page.trial");
-}
-
-async function cells() {
-  const { py } = await ready;
-  return py.pyimport("spinbook.browser.in_page.cells");
+  return Promise.all([py.checks, shares(py)]);
 }
 
 async function unpackChecks(py, process) {
@@ -229,17 +160,6 @@ async function unpackChecks(py, process) {
   py.FS.writeFile("/check.zip", await bytes("check.zip"));
   py.runPython('import sys; sys.path.insert(0, "/check.zip")');
   process.find_grader_in("/check.zip");
-}
-
-async function advice() {
-  const { py } = await ready;
-  await shares(py);
-  return py.pyimport("spinbook.browser.in_page.advice");
-}
-
-async function pictures() {
-  const { py } = await ready;
-  return py.pyimport("spinbook.browser.in_page.node_graph");
 }
 
 // Write the files of the chapter's package where programs look for them, and those of a launch.
@@ -276,8 +196,10 @@ self.onmessage = async ({ data: message }) => {
   if (message.op === "ask") return void self.postMessage({ op: "here" });
   if (message.op === "key") return void keys.push(message);
   try {
-    self.postMessage({ op: "done", id: message.id, value: await does[message.op](message) });
+    self.postMessage({ op: "done", id: message.id, value: await answer(message) });
   } catch (error) {
-    self.postMessage({ op: "done", id: message.id, error: String(error) });
+    // `os._exit` ends Python itself, with a status.
+    const ended = Number.isInteger(error?.status) ? { value: error.status } : { error: String(error) };
+    self.postMessage({ op: "done", id: message.id, ...ended });
   }
 };

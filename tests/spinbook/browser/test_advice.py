@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
 
 from spinbook.browser.in_page.advice import completions, problems
@@ -27,7 +25,7 @@ def offered(line: str) -> list[str]:
     """Return what is offered at the `|` in this line."""
     program = PROGRAM.replace("{line}", line)
     at = program.index("|")
-    return [option["label"] for option in json.loads(completions(program.replace("|", ""), at))]
+    return [option["label"] for option in completions(program.replace("|", ""), at)]
 
 
 @pytest.mark.parametrize(
@@ -60,10 +58,10 @@ def test_a_nodes_own_names_come_before_those_of_rclpy() -> None:
     ],
 )
 def test_errors_are_named_with_their_line(line: str, said: list[str]) -> None:
-    problems_there = json.loads(problems(PROGRAM.replace("{line}", line)))
+    problems_there = problems(PROGRAM.replace("{line}", line))
     assert [problem["line"] for problem in problems_there] == [11] * len(said)
     assert all(problem["text"].startswith(text) for problem, text in zip(problems_there, said, strict=True))
 
 
 def test_lines_for_the_page_are_no_errors() -> None:
-    assert json.loads(problems("%plot /a/b --seconds 3\nx = 1\n")) == []
+    assert problems("%plot /a/b --seconds 3\nx = 1\n") == []
