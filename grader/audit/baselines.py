@@ -6,8 +6,9 @@ import itertools
 import json
 from collections import Counter
 from pathlib import Path
+from typing import get_args
 
-from grader.exercise.exercise import Exercise, Qos, ServiceOrAction
+from grader.exercise.exercise import Exercise, Qos, Role
 from grader.recording.recording import Recording
 from grader.scenario.times import SECOND
 
@@ -41,19 +42,12 @@ def _settings(exercise: Exercise, reference: Recording, style: str) -> dict[str,
         "parameters": [(p.name, p.default) for p in exercise.parameters if p.default is not None],
         "publish": [(t.name, t.type, _qos(t.qos), _period(reference, t.name)) for t in exercise.outputs],
         "subscribe": [(t.name, t.type, _qos(t.qos)) for t in exercise.inputs],
-        "service": _named(exercise.services),
-        "client": _named(exercise.clients),
-        "action": _named(exercise.actions),
-        "action_client": _named(exercise.action_clients),
+        **{role: [(end.name, end.type) for end in exercise.of_role(role)] for role in get_args(Role)},
     }
 
 
 def _qos(qos: Qos) -> tuple[str, str, int]:
     return qos.reliability, qos.durability, qos.depth
-
-
-def _named(endpoints: tuple[ServiceOrAction, ...]) -> list[tuple[str, str]]:
-    return [(endpoint.name, endpoint.type) for endpoint in endpoints]
 
 
 def _period(reference: Recording, topic: str) -> float | None:

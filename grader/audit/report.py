@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -68,8 +69,7 @@ def _show_problem(problem: AuditProblem, console: Console) -> None:
 
 def _short(place: str) -> str:
     """Return the path relative to the current folder."""
-    here = f"{Path.cwd()}/"
-    return place.removeprefix(here)
+    return place.removeprefix(f"{Path.cwd()}/")
 
 
 def _rules(audit: Audit) -> Table:
@@ -228,7 +228,6 @@ def write_html(audits: list[Audit], faults: list[AuditProblem], file: Path) -> N
 
     It is one file, needs no network and runs no script.
     """
-    here = f"{Path.cwd()}/"
     write_if_changed(
         file,
         render(
@@ -238,7 +237,7 @@ def write_html(audits: list[Audit], faults: list[AuditProblem], file: Path) -> N
             fates=FATES,
             mutants={audit.exercise: _by_operator(audit) for audit in audits},
             most={audit.exercise: max([check.kills for check in audit.checks] or [1]) or 1 for audit in audits},
-            short=lambda place: place.removeprefix(here),
+            short=_short,
             lines=_lines,
         ),
     )
@@ -247,10 +246,9 @@ def write_html(audits: list[Audit], faults: list[AuditProblem], file: Path) -> N
 def _by_operator(audit: Audit) -> list[tuple[str, list[MutantResult]]]:
     """Return the mutants, grouped by kind; those that no check catches come first."""
     order = list(FATES)
-    groups: dict[str, list[MutantResult]] = {}
-    for result in sorted(audit.mutants, key=lambda result: (result.mutant.operator, order.index(result.fate))):
-        groups.setdefault(result.mutant.operator, []).append(result)
-    return list(groups.items())
+    by_operator = sorted(audit.mutants, key=lambda result: (result.mutant.operator, order.index(result.fate)))
+    groups = itertools.groupby(by_operator, key=lambda result: result.mutant.operator)
+    return [(operator, list(results)) for operator, results in groups]
 
 
 def _lines(diff: str) -> list[tuple[str, str]]:

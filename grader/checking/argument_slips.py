@@ -26,7 +26,7 @@ _LISTS: dict[type[ast.expr], type] = {ast.Dict: dict, ast.List: list, ast.Tuple:
 
 def argument_slips(name: str, function: Callable[..., Any], call: ast.Call) -> Iterator[tuple[str, str]]:
     """Yield what is wrong with the arguments of a call of a run's method, and what to do."""
-    if any(isinstance(one, ast.Starred) for one in call.args) or any(one.arg is None for one in call.keywords):
+    if is_unpacked(call):
         return
     signature = inspect.signature(function)
     try:
@@ -40,6 +40,13 @@ def argument_slips(name: str, function: Callable[..., Any], call: ast.Call) -> I
         for node in argument if isinstance(argument, tuple) else (argument,):
             if isinstance(node, ast.expr) and (fix := _misfit(annotation, node)):
                 yield f"{name} gets {ast.unparse(node)} for {key}", fix
+
+
+def is_unpacked(call: ast.Call) -> bool:
+    """Return whether a call has `*list` or `**dictionary`, so that the source does not say what it passes."""
+    return any(isinstance(value, ast.Starred) for value in call.args) or any(
+        keyword.arg is None for keyword in call.keywords
+    )
 
 
 def _shown(one: inspect.Parameter) -> str:

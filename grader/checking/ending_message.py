@@ -16,6 +16,9 @@ AVAILABLE = "rclpy, tf2, the standard ROS 2 messages (std_msgs, geometry_msgs, s
 MISSING = re.compile(r"ModuleNotFoundError: No module named '([^']+)'")
 NO_NAME = re.compile(r"ImportError: cannot import name '([^']+)' from '([^']+)'")
 
+#: An error to which `grader.runner.program_end` has added advice, behind the line that it quotes.
+ADVISED = re.compile(r" in line \d+[^`]*: `.*`\. \S")
+
 ADVICE = (
     (
         re.compile(r"IndentationError|TabError"),
@@ -63,11 +66,13 @@ def _instead(module: str, exercise: Exercise) -> str:
 def message_of(ending: Ending, exercise: Exercise) -> str:
     """Return how a run ended, with advice if there is any; empty when all went well.
 
-    The exercise's own advice has priority over the advice that fits every program.
+    Advice on the very text of an error, which the recording has, is more specific than the exercise's on a kind of
+    exception; that is more specific than the advice that fits every program.
     """
     message = ending.message
+    is_advised = bool(ADVISED.search(message))
     for exception, advice in exercise.advice.items():
-        if re.search(rf"\b{re.escape(exception)}\b", message) and "assignment index" not in message:
+        if re.search(rf"\b{re.escape(exception)}\b", message) and not is_advised:
             return f"{message} {advice}"
     if newer := newer_name(message):
         return f"{message} {newer}"
@@ -78,6 +83,6 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
         case = f"It may have {name}: capital letters count." if name != no_name[1] else "Is the name spelled right?"
         return f"{message} The module {no_name[2]} has no {no_name[1]}. {case}"
     for pattern, advice in ADVICE:
-        if pattern.search(message) and not re.search(r"Every Node already has|assignment index", message):
+        if pattern.search(message) and not is_advised:
             return f"{message} {advice}"
     return message

@@ -9,7 +9,7 @@ from typing import Any
 
 from grader.checking.closed_loops import TRUTH
 from grader.checking.existing_names import OF_EVERY_NODE
-from grader.exercise.exercise import Exercise
+from grader.exercise.exercise import Exercise, Role
 from grader.recording.types import message_class
 from grader.scenario.command_line import programs_of, starts
 from grader.scenario.scenario import Message, Request, Scenario, SendGoal, SetParameter, Subscribe
@@ -46,9 +46,9 @@ class KnownNames:
         outputs = {topic.name for topic in self.exercise.outputs}
         return sorted({type_ for name, type_ in self.topics.items() if type_ and name not in outputs})
 
-    def parts(self, role: str, part: str) -> list[str]:
+    def parts(self, role: Role, part: str) -> list[str]:
         """Return the parts of services or actions of a role, such as `std_srvs/srv/Trigger.Response`."""
-        return sorted({f"{end.type}.{part}" for end in self.exercise.endpoints if end.role == role})
+        return sorted({f"{end.type}.{part}" for end in self.exercise.of_role(role)})
 
 
 def of(exercise: Exercise, scenarios: tuple[Scenario, ...]) -> KnownNames:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from grader.checking import known_names
-from grader.checking.argument_slips import argument_slips
+from grader.checking.argument_slips import argument_slips, is_unpacked
 from grader.checking.closed_loops import TRUTH
 from grader.checking.graph import Kind
 from grader.checking.known_names import KnownNames
@@ -179,7 +179,7 @@ class _Function:
             return "record", _LISTS[function.attr]
         if function.attr not in ("messages_on", "published_on"):
             return None
-        topic = self._text((self._arguments(node, function.attr) or {}).get("topic"))
+        topic = self._text(self._arguments(node, function.attr).get("topic"))
         type_ = self._known.topics.get(topic, "") if topic else ""
         if not topic and len(self._known.received) == 1:
             type_ = self._known.received[0]
@@ -228,18 +228,16 @@ class _Function:
             written = ast.unparse(node)
             yield ExerciseError(self._file, f"{written} is not called", f"Write {written}(…).", node.lineno)
 
-    def _arguments(self, node: ast.Call, method: str) -> dict[str, Any] | None:
-        """Return the arguments of a call by the names of the parameters; None if the source does not say."""
+    def _arguments(self, node: ast.Call, method: str) -> dict[str, Any]:
+        """Return the arguments of a call by the names of the parameters; none if the source does not say."""
         function = getattr(Run, method, None)
-        if not callable(function) or any(isinstance(one, ast.Starred) for one in node.args):
-            return None
-        if any(keyword.arg is None for keyword in node.keywords):
-            return None
+        if not callable(function) or is_unpacked(node):
+            return {}
         keywords = {str(keyword.arg): keyword.value for keyword in node.keywords}
         try:
             return dict(inspect.signature(function).bind_partial(None, *node.args, **keywords).arguments)
         except TypeError:
-            return None
+            return {}
 
     def _call(self, node: ast.Call) -> Iterator[ExerciseError]:
         assert isinstance(node.func, ast.Attribute)
@@ -247,21 +245,26 @@ class _Function:
         if method not in _OF_RUNS or not callable(getattr(Run, method, None)):
             return
         parameters = set(inspect.signature(getattr(Run, method)).parameters) - {"run", "self"}
-        for keyword in (unknown := [one for one in node.keywords if one.arg and one.arg not in parameters]):
-            yield self._error(node, f"{method} has no argument {keyword.arg}", str(keyword.arg), parameters)
+        unknown = [keyword.arg for keyword in node.keywords if keyword.arg and keyword.arg not in parameters]
+        for name in unknown:
+            yield self._error(node, f"{method} has no argument {name}", name, parameters)
         for problem, fix in () if unknown else argument_slips(method, getattr(Run, method), node):
             yield ExerciseError(self._file, problem, fix, node.lineno)
-        for name, argument in (self._arguments(node, method) or {}).items():
-            yield from self._argument(node, method, name, argument)
+        arguments = self._arguments(node, method)
+        topic = self._text(arguments.get("topic"))
+        for name, argument in arguments.items():
+            yield from self._argument(node, method, topic, name, argument)
 
-    def _argument(self, node: ast.Call, method: str, name: str, argument: Any) -> Iterator[ExerciseError]:
+    def _argument(self, node: ast.Call, method: str, topic: str, name: str, argument: Any) -> Iterator[ExerciseError]:
         known, word = self._candidates(method, name)
         for text in self._texts(argument) if word else ():
             if text not in known:
                 yield self._error(node, f"there is no {word} {text!r}", text, known)
-        yield from self._of_truth(node, method, name, argument)
+        for text in self._of_truth(method, topic, name, argument):
+            if self._known.truth and re.split(r"[.\[]", text)[0] not in self._known.truth:
+                yield self._error(node, f"the world's truth has no {text!r}", text, self._known.truth)
         if name in ("field", "fields", "per", "place"):
-            types = self._types(method, self._text((self._arguments(node, method) or {}).get("topic")))
+            types = self._types(method, topic)
             for path in self._texts(argument):
                 if problem := _unreadable(path):
                     yield ExerciseError(
@@ -271,17 +274,11 @@ class _Function:
                     every = {known for type_ in types for known in known_names.fields(type_)}
                     yield self._error(node, f"{' and '.join(types)} has no field {path!r}", path, every)
 
-    def _of_truth(self, node: ast.Call, method: str, name: str, argument: Any) -> Iterator[ExerciseError]:
-        """Yield the errors of names in the world's truth."""
-        texts: list[str] = []
+    def _of_truth(self, method: str, topic: str, name: str, argument: Any) -> list[str]:
+        """Return the names of an argument that are names in the world's truth."""
         if method == "must_estimate" and name == "fields" and isinstance(argument, ast.Dict):
-            texts = [text for value in argument.values if (text := self._text(value))]
-        elif name in ("field", "fields", "place"):
-            topic = self._text((self._arguments(node, method) or {}).get("topic"))
-            texts = self._texts(argument) if topic == TRUTH else []
-        for text in texts:
-            if self._known.truth and re.split(r"[.\[]", text)[0] not in self._known.truth:
-                yield self._error(node, f"the world's truth has no {text!r}", text, self._known.truth)
+            return [text for value in argument.values if (text := self._text(value))]
+        return self._texts(argument) if name in ("field", "fields", "place") and topic == TRUTH else []
 
     def _texts(self, argument: Any) -> list[str]:
         """Return the texts of an argument: one, the keys of a dictionary, or several positional ones."""

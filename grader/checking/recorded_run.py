@@ -290,7 +290,7 @@ class RecordedRun:
 
     def only(self, role: Role) -> str:
         """Return the only service or action of a kind. Raises ValueError if there are several."""
-        names = [endpoint.name for endpoint in self.exercise.endpoints if endpoint.role == role]
+        names = [endpoint.name for endpoint in self.exercise.of_role(role)]
         if len(names) != 1:
             raise ValueError(f"name the {role}: exercise.toml has {', '.join(names) or 'none'} under [[{role}]].")
         return names[0]
@@ -314,17 +314,19 @@ def _requests(recording: Recording) -> list[tuple[float, str, str]]:
     return calls + [(goal.at, goal.action, "a goal") for goal in goals]
 
 
-def _text(fields: dict[str, Any], path: str) -> str:
+def _value(fields: dict[str, Any], path: str) -> Any:
+    """Return the value at a path; None if the message has no such field or element."""
     try:
-        value = field_of(fields, path)
+        return field_of(fields, path)
     except (NoSuchField, IndexError):
-        return ""
+        return None
+
+
+def _text(fields: dict[str, Any], path: str) -> str:
+    value = _value(fields, path)
     return value if isinstance(value, str) else ""
 
 
 def _number(fields: dict[str, Any], path: str) -> float | None:
-    try:
-        value = field_of(fields, path)
-    except (NoSuchField, IndexError):
-        return None
+    value = _value(fields, path)
     return value if isinstance(value, (int, float)) and not isinstance(value, bool) else None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import statistics
 from collections.abc import Iterable, Sequence
 
 from rich.console import Console
@@ -49,12 +50,12 @@ def _list(console: Console, skipped: Iterable[SkippedFile]) -> None:
 
 def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[Entry]) -> None:
     """Print the class's result, and what is left for the instructor to do."""
-    finals = sorted(entry.final for entry in entries if entry.final is not None)
+    finals = [entry.final for entry in entries if entry.final is not None]
     if finals:
         points = entries[0].grade.points
-        middle = (finals[(len(finals) - 1) // 2] + finals[len(finals) // 2]) / 2
         full = sum(final >= points for final in finals)
-        say(console, f"{len(finals)} grades: median {middle:g} of {points:g} points, {full} with full marks.", "bold")
+        median = statistics.median(finals)
+        say(console, f"{len(finals)} grades: median {median:g} of {points:g} points, {full} with full marks.", "bold")
     unknown = unknown_to_moodle(entries)
     if 0 < unknown < len(entries):  # a class that Moodle knows
         say(

@@ -7,8 +7,7 @@ from datetime import tzinfo
 from pathlib import Path
 
 from grader.classroom.archive import date_of
-from grader.classroom.formats.format import UploadedFile
-from grader.classroom.names import normal
+from grader.classroom.formats.format import UploadedFile, person
 from grader.classroom.submissions import File, Question, SubmissionsError
 from grader.classroom.tables import table_rows
 from grader.classroom.times import UNKNOWN, Time, read_time
@@ -39,7 +38,7 @@ def by_row(
         if not path.exists():
             path = table.parent / row["file"].replace("\\", "/")
         lms = {column: value for column, value in row.items() if column not in KNOWN}
-        student = Student(normal(row["student"]), normal(row.get("name", "")), row.get("email", ""), lms)
+        student = person(row["student"], row.get("name", ""), row.get("email", ""), **lms)
         if not path.exists() and not path.is_symlink():
             absent.append((student, SkippedFile(row["file"], f"line {number} names it, but there is no such file")))
             continue

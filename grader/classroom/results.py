@@ -12,6 +12,7 @@ import tempfile
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -271,7 +272,8 @@ class ClassGrading:
             if kept:
                 former[who] = kept[0]
             if kept and kept[1] == self._key(submissions[who]) and not regrade(who):
-                unchanged.append(self._still(handed_in, kept[0], kept[1]))
+                store = partial(self._unchanged, handed_in, *kept)
+                unchanged.append(self._stored(Entry(handed_in.student, handed_in.file.name, kept[0].grade), store))
             else:
                 to_grade.append(handed_in)
         return ClassPlan(tuple(to_grade), tuple(unchanged), former)
@@ -313,7 +315,8 @@ class ClassGrading:
         for one in [one for one in waiting.values() if all(str(file.path) in done for file in one.files)]:
             del waiting[one.student.id]
             graded = self._best(one, [done[str(file.path)] for file in one.files])
-            yield self._kept(one, graded, submissions[one.student.id])
+            store = partial(self.keep, one, graded, submissions[one.student.id])
+            yield self._stored(Entry(one.student, one.file.name, graded.grade), store)
         needed = {str(file.path) for one in waiting.values() for file in one.files}
         for path in done.keys() - needed:
             del done[path]
@@ -330,24 +333,24 @@ class ClassGrading:
         name = handed_in.files[best].name
         return replace(attempts[best], grade=replace(attempts[best].grade, submission=name))
 
-    def _kept(self, handed_in: StudentSubmission, graded: GradedSubmission, tries: Tries) -> Entry:
-        """Store a grade. If its page or files can't be written, it becomes a `host-error`, and the others go on."""
+    def _stored(self, entry: Entry, store: Callable[[], Entry]) -> Entry:
+        """Store an entry. If its page or files can't be written, it becomes a `host-error`, and the others go on."""
         try:
-            return self.keep(handed_in, graded, tries)
+            return store()
         except Exception as error:
             stop_if_no_room(self.results.folder, error)
-            return self.give_up(Entry(handed_in.student, handed_in.file.name, graded.grade), not_written(error))
+            return self.give_up(entry, not_written(error))
 
     def record(self, student: Student, grade: Grade) -> Entry:
         """Store the entry of a student without a submission to grade."""
         entry = Entry(student, "", grade)
         self.entries[student.id] = entry = replace(entry, adjustments=self.adjust(entry))
-        try:
+
+        def store() -> Entry:
             self.results.write(entry, "", feedback_page(entry, self.exercise, None), None)
-        except Exception as error:
-            stop_if_no_room(self.results.folder, error)
-            return self.give_up(entry, not_written(error))
-        return entry
+            return entry
+
+        return self._stored(entry, store)
 
     def give_up(self, entry: Entry, what: str) -> Entry:
         """Turn an entry into a `host-error` that says `what` happened; the next run tries it again."""
@@ -372,13 +375,6 @@ class ClassGrading:
         # The page contains the recordings now; those of a whole class would fill the memory.
         self.entries[entry.student.id] = entry = replace(entry, grade=replace(grade, recordings={}, references={}))
         return entry
-
-    def _still(self, handed_in: StudentSubmission, kept: Entry, key: str) -> Entry:
-        try:
-            return self._unchanged(handed_in, kept, key)
-        except Exception as error:
-            stop_if_no_room(self.results.folder, error)
-            return self.give_up(Entry(handed_in.student, handed_in.file.name, kept.grade), not_written(error))
 
     def _unchanged(self, handed_in: StudentSubmission, kept: Entry, key: str) -> Entry:
         """Return the entry of a submission that needs no grading, with the student's current name and date."""

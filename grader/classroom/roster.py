@@ -10,6 +10,7 @@ from datetime import tzinfo
 from functools import cache
 from pathlib import Path
 
+from grader.classroom.formats.format import person
 from grader.classroom.formats.moodle_languages import LANGUAGE, LANGUAGES, in_english, time_in_english
 from grader.classroom.formats.registry import PLATFORMS
 from grader.classroom.names import comparable, normal, student_id
@@ -75,7 +76,7 @@ def _student(row: Mapping[str, str]) -> Student | None:
 def generic_student(row: Mapping[str, str]) -> Student:
     """Return the student in a row of a table in our own format."""
     lms = {name: value for name, value in row.items() if name not in ("student", "name", "email", "group", "submitted")}
-    return Student(normal(row["student"]), normal(row.get("name", "")), row.get("email", ""), lms)
+    return person(row["student"], row.get("name", ""), row.get("email", ""), **lms)
 
 
 def _time(row: Mapping[str, str], place: str, zone: tzinfo | None) -> Time:

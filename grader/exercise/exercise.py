@@ -175,25 +175,9 @@ class Exercise:
         """Return the name of one element of the published lists."""
         return next((topic.elements.called for topic in self.outputs if topic.elements), "element")
 
-    @property
-    def services(self) -> tuple[ServiceOrAction, ...]:
-        """Return the services that the program serves."""
-        return tuple(endpoint for endpoint in self.endpoints if endpoint.role == "service")
-
-    @property
-    def clients(self) -> tuple[ServiceOrAction, ...]:
-        """Return the services that the program calls."""
-        return tuple(endpoint for endpoint in self.endpoints if endpoint.role == "client")
-
-    @property
-    def actions(self) -> tuple[ServiceOrAction, ...]:
-        """Return the actions that the program serves."""
-        return tuple(endpoint for endpoint in self.endpoints if endpoint.role == "action")
-
-    @property
-    def action_clients(self) -> tuple[ServiceOrAction, ...]:
-        """Return the actions that the program sends goals to."""
-        return tuple(endpoint for endpoint in self.endpoints if endpoint.role == "action_client")
+    def of_role(self, role: Role) -> tuple[ServiceOrAction, ...]:
+        """Return the services and actions with which the program does this."""
+        return tuple(endpoint for endpoint in self.endpoints if endpoint.role == role)
 
 
 class ExerciseError(Exception):

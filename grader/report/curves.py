@@ -72,13 +72,12 @@ def drawn_quantity(exercise: Exercise, grade: Grade, scenario: str) -> Quantity 
         if mine != its:
             for field, unit in topic.units.items():
                 return Quantity(field, unit, "value", "name", "", topic.name)
-    text = next((one.text for one in _findings(grade, scenario)), "")
+    text = next((one.text for one in findings(grade, scenario)), "")
     runs = [of[scenario] for of in (grade.references, grade.recordings) if scenario in of]
     named = [topic for topic in exercise.outputs if topic.name in text]
     served = [
         Quantity(field, unit, "goal", "", end.name)
-        for end in exercise.endpoints
-        if end.role == "action"
+        for end in exercise.of_role("action")
         for field, unit in end.units.items()
     ]
     published = itertools.chain(_published(named, runs), _published(exercise.outputs, runs))
@@ -190,14 +189,14 @@ def _feedback_curves(grade: Grade, scenario: str, quantity: Quantity) -> tuple[C
     return tuple(drawn)
 
 
-def _findings(grade: Grade, scenario: str) -> list[Finding]:
+def findings(grade: Grade, scenario: str) -> list[Finding]:
     """Return what the public checks that failed say about a scenario."""
     failed = [verdict.finding for verdict in grade.verdicts if verdict.status == "failed" and not verdict.hidden]
     return [finding for finding in failed if finding and finding.scenario == scenario]
 
 
 def _times_of_findings(grade: Grade, scenario: str) -> list[float]:
-    return sorted(finding.at for finding in _findings(grade, scenario) if finding.at is not None)
+    return sorted(finding.at for finding in findings(grade, scenario) if finding.at is not None)
 
 
 def _first_finding(grade: Grade, scenario: str, times: list[float]) -> float:

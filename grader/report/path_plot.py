@@ -15,6 +15,7 @@ from markupsafe import Markup
 
 from grader.exercise.exercise import Exercise, Topic
 from grader.recording.recording import ReceivedMessage, Recording, SentMessage
+from grader.report.curves import findings
 from grader.report.pages import template
 from ros_in_python.axis_marks import round_values
 from ros_in_python.field_path import NoSuchField, field_of
@@ -92,8 +93,7 @@ def _way(recording: Recording, topic: Topic, fields: tuple[str, str]) -> Iterato
 
 
 def _wrong(grade: Grade, scenario: str, way: list[tuple[float, Place]]) -> tuple[float, Place] | None:
-    public = [verdict.finding for verdict in grade.verdicts if verdict.status == "failed" and not verdict.hidden]
-    times = [one.at for one in public if one and one.scenario == scenario and one.at is not None]
+    times = [finding.at for finding in findings(grade, scenario) if finding.at is not None]
     before = [(at, place) for at, place in way if times and at <= times[0] + 1e-6]
     return (times[0], before[-1][1]) if before else None
 

@@ -124,7 +124,7 @@ class ServiceServer:
 
 def unserved(ends: GraderSide, exercise: Exercise) -> tuple[Call, ...]:
     """Return the student's requests for which there was no server, of the services that the exercise declares."""
-    types = {one.name: one.type for one in exercise.clients}
+    types = {one.name: one.type for one in exercise.of_role("client")}
     everything = requests_in_order(ends.hub.unserved)
     found = [asked for asked in everything if types.get(asked.client.name) == asked.client.type]
     return tuple(

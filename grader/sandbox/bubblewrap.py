@@ -51,10 +51,12 @@ def build(root: bytes, user_namespace: int) -> Namespaces:
     program = find()
     if program is None:
         raise OSError("bubblewrap (bwrap) is not installed")
-    texts = {_FIRST_TEXT + at: _memory_file(text.encode()) for at, text in enumerate(filesystem.TEXTS.values())}
-    filters = [_memory_file(seccomp.program())] if seccomp.supported() else []
+    texts = {
+        _FIRST_TEXT + at: filesystem.memory_file(text.encode()) for at, text in enumerate(filesystem.TEXTS.values())
+    }
+    filters = [filesystem.memory_file(seccomp.program())] if seccomp.supported() else []
     # Not on the command line: the student can read it, and it would show the hidden paths.
-    arguments = _memory_file(root)
+    arguments = filesystem.memory_file(root)
     information, information_end = os.pipe()
     command = [
         *(program, "--userns", str(user_namespace), "--unshare-pid", "--unshare-ipc", "--unshare-uts"),
@@ -142,11 +144,3 @@ def _join(init: int, user_namespace: int) -> None:
         syscalls.setns(namespace)
         os.close(namespace)
     os.chdir("/")
-
-
-def _memory_file(content: bytes) -> int:
-    """Return the descriptor of a file without a name, ready to be read from its beginning."""
-    number = os.memfd_create("sandbox")
-    os.write(number, content)
-    os.lseek(number, 0, os.SEEK_SET)
-    return number

@@ -131,6 +131,15 @@ class _MountPlan:
         self.steps.append(Mount(action, path, content, size))
 
 
+def memory_file(content: bytes) -> int:
+    """Return the descriptor of a file without a name, ready to be read from its beginning."""
+    number = os.memfd_create("sandbox")
+    with os.fdopen(number, "wb", closefd=False) as file:
+        file.write(content)
+    os.lseek(number, 0, os.SEEK_SET)
+    return number
+
+
 def write_file(folder: Path, name: str, content: bytes) -> None:
     """Write a submission's file, readable by every user, and its parent folders."""
     path = folder / name

@@ -176,7 +176,7 @@ class ForkServer:
         start = StartRequest(shown, isolation, limits, core, *_root(program, isolation, limits))
         ours, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         output, output_end = os.pipe2(os.O_CLOEXEC)
-        passed = [_memory_file(pickle.dumps(start)), control.detach(), output_end]
+        passed = [filesystem.memory_file(pickle.dumps(start)), control.detach(), output_end]
         if program.hub is not None:
             passed.append(os.dup(program.hub))
         try:
@@ -262,11 +262,3 @@ def _confinement(program: ProgramSpec, isolation: Isolation) -> list[int]:
     if isolation is Isolation.LANDLOCK:
         return [landlock.rules(program.readonly, program.hidden)]
     return [] if isolation is Isolation.NONE else [os.dup(namespaces.user_namespace_of_this_process())]
-
-
-def _memory_file(content: bytes) -> int:
-    number = os.memfd_create("start", os.MFD_CLOEXEC)
-    with os.fdopen(os.dup(number), "wb") as stream:
-        stream.write(content)
-    os.lseek(number, 0, os.SEEK_SET)
-    return number

@@ -205,7 +205,7 @@ class Resolver:
             return self._typed(step, step.topic, "msg", self._topics.get(step.topic), "publish")
         if isinstance(step, CancelGoal):
             self._see_goal(step)
-        if isinstance(step, CancelAll) and not self._type_of(step.action, self._exercise.actions):
+        if isinstance(step, CancelAll) and not self._type_of(step.action, self._exercise.of_role("action")):
             self._fault(step.line, f"there is no action {step.action}", "Declare it in exercise.toml under [[action]].")
         if isinstance(step, (SetParameter, GetParameter)) and not step.node:
             return replace(step, node=self._node())
@@ -222,7 +222,7 @@ class Resolver:
         return f"{namespace}/{self._exercise.node_name.lstrip('/')}"
 
     def _request(self, step: Request) -> Request:
-        declared = self._type_of(step.service, self._exercise.services)
+        declared = self._type_of(step.service, self._exercise.of_role("service"))
         found = self._typed(step, step.service, "srv", declared, "service")
         kind = message_class(found.type).Request
         return replace(found, fields=self._check(step.line, step.service, kind, step.fields, f"{found.type}_Request"))
@@ -235,7 +235,7 @@ class Resolver:
         return self._request(Request(step.at, service, "lifecycle_msgs/srv/ChangeState", fields, line=step.line))
 
     def _goal(self, step: SendGoal) -> SendGoal:
-        declared = self._type_of(step.action, self._exercise.actions)
+        declared = self._type_of(step.action, self._exercise.of_role("action"))
         found = self._typed(step, step.action, "action", declared, "action")
         kind = message_class(found.type).Goal
         return replace(found, fields=self._check(step.line, step.action, kind, step.fields, f"{found.type}_Goal"))
@@ -299,7 +299,7 @@ class Resolver:
         return self._action_server(server)
 
     def _service_server(self, server: Server) -> Server:
-        declared = self._type_of(server.service, self._exercise.clients)
+        declared = self._type_of(server.service, self._exercise.of_role("client"))
         server = self._typed(server, server.service, "srv", declared, "client")
         if isinstance(server.replies, AuthorCode):
             return server
@@ -316,7 +316,7 @@ class Resolver:
         return replace(reply, fields=fields)
 
     def _action_server(self, server: ActionServer) -> ActionServer:
-        declared = self._type_of(server.action, self._exercise.action_clients)
+        declared = self._type_of(server.action, self._exercise.of_role("action_client"))
         server = self._typed(server, server.action, "action", declared, "action_client")
         if not server.goals:
             self._fault(server.line, f"{server.action}: no script for a goal", "Give goals=succeeds(…), for example.")

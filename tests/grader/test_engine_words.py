@@ -118,6 +118,15 @@ def test_advice_on_an_exception_comes_from_exercise_toml() -> None:
     assert "joint" not in message_of(Ending("crashed", message), replace(exercise, advice={}))
 
 
+def test_an_error_with_advice_of_its_own_gets_no_more() -> None:
+    exercise = load(ROOT / "exercises" / "joint_velocity")
+    error = "Your program ended: IndexError: list assignment index out of range in line 12 of code cell 3: `a[0] = `b`."
+
+    assert message_of(Ending("crashed", error), exercise) == f"{error} {exercise.advice['IndexError']}"
+    for advised in (f"{error} The list is shorter.", error.replace("Index", "Name") + " Its own."):
+        assert message_of(Ending("crashed", advised), exercise) == advised
+
+
 def test_a_name_with_the_wrong_capital_letters_is_told_from_one_that_is_misspelt() -> None:
     exercise = load(ROOT / "exercises" / "heartbeat")
     message = "ImportError: cannot import name '{}' from 'std_msgs.msg'"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import libcst as cst
 
-from grader.audit.mutants.program import Change, ParsedProgram, called, expression, with_body
+from grader.audit.mutants.program import Change, ParsedProgram, argument, called, expression, with_argument, with_body
 
 #: Method -> positions and names of its arguments: type, topic, callback, quality of service.
 ENDS = {
@@ -96,11 +96,7 @@ def node_name(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
         if isinstance(first.value, cst.SimpleString):
             name = str(first.value.evaluated_value)
             yield Change(node, first.value, expression(repr(f"{name}_node")), f"the node is called {name + '_node'!r}")
-            namespace = cst.parse_expression("f(namespace='robot')")
-            assert isinstance(namespace, cst.Call)
-            args = [first.with_changes(comma=cst.Comma(whitespace_after=cst.SimpleWhitespace(" "))), *node.args[1:]]
-            new = node.with_changes(args=[*args, namespace.args[0]])
-            yield Change(node, node, new, "the node has a namespace")
+            yield Change(node, node, with_argument(node, "namespace='robot'"), "the node has a namespace")
 
 
 def one_publisher_a_message(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
@@ -134,13 +130,8 @@ def spinning(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
 
 def _argument(node: cst.CSTNode, which: str) -> cst.Arg | None:
     """Return an argument of a call that creates an endpoint."""
-    if not isinstance(node, cst.Call) or which not in ENDS.get(called(node), {}):
-        return None
-    position, keyword = ENDS[called(node)][which]
-    for i, arg in enumerate(node.args):
-        if (arg.keyword is None and i == position) or (arg.keyword is not None and arg.keyword.value == keyword):
-            return arg
-    return None
+    place = ENDS.get(called(node), {}).get(which)
+    return argument(node, *place) if place else None
 
 
 OPERATORS = (

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import libcst as cst
 
-from grader.audit.mutants.program import Change, ParsedProgram, called, expression, with_body
+from grader.audit.mutants.program import Change, ParsedProgram, argument, called, expression, with_argument, with_body
 
 #: How a goal ends -> another way to end.
 OUTCOMES = {"succeed": ("abort", "canceled"), "canceled": ("succeed", "abort"), "abort": ("succeed",)}
@@ -123,24 +123,18 @@ def timer_clock(node: cst.CSTNode, program: ParsedProgram) -> Iterator[Change]:
     """Let a timer use the computer's clock."""
     if not isinstance(node, cst.Call) or called(node) != "create_timer" or "clock=" in program.text(node):
         return
-    wall = cst.parse_expression("f(clock=rclpy.clock.Clock(clock_type=rclpy.clock.ClockType.STEADY_TIME))")
-    assert isinstance(wall, cst.Call)
-    comma = cst.Comma(whitespace_after=cst.SimpleWhitespace(" "))
-    args = [*(arg.with_changes(comma=comma) for arg in node.args), wall.args[0]]
-    description = "the timer goes by the computer's clock"
-    yield Change(node, node, node.with_changes(args=args), description, ("rclpy.clock",))
+    new = with_argument(node, "clock=rclpy.clock.Clock(clock_type=rclpy.clock.ClockType.STEADY_TIME)")
+    yield Change(node, node, new, "the timer goes by the computer's clock", ("rclpy.clock",))
 
 
 def _called_back(program: ParsedProgram) -> set[str]:
     """Return the names of the functions that are passed as callbacks."""
-    names = set()
-    calls = [node for node in program.nodes() if isinstance(node, cst.Call)]
-    for node in calls:
-        for position, keyword in CALLBACKS.get(called(node), ()):
-            for i, arg in enumerate(node.args):
-                if (arg.keyword is None and i == position) or (arg.keyword and arg.keyword.value == keyword):
-                    names.add(program.text(arg.value).rpartition(".")[2])
-    return names
+    passed = [
+        argument(node, position, keyword)
+        for node in program.nodes()
+        for position, keyword in CALLBACKS.get(called(node), ())
+    ]
+    return {program.text(arg.value).rpartition(".")[2] for arg in passed if arg}
 
 
 OPERATORS = (outcome, choice, not_asked, blocking, slow_callback, empty_result, declared_type, timer_clock)

@@ -175,6 +175,22 @@ def called(node: cst.CSTNode) -> str:
     return node.func.value if isinstance(node.func, cst.Name) else ""
 
 
+def argument(node: cst.CSTNode, position: int, keyword: str) -> cst.Arg | None:
+    """Return an argument of a call, which is at this position or has this name."""
+    for number, arg in enumerate(node.args if isinstance(node, cst.Call) else ()):
+        if (number == position) if arg.keyword is None else (arg.keyword.value == keyword):
+            return arg
+    return None
+
+
+def with_argument(call: cst.Call, source: str) -> cst.Call:
+    """Return the call with one more argument, such as "clock=None"."""
+    call_of_it = cst.parse_expression(f"f({source})")
+    assert isinstance(call_of_it, cst.Call)
+    comma = cst.Comma(whitespace_after=cst.SimpleWhitespace(" "))
+    return call.with_changes(args=[*(arg.with_changes(comma=comma) for arg in call.args), call_of_it.args[0]])
+
+
 def only_call(statement: cst.CSTNode, name: str) -> cst.Call | None:
     """Return the call if a statement is only a call of a function with this name."""
     if isinstance(statement, cst.SimpleStatementLine) and len(statement.body) == 1:

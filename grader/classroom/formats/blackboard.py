@@ -71,7 +71,7 @@ def of_row(row: Mapping[str, str]) -> Student | None:
     if not {"Username", "Last Name", "First Name"} <= row.keys() or "OrgDefinedId" in row:
         return None
     name = f"{row['First Name']} {row['Last Name']}".strip()
-    return Student(person(row["Username"]).id, person("", name).name, row.get("Email", ""), dict(row))
+    return person(row["Username"], name, row.get("Email", ""), **row)
 
 
 FORMAT = Format("blackboard", "a download from Blackboard", read, of_row=of_row)

@@ -44,7 +44,7 @@ def of_row(row: Mapping[str, str]) -> Student | None:
     if not {"OrgDefinedId", "Username"} <= row.keys():
         return None
     name = f"{row.get('First Name', '')} {row.get('Last Name', '')}".strip()
-    return Student(person(row["Username"].lstrip("#")).id, person("", name).name, row.get("Email", ""), dict(row))
+    return person(row["Username"].lstrip("#"), name, row.get("Email", ""), **row)
 
 
 FORMAT = Format("brightspace", "a download from Brightspace", read, of_row=of_row)

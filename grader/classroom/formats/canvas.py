@@ -83,7 +83,7 @@ def of_row(row: Mapping[str, str]) -> Student | None:
     if not {"Student", "ID"} <= row.keys() or not row["ID"].isdigit():
         return None
     name = re.sub(r"[^\w]", "", row["Student"].lower())
-    return Student(person(f"{name}_{row['ID']}").id, row["Student"], "", dict(row))
+    return person(f"{name}_{row['ID']}", row["Student"], **row)
 
 
 def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None) -> str:

@@ -89,8 +89,8 @@ class Format:
     table: ExportTable | None = None
 
 
-def person(unique: str, name: str = "", email: str = "", **lms: str) -> Student:
-    """Return a student as an export names them, with names in Unicode's form NFC."""
+def person(unique: str, name: str = "", email: str = "", /, **lms: str) -> Student:
+    """Return a student as an export names them, with names in Unicode's form NFC. `lms` are columns of any name."""
     return Student(normal(unique), normal(name), email, lms)
 
 

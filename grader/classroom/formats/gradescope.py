@@ -49,12 +49,11 @@ def _upload(one: dict[str, Any]) -> UploadedFile | None:
 
 def _student(who: dict[str, Any]) -> Student:
     name, sid, email = (str(who.get(f":{key}") or "") for key in ("name", "sid", "email"))
-    return _named(name, sid, email, {})
+    return person(_id(name, sid, email), name, email, **({"SID": sid} if sid else {}))
 
 
-def _named(name: str, sid: str, email: str, lms: Mapping[str, str]) -> Student:
-    unique = "_".join(filter(None, (name, sid or email)))
-    return Student(person(unique).id, person("", name).name, email, {**({"SID": sid} if sid else {}), **lms})
+def _id(name: str, sid: str, email: str) -> str:
+    return "_".join(filter(None, (name, sid or email)))
 
 
 def of_row(row: Mapping[str, str]) -> Student | None:
@@ -62,7 +61,8 @@ def of_row(row: Mapping[str, str]) -> Student | None:
     if "SID" not in row or not {"First Name", "Last Name"} <= row.keys():
         return None
     name = f"{row['First Name']} {row['Last Name']}".strip()
-    return _named(name, row["SID"], row.get("Email", ""), dict(row))
+    email = row.get("Email", "")
+    return person(_id(name, row["SID"], email), name, email, **row)
 
 
 FORMAT = Format("gradescope", "an export from Gradescope", read, of_row=of_row)

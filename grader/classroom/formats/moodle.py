@@ -37,23 +37,22 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
             return None
         team, _, rest = match["name"].partition("-")
         name = rest if in_teams else match["name"]
-        student = _student(name, match["number"] or "", {"Group": team} if in_teams else {})
+        student = _student(name, match["number"] or "", "", {"Group": team} if in_teams else {})
         return UploadedFile((student,), parts[1:] or (match["file"],), aside=match["kind"] != "file")
 
     return understand
 
 
-def _student(name: str, number: str, more: dict[str, str]) -> Student:
+def _student(name: str, number: str, email: str, more: Mapping[str, str]) -> Student:
     lms = {"Identifier": f"Participant {number}", "Full name": name} if number else {}
-    return Student(person("_".join(filter(None, (name, number)))).id, person("", name).name, "", {**lms, **more})
+    return person("_".join(filter(None, (name, number))), name, email, **{**lms, **more})
 
 
 def of_row(row: Mapping[str, str]) -> Student | None:
     """Return the student in a row of the grading worksheet."""
     if not set(WORKSHEET) <= row.keys() or not row["Identifier"]:
         return None
-    student = _student(row["Full name"], row["Identifier"].rpartition(" ")[2], dict(row))
-    return Student(student.id, student.name, row.get("Email address", ""), student.lms)
+    return _student(row["Full name"], row["Identifier"].rpartition(" ")[2], row.get("Email address", ""), row)
 
 
 def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None) -> str:

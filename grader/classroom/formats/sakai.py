@@ -84,7 +84,7 @@ def of_row(row: Mapping[str, str]) -> Student | None:
     if not {"Display ID", "ID", "Last Name", "First Name"} <= row.keys():
         return None
     name = f"{row['Last Name']}, {row['First Name']}"
-    return Student(person(row["ID"] or row["Display ID"]).id, person("", name).name, "", dict(row))
+    return person(row["ID"] or row["Display ID"], name, **row)
 
 
 FORMAT = Format(

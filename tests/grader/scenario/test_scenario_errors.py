@@ -356,8 +356,8 @@ def test_packages_are_pinned_to_what_is_installed(tmp_path: Path) -> None:
 def test_an_interface_is_written_as_it_was_read(tmp_path: Path) -> None:
     exercise = load(exercise_in(tmp_path))
     assert to_toml(exercise) == TOML
-    assert (exercise.services[0].name, exercise.clients[0].name) == ("/switch", "/lamp")
-    assert (exercise.actions[0].name, exercise.action_clients[0].name) == ("/count", "/climb")
+    assert (exercise.of_role("service")[0].name, exercise.of_role("client")[0].name) == ("/switch", "/lamp")
+    assert (exercise.of_role("action")[0].name, exercise.of_role("action_client")[0].name) == ("/count", "/climb")
 
 
 @pytest.mark.parametrize(
