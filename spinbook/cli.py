@@ -89,7 +89,7 @@ EXTRAS = {
     "rosbags": "bag",
     "rclpy": "ros",
     "Fast DDS": "ros",
-    **dict.fromkeys(("IPython", "ipykernel", "jupytext", "nbclient", "nbformat"), "notebooks"),
+    **dict.fromkeys(("IPython", "ipykernel", "jupytext", "matplotlib", "nbclient", "nbformat"), "notebooks"),
     **dict.fromkeys(("sphinx", "myst_nb", "myst_parser", "latex2mathml", "livereload", "sphinx_book_theme"), "site"),
 }
 

@@ -171,7 +171,8 @@ def download(root: Path, on: Platform) -> Path:
     """Download what the autograder installs, with the root's own pip and at full speed; return the folder."""
     wheels = root / "wheels"
     options = "-q -d /wheels --no-deps --require-hashes --only-binary :all:"
-    script = f"python3 -m venv /pip && /pip/bin/pip download {options} -r {on.place}/course/pins.txt && rm -r /pip"
+    files = f"$(printf -- '-r %s ' {on.place}/course/pins*.txt)"
+    script = f"python3 -m venv /pip && /pip/bin/pip download {options} {files} && rm -r /pip"
     pip = {name: value for name, value in os.environ.items() if name in ("PIP_CERT", "PIP_INDEX_URL")}
     if not wheels.exists():
         subprocess.run(["chroot", root, "sh", "-c", script], check=True, env={**PLAIN, **pip})

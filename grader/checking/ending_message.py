@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 import sys
+from importlib.util import find_spec
 
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Ending
@@ -18,6 +19,9 @@ NO_NAME = re.compile(r"ImportError: cannot import name '([^']+)' from '([^']+)'"
 
 #: An error to which `grader.runner.program_end` has added advice, behind the line that it quotes.
 ADVISED = re.compile(r" in line \d+[^`]*: `.*`\. \S")
+
+#: Modules that every notebook has, and so the programs of students, but not every installation that grades.
+OF_NOTEBOOKS = {"matplotlib", "mpl_toolkits", "pylab", "PIL", "IPython", "nbformat"}
 
 ADVICE = (
     (
@@ -61,6 +65,13 @@ def _instead(module: str, exercise: Exercise) -> str:
     meant = f" Is it a misspelling of {close[0]}?" if close else ""
     available = ", ".join([AVAILABLE, *exercise.packages])
     return f"The module {module} is not available here. Available are Python's own modules, {available}.{meant}"
+
+
+def lacks_a_notebooks_module(ending: Ending) -> str:
+    """Return the module of `OF_NOTEBOOKS` for whose lack a program ended here, otherwise an empty text."""
+    missing = MISSING.search(ending.message)
+    top = missing[1].partition(".")[0] if missing else ""
+    return top if top in OF_NOTEBOOKS and find_spec(top) is None else ""
 
 
 def message_of(ending: Ending, exercise: Exercise) -> str:

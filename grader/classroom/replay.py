@@ -74,10 +74,8 @@ def _recorded(results: Path, student: str) -> Grade:
 
 
 def _write(grade: Grade, exercise: Exercise, folder: Path) -> int:
-    (folder / "plots").mkdir(parents=True, exist_ok=True)
-    for name in grade.recordings:
-        draw(grade, exercise, folder / "plots" / f"{name}.svg", name)
-    return len(grade.recordings) + len(write_bags(grade, folder / "bags"))
+    plots = [draw(grade, exercise, folder / "plots" / f"{name}.svg", name) for name in grade.recordings]
+    return sum(plots) + len(write_bags(grade, folder / "bags"))
 
 
 def _stop(message: str) -> NoReturn:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from importlib.metadata import version
 from pathlib import Path
 
 import click
@@ -13,7 +14,7 @@ import click
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import COURSE, NoExercise, find, load
 from grader.gradescope.own_wheel import SOURCE, NoWheel, as_wheel, is_checkout, wheel_contents
-from grader.gradescope.pins import LOCKS, hashed_pins, pins
+from grader.gradescope.pins import LOCKS, PLOTS, PLOTS_PINS, hashed_pins, needed, pins
 from grader.grading.reference import solution_file
 from grader.sandbox.middleware import MiddlewareUnavailable
 from grader.sandbox.program import Isolation
@@ -37,17 +38,30 @@ def bundle(exercise: Exercise, isolation: Isolation | None = None) -> bytes:
 def autograder_files(exercise: Exercise, isolation: Isolation | None = None) -> dict[str, bytes]:
     """Return the content of each file of an autograder, by name. Raises as `bundle` does."""
     name, wheel = as_wheel(wheel_contents())
-    pinned = (
-        {file: hashed_pins(SOURCE / lock) for file, lock in LOCKS.items()} if is_checkout() else {"pins.txt": pins()}
-    )
-    course = {name: wheel, **{file: text.encode() for file, text in pinned.items()}}
+    course = {name: wheel, **{file: text.encode() for file, text in _pins().items()}}
     # The wheels of what is compiled fit every container that PyPI's ROS 2 fits.
     course |= {f"wheels/{name}": content for name, content in compiled_wheels().items()}
-    if exercise.packages:
-        course["packages.txt"] = "".join(f"{package}\n" for package in exercise.packages).encode()
-    course |= {name: file.read_bytes() for name, file in _files(exercise)}
+    files = {name: file.read_bytes() for name, file in _files(exercise)}
+    if packages := [*exercise.packages, *_test_messages(files)]:
+        course["packages.txt"] = "".join(f"{package}\n" for package in packages).encode()
+    course |= files
     scripts = {name: _script(script, exercise, isolation).encode() for name, script in SCRIPTS.items()}
     return {**scripts, **{f"course/{name}": content for name, content in course.items()}}
+
+
+def _pins() -> dict[str, str]:
+    """Return name -> content of the files of pins."""
+    if not is_checkout():
+        return {"pins.txt": pins()}
+    always = needed()
+    files = {file: hashed_pins(SOURCE / lock, always) for file, lock in LOCKS.items()}
+    return files | {PLOTS_PINS: hashed_pins(SOURCE / LOCKS["pins.txt"], needed(PLOTS, "") - always)}
+
+
+def _test_messages(files: Mapping[str, bytes]) -> list[str]:
+    """Return the package test_msgs, with its version, if the exercise names it: few do, and it is large."""
+    name = "ros-jazzy-test-msgs"
+    return [f"{name}=={version(name)}"] if any(b"test_msgs" in content for content in files.values()) else []
 
 
 def _script(file: str, exercise: Exercise, isolation: Isolation | None) -> str:

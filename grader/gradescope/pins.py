@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from importlib import metadata
 from pathlib import Path
 
@@ -15,6 +15,9 @@ NAME, EXTRA = "spinbook", "grade"
 
 #: File of pins -> a checkout's, for every Python. Two, so that one is installed while the other is downloaded.
 LOCKS = {"pins.txt": "constraints.txt", "pins-ros.txt": "constraints-ros.txt"}
+
+#: What notebooks and some students' programs draw with. An autograder installs it for programs that name it.
+PLOTS, PLOTS_PINS = "matplotlib", "pins-plots.txt"
 
 #: Needed only by ROS 2's own code generators, and to build packages: neither is done there.
 NOT_USED = {"empy", "setuptools"}
@@ -28,13 +31,13 @@ OF_OTHER_VERSIONS = {"python-dateutil": ("six",), "ipython": ("decorator",)}
 
 def pins() -> str:
     """Return the installed versions of everything that is needed, a line such as `numpy==2.3.1` for each."""
-    installed = {name: _installed(name) for name in sorted(needed()) if name != NAME}
+    installed = {name: _installed(name) for name in sorted(needed() | needed(PLOTS, "")) if name != NAME}
     return "".join(f"{name}=={distribution.version}\n" for name, distribution in installed.items() if distribution)
 
 
-def hashed_pins(lock: Path) -> str:
-    """Return what a file of pins with hashes (pip, "Secure installs") says of everything that is needed."""
-    names = needed() - NOT_USED
+def hashed_pins(lock: Path, needs: Set[str]) -> str:
+    """Return what a file of pins with hashes (pip, "Secure installs") says of what `needs` contains and is used."""
+    names = needs - NOT_USED
     entries = re.split(r"^(?=[A-Za-z0-9])", lock.read_text(), flags=re.MULTILINE)
     return "".join(entry for entry in entries if canonicalize_name(re.split("[=; ]", entry, maxsplit=1)[0]) in names)
 

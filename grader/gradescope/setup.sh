@@ -1,9 +1,22 @@
 #!/usr/bin/env bash
 # Runs once, when Gradescope builds the container or another runner is prepared: installs Python, the sandbox, the grader and ROS 2 from PyPI.
+#   setup.sh without-trial    without matplotlib, and without testing that grading works here
+#   setup.sh plots            adds matplotlib, for programs that use it
 set -euo pipefail
 EXERCISE=@EXERCISE@
 ISOLATION=@ISOLATION@
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+
+pip() { "$here/venv/bin/python" -m pip --quiet --disable-pip-version-check install --no-compile "$@"; }
+with_hashes="--no-deps --require-hashes --only-binary :all:"
+plots() {
+    if [ -e pins-plots.txt ]; then pip $with_hashes -r pins-plots.txt; else pip -c pins.txt matplotlib; fi
+}
+if [ "${1:-}" = plots ]; then
+    cd "$here/course"
+    plots
+    exit
+fi
 
 missing=()
 python3 -c 'import ensurepip, venv' 2>/dev/null || missing+=(python3 python3-venv)
@@ -26,7 +39,6 @@ quick_venv() {
     "$here/venv/bin/python" -m pip --version
 }
 quick_venv >/dev/null 2>&1 || python3 -m venv --clear "$here/venv"
-pip() { "$here/venv/bin/python" -m pip --quiet --disable-pip-version-check install --no-compile "$@"; }
 
 # Nothing is built. A checkout's pins have hashes; an installed Spinbook only knows the versions that it ran with. The
 # other wheels are what would have to be compiled: the grader's middleware, the course's interfaces, and those that PyPI
@@ -35,7 +47,6 @@ cd "$here/course"
 software=$(echo "$PWD"/spinbook-*.whl)
 if [ -e pins-ros.txt ]; then
     # Two at once: one downloads while the other unpacks.
-    with_hashes="--no-deps --require-hashes --only-binary :all:"
     { pip $with_hashes -r pins-ros.txt && pip --no-deps "$software" wheels/*.whl; } &
     pip $with_hashes -r pins.txt
     wait $!
@@ -47,5 +58,6 @@ if [ -e packages.txt ]; then pip -r packages.txt; fi
 
 # Test that grading works here, and store what the solution publishes. Problems are in the build's output.
 if [ "${1:-}" != without-trial ]; then
+    plots
     "$here/venv/bin/python" -I -m grader.gradescope.run prepare "$here/course/exercises/$EXERCISE" $ISOLATION
 fi

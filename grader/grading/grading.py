@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
-from grader.checking.ending_message import message_of
+from grader.checking.ending_message import lacks_a_notebooks_module, message_of
 from grader.checking.verdict import Verdict
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade, Options, Outcome
@@ -23,6 +23,8 @@ from grader.scenario.declared import declared
 from grader.scenario.scenario import Scenario
 from grader.submission.submission import Submission
 from grader.workers.pool import HostFault, WorkerPool
+
+_INSTRUCTOR_INSTALLS = "Instructors: pip install 'spinbook[notebooks]', or name it in exercise.toml (packages)."
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,10 @@ class Grading:
         broken = [verdict for verdict in verdicts if verdict.status == "error"]
         if broken:
             text = f"This is not your fault: the check {broken[0].name} broke: {broken[0].error}"
+            return self._grade(submission, recordings, verdicts, "host-error", text, began)
+        missing = filter(None, (lacks_a_notebooks_module(recording.ending) for recording in recordings.values()))
+        if module := next(missing, None):
+            text = f"This is not your fault: {module}, which notebooks have, is missing here. {_INSTRUCTOR_INSTALLS}"
             return self._grade(submission, recordings, verdicts, "host-error", text, began)
         first = recordings[self.runner.scenarios[0].name].ending
         outcome: Outcome = "graded" if first.outcome == "completed" else first.outcome

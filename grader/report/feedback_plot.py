@@ -48,16 +48,24 @@ def feedback_plot(grade: Grade, exercise: Exercise, *, judged: bool = True) -> s
     scenario = _scenario(grade)
     if grade.outcome != "graded" or scenario is None:
         return None
+    return scenario_plot(grade, exercise, scenario, judged=judged, only_telling=True)
+
+
+def scenario_plot(
+    grade: Grade, exercise: Exercise, scenario: str, *, judged: bool = True, only_telling: bool = False
+) -> str | None:
+    """Return the plot of any scenario in the grade's recordings as SVG text; None if there is nothing to draw, or
+    `only_telling` is set and the curves don't show what is wrong.
+    """
     if path := path_of(grade, exercise, scenario):
         return path_plot(path)
     quantity = drawn_quantity(exercise, grade, scenario)
     drawn = curves(grade, exercise, scenario, quantity) if quantity else ()
-    if not quantity or not any(curve.got for curve in drawn):
-        return None
-    if not grade.full_marks and not any(curve.first_wrong for curve in drawn):
+    shows_it = any(curve.got for curve in drawn) and (grade.full_marks or any(curve.first_wrong for curve in drawn))
+    if not quantity or not drawn or (only_telling and not shows_it):
         return None
     drawn = drawn if judged else tuple(replace(curve, first_wrong=None) for curve in drawn)
-    times = [at for curve in drawn for line in (curve.expected, curve.got) for at, _ in line]
+    times = [at for curve in drawn for line in (curve.expected, curve.got) for at, _ in line] or [0.0]
     start, end = min(times), max(times)
     panels = [_panel(i, curve, start, end) for i, curve in enumerate(drawn)]
     return template("report/feedback_plot.svg.j2").render(

@@ -104,7 +104,7 @@ WIDTH, SIDE, LEFT, TOP, BOTTOM = 500, 320, 52, 40, 40
 
 def path_plot(path: PlanePath) -> str:
     """Return the plot as SVG text. One unit is as long in both directions."""
-    places = [*path.expected, *path.got, *path.goals]
+    places = [*path.expected, *path.got, *path.goals] or [(0.0, 0.0)]
     (left, right), (low, high) = ((min(values), max(values)) for values in zip(*places, strict=True))
     span = max(right - left, high - low) * 1.16 or 1.0
     x0, y0 = (left + right - span) / 2, (low + high - span) / 2

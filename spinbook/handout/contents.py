@@ -67,10 +67,12 @@ def guide_files(
     exercises: list[Listing],
     compiled: list[str],
     packages: list[str],
+    texts: bytes,
 ) -> dict[str, bytes]:
     """Return README.md and the files that install, by name.
 
-    `compiled` are names of wheels of compiled code, `packages` what exercises let programs use.
+    `compiled` are names of wheels of compiled code, `packages` what exercises let programs use. `texts`
+    are what students get to read.
     """
     # Plain text and JSON, not HTML.
     environment = Environment(
@@ -88,7 +90,7 @@ def guide_files(
         "wheel": wheel,
         "notebooks": notebooks,
         "exercises": exercises,
-        "pinned": (pinned := students_pins()),
+        "pinned": (pinned := students_pins(texts)),
         # Every package is in the list: pip need not look for more.
         "options": " --no-deps --no-compile" if pinned else "",
         "pins": [*(pinned or _pins(distro)), *declared_pins(packages, pinned)],
@@ -145,13 +147,14 @@ def handout(course: Course) -> Handout:
     known, names = secrets_of_all(every, taught)
     _prove(files, known + names)
     name, content = spinbook_wheel()
-    compiled = dict([middleware_wheel(), *interface_wheels(course, files.values()).items()])
+    texts = b"".join(files.values())
+    compiled = dict([middleware_wheel(), *interface_wheels(course, [texts]).items()])
     files[f"wheels/{name}"] = content
     files |= {f"wheels/{file}": data for file, data in compiled.items()}
     slug = re.sub(r"[^a-z0-9]+", "-", course.title.lower()).strip("-") or "course"
     packages = sorted({package for exercise in exercises for package in exercise.packages})
     files |= guide_files(
-        course.title, slug, course.ros_distro, name, list(notebooks), listings, sorted(compiled), packages
+        course.title, slug, course.ros_distro, name, list(notebooks), listings, sorted(compiled), packages, texts
     )
     files |= base_files(files)
     _prove(files, known)

@@ -9,13 +9,13 @@ import tempfile
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.grading.grade import Grade
 from grader.grading.public import playable, read_public
 from grader.recording.recording import Recording, from_json
-from grader.report.plot import figure
+from grader.report.plot import scenario_picture
 from grader.scenario.command_line import arguments
 from grader.scenario.scenario import Scenario
 from groundwork.clean_environment import module_command
@@ -29,9 +29,6 @@ from spinbook.kernel.process import STOP_GRACE, CellFailed
 from spinbook.kernel.session import Session
 from spinbook.kernel.timeline import in_words, lanes
 from spinbook.kernel.timeline_picture import span_of, still_timeline
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 #: The name of what surrounds the node, for `%stop` and `%log`.
 SURROUNDINGS = "surroundings"
@@ -100,36 +97,36 @@ class TriedPicture:
                 self._show(from_json(self.record.read_text(encoding="utf-8"))[self.scenario.name])
 
     def _show(self, recording: Recording) -> None:
-        png, words = self._picture(recording)
-        if png is not None:
-            self.handle = show_picture({"image/png": png}, words, self.handle)
+        pictures, words = self._picture(recording)
+        if pictures:
+            self.handle = show_picture(pictures, words, self.handle)
 
-    def _picture(self, recording: Recording) -> tuple[bytes | None, str]:
-        """Return a robot, curves, or else what happened over time, as a PNG and in words; (None, "") if nothing did."""
+    def _picture(self, recording: Recording) -> tuple[dict[str, Any], str]:
+        """Return a robot, curves, or else what happened over time, by media type and in words; ({}, "") if nothing
+        did.
+        """
         # Imported here because it imports rclpy.
         from spinbook.kernel.surroundings import events_of, robot_of
 
         if robot := robot_of(recording):
             return _drawn(robot)
-        curves, words = (None, "") if recording.calls or recording.goals else self._curves(recording)
-        if curves:
-            return as_png(curves), words
+        if curves := None if recording.calls or recording.goals else self._curves(recording):
+            return {"image/svg+xml": curves}, f"{self.exercise.title}: what your node does, and what the solution does"
         drawn = lanes(events_of(recording))
         if not any(lane.marks for lane in drawn):
-            return None, ""
-        return as_png(still_timeline(drawn, self.exercise.title)), in_words(drawn, span_of(drawn)[0])
+            return {}, ""
+        return {"image/png": as_png(still_timeline(drawn, self.exercise.title))}, in_words(drawn, span_of(drawn)[0])
 
-    def _curves(self, recording: Recording) -> tuple[Figure | None, str]:
+    def _curves(self, recording: Recording) -> str | None:
         name, exercise = self.scenario.name, self.exercise
         known = {} if exercise.solution_folder else read_public(exercise).references
         references = {name: known.get(name, Recording(name, (), (), (), (), False, recording.ending))}
         empty = Grade(exercise.name, "", "", "graded", "", 0.0, 0.0, (), "", 1, {})
         grade = replace(empty, recordings={name: recording}, references=references)
-        drawn = figure(grade, exercise, name, judged=False)
-        return (drawn if drawn.axes else None), f"{exercise.title}: what your node does, and what the solution does"
+        return scenario_picture(grade, exercise, name, judged=False)
 
 
 @functools.lru_cache(maxsize=1)
-def _drawn(robot: RobotDescription) -> tuple[bytes, str]:
+def _drawn(robot: RobotDescription) -> tuple[dict[str, Any], str]:
     """Return a robot as a PNG and in words."""
-    return still.as_png(robot, {}), drawing.in_words(robot, {})
+    return {"image/png": still.as_png(robot, {})}, drawing.in_words(robot, {})

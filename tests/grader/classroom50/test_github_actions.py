@@ -183,3 +183,18 @@ def test_a_students_result_does_not_stay_where_the_grader_could_not_be_installed
 
     assert (done.returncode, done.stdout, done.stderr) == (1, "", "no network\n")
     assert not list(repository.iterdir())
+
+
+def test_only_a_repository_whose_program_draws_waits_for_matplotlib(tmp_path: Path) -> None:
+    shutil.copy(ROOT / "grader" / "classroom50" / "autograder.py", tmp_path)
+    python = "mkdir -p venv/bin; ln -sf /bin/true venv/bin/python"
+    (tmp_path / "setup.sh").write_text(f'cd "$(dirname "$0")"; {python}; echo "set up $1"\n')
+    repository = tmp_path / "repository"
+    repository.mkdir()
+    printed = []
+    for program in ("import rclpy\n", "import matplotlib.pyplot as plt\n"):
+        (repository / "speed_limit.py").write_text(program)
+        command = [sys.executable, tmp_path / "autograder.py"]
+        printed.append(subprocess.run(command, cwd=repository, capture_output=True, text=True, check=True).stderr)
+
+    assert printed == ["set up without-trial\n", "set up plots\n"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from grader.checking import ending_message
 from grader.exercise import Exercise
 from grader.grading import Grade
 from grader.grading.grading import Grading
@@ -64,6 +65,19 @@ def test_a_broken_submission_is_told_what_is_wrong(
     assert grade.score == 0
     assert all(verdict.status in ("failed", "blocked") for verdict in grade.verdicts)
     assert len(grade.verdicts) > 20
+
+
+def test_a_module_that_only_notebooks_have_costs_nobody_a_point(
+    grading: Grading, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source = "raise ModuleNotFoundError(\"No module named 'matplotlib'\")\n"
+    assert grade_of(grading, source).outcome == "did-not-start", "it is installed here"
+
+    monkeypatch.setattr(ending_message, "find_spec", lambda name: None)
+    grade = grade_of(grading, source)
+
+    assert (grade.outcome, grade.has_score) == ("host-error", False)
+    assert "matplotlib, which notebooks have, is missing here. Instructors: pip install" in grade.message
 
 
 def test_a_crash_in_one_scenario_costs_only_its_checks(grading: Grading) -> None:

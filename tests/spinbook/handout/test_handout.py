@@ -161,11 +161,17 @@ def test_the_means_to_install_are_there_and_can_be_read(real: HandedOut) -> None
 
 
 def test_packages_that_exercises_declare_are_installed_with_what_they_need() -> None:
-    pins = students_pins()
+    pins = students_pins(b"")
     lines = declared_pins(["rosbags==0.11.9", "numpy==2.3.1"], pins)
     assert {line.partition("==")[0] for line in lines} >= {"rosbags", "lz4"}
     assert not [line for line in lines if line.startswith("numpy")], "it is pinned for each Python"
     assert declared_pins(["rosbags==0.11.9"], []) == ["rosbags==0.11.9"]
+
+
+def test_messages_for_tests_are_installed_only_if_students_read_of_them() -> None:
+    lines = set(students_pins(b"from test_msgs.action import Fibonacci")) - set(students_pins(b""))
+
+    assert {line.partition("==")[0] for line in lines} == {"ros-jazzy-test-msgs", "ros-test-msgs"}
 
 
 def test_the_wheel_holds_every_package_of_ours_that_its_modules_import() -> None:
