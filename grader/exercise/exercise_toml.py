@@ -6,7 +6,6 @@ import contextlib
 import re
 import sys
 from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 from typing import Any, NoReturn, get_args
 
@@ -311,6 +310,8 @@ def packages(top: TomlTable) -> tuple[str, ...]:
 
 
 def _pinned(top: TomlTable, text: str) -> str:
+    from importlib import metadata  # it takes long
+
     from packaging.requirements import InvalidRequirement, Requirement  # a web page does not have it
 
     package = None

@@ -7,7 +7,6 @@ import re
 from collections.abc import Iterator, Mapping
 
 from grader.runner.tracebacks import LastError
-from grader.submission.python_code import tree_of
 
 #: The attributes of a Node that a program can't replace, and what each one is (rclpy 7.1, `rclpy.node.Node`).
 PUBLIC = {
@@ -67,6 +66,8 @@ def _is_replaced(name: str, sources: Mapping[str, str]) -> bool:
 
 def _replaced(source: str) -> Iterator[str]:
     """Yield the names that classes of a program define as methods or attributes, or set as `self.NAME`."""
+    from grader.submission.python_code import tree_of  # it takes long, and few programs need it
+
     tree = tree_of(source)
     if tree is None:
         return

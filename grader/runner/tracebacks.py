@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from grader.submission.places import place_of
+from grader.recording.places import place_of
 
 HEADER = "Traceback (most recent call last):"
 

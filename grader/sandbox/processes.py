@@ -16,8 +16,6 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-import psutil
-
 from grader.sandbox.filesystem import write_file
 from grader.sandbox.program import Paths
 
@@ -63,6 +61,8 @@ def proportional_bytes(pid: int) -> int:
 
 def _children(pid: int) -> set[int]:
     if not _kernel_lists_children():
+        import psutil  # it takes long, and other kernels do without
+
         try:
             return {child.pid for child in psutil.Process(pid).children()}
         except psutil.Error:

@@ -8,9 +8,9 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 from grader.exercise.exercise import Exercise
+from grader.recording.places import mark
 from grader.submission import python_code
 from grader.submission.notebook import NotebookCell
-from grader.submission.places import mark
 
 #: The code that starts the classes of `%%node NAME --class A`; `--main` calls the cell's `main` instead.
 _SPIN = """

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from grader.exercise.exercise import Exercise
 from grader.exercise.starter import MarkerError, starter
+from grader.recording.places import is_launcher
 from grader.submission import packages, python_code
 from grader.submission.archive import Contents, unpacked
 from grader.submission.entry_points import is_below
@@ -33,7 +34,6 @@ from grader.submission.file_kinds import (
 from grader.submission.launch_program import MAIN, launch_file_in, launch_file_name, program_files
 from grader.submission.magics import cell_magic, without_commands
 from grader.submission.notebook import Notebook, NotebookCell, read_notebook
-from grader.submission.places import is_launcher
 from grader.submission.problems import AmbiguousProgram, Unreadable, merge_conflict
 from grader.submission.program_choice import choose, digest_of
 from grader.submission.python_version import newer_syntax

@@ -11,11 +11,11 @@ from collections.abc import Iterator, Mapping
 
 from grader.exercise.data_files import DATA, data_files
 from grader.exercise.exercise import Exercise
+from grader.recording.places import LAUNCHER
 from grader.submission import packages
 from grader.submission.entry_points import entry_points_of, is_below, package_name, roots
 from grader.submission.file_kinds import original_name
 from grader.submission.launch_files import LAUNCH_FILE
-from grader.submission.places import LAUNCHER
 from grader.submission.problems import AmbiguousProgram, Unreadable
 from grader.submission.unreadable import not_python, text_of
 

@@ -12,10 +12,10 @@ import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from grader.recording.places import LAUNCHER
 from grader.submission import python_code
 from grader.submission.entry_points import is_below, package_name, roots
 from grader.submission.file_kinds import kind_of
-from grader.submission.places import LAUNCHER
 
 #: Python files that are never the student's program.
 _NOT_PROGRAMS = re.compile(r"(?:setup|conftest|__init__|test_\w*|\w*_test|\w*[._]launch)\.py", re.IGNORECASE)

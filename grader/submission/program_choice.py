@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from grader.exercise.exercise import Exercise, ProgramFile
+from grader.recording.places import without_marks
 from grader.submission import python_code
 from grader.submission.assembled_program import AssembledProgram, assemble, is_complete, joined
 from grader.submission.file_kinds import not_graded
 from grader.submission.notebook import Notebook, NotebookCell
-from grader.submission.places import without_marks
 from grader.submission.problems import AmbiguousProgram, Unreadable
 
 #: No person writes more versions of a program into a notebook; comparing them takes time.

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, Protocol
 from grader.exercise.data_files import data_files
 from grader.exercise.exercise import Exercise
 from grader.exercise.imported_files import importable
+from grader.recording.places import is_launcher
 from grader.recording.recording import Recording
 from grader.runner.program import Task
 from grader.sandbox.program import Isolation, Limits, ProgramSpec
 from grader.scenario.scenario import Scenario
-from grader.submission.places import is_launcher
 
 if TYPE_CHECKING:
     from grader.checking.run import Run
