@@ -20,9 +20,8 @@ from pathlib import Path
 from typing import Any
 
 from grader.audit.result import Trial
-from grader.exercise.modules import grading_files
 from grader.grading.grading import Grading
-from grader.grading.reference import GRADER, cache_folder, digest_of, solution_file, versions
+from grader.grading.reference import GRADER, cache_folder, digest_of, exercise_digest, solution_file, versions
 from grader.grading.scenario_runner import ScenarioRunner
 from grader.recording.recording import Recording, from_json, to_json
 from grader.scenario.scenario import Scenario
@@ -128,7 +127,7 @@ class Store:
         self._folder = audit_folder(exercise.name)
         self._common = {
             "solution": digest_of([solution_file(exercise)]),
-            "exercise": digest_of(grading_files(exercise)),
+            "exercise": exercise_digest(exercise),
             "scenarios": [scenario.digest for scenario in runner.scenarios],
             "engine": engine(JUDGING),
             "isolation": str(runner.isolation),

@@ -21,10 +21,9 @@ from grader.classroom.request import Backend, GradedSubmission
 from grader.classroom.submissions import StudentSubmission, Submissions
 from grader.exercise.data_files import data_paths
 from grader.exercise.exercise import Exercise
-from grader.exercise.imported_files import with_modules
 from grader.grading.grade import Entry, Grade, Student
 from grader.grading.grading import Grading
-from grader.grading.reference import digest_of, versions
+from grader.grading.reference import digest_of, exercise_digest, versions
 from grader.recording.recording import Recording
 from grader.recording.recording import from_json as recordings_from_json
 from grader.recording.recording import to_json as recordings_to_json
@@ -191,14 +190,10 @@ def grade_key(grading: Grading) -> str:
     It covers the parts of the exercise that grades and pages show, the machine's versions of Python and ROS, and the
     level of isolation.
     """
-    runner = grading.runner
-    exercise = runner.exercise
-    files: list[Path] = [exercise.folder / "task.md", *with_modules(exercise.check_files)]
-    if exercise.solution_file:
-        files.append(exercise.solution_file)
+    exercise = grading.runner.exercise
+    files = [exercise.folder / "task.md", *filter(None, [exercise.solution_file])]
     depends = {
-        # The exercise as read. The due date is not part of it, so it can be changed after grading.
-        "exercise": repr(replace(exercise, folder=Path(), solution_folder=None)),
+        "exercise": exercise_digest(exercise),
         "files": digest_of([file for file in files if file.exists()]),
         **_of_a_run(grading),
     }

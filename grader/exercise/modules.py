@@ -9,18 +9,12 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from grader.exercise.data_files import data_paths
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.imported_files import imports_of, installed, place_of, with_modules
 from groundwork.words import did_you_mean
 
 #: Files that no student gets. What a public check or scenario needs must be in another file of the exercise's folder.
 HIDDEN_FILES = ("scenarios.py", "hidden_checks.py")
-
-
-def grading_files(exercise: Exercise) -> list[Path]:
-    """Return the files that decide a grade, besides the scenarios and the solution."""
-    return [exercise.folder / "exercise.toml", *with_modules(exercise.check_files), *data_paths(exercise)]
 
 
 def see_modules(exercise: Exercise) -> None:

@@ -7,12 +7,14 @@ import hashlib
 import json
 import platform
 import re
+from dataclasses import replace
 from functools import cache
 from importlib import metadata
 from pathlib import Path
 
+from grader.exercise.data_files import data_paths
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.modules import grading_files
+from grader.exercise.imported_files import with_modules
 from grader.exercise.starter import MarkerError, starter
 from grader.grading.machine import machine_key
 from grader.grading.scenario_runner import ScenarioRunner
@@ -45,6 +47,13 @@ def digest_of(files: list[Path]) -> str:
         total.update(f"{file.name} {len(content)}\n".encode())
         total.update(content)
     return total.hexdigest()
+
+
+def exercise_digest(exercise: Exercise) -> str:
+    """Return a digest of what decides a grade, besides the scenarios and the solution: not the task or the deadline."""
+    settings = repr(replace(exercise, folder=Path(), solution_folder=None, task=""))
+    files = digest_of([*with_modules(exercise.check_files), *data_paths(exercise)])
+    return hashlib.sha256(f"{settings} {files}".encode()).hexdigest()
 
 
 def _version(*names: str) -> str:
@@ -104,7 +113,7 @@ def reference_key(runner: ScenarioRunner) -> str:
     exercise = runner.exercise
     key = {
         "solution": digest_of([solution_file(exercise)]),
-        "exercise": digest_of(grading_files(exercise)),
+        "exercise": exercise_digest(exercise),
         "scenarios": [scenario.digest for scenario in runner.scenarios],
         "versions": versions(),
         "interfaces": [prefix.name for prefix in activation.active()],
