@@ -25,6 +25,9 @@ EXERCISE = "speed_limit"
 #: What each of the six must get, of 20 points.
 POINTS = {"ana": 20, "bert": 20, "carl": 15, "dora": 17, "emil": 12, "fay": 0}
 
+#: The usual mistakes of the exercise. Nobody makes the last one.
+MISTAKES = ("only_forwards", "trusts_every_number", "full_speed_for_no_number", "ignores_ctrl_c")
+
 
 class SmallClass:
     """A course with one exercise, and the submissions of six students: see `POINTS`."""
@@ -34,6 +37,7 @@ class SmallClass:
         for part in ("exercises", "solutions"):
             shutil.copytree(TEMPLATE / part, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
         self.exercise = folder / "exercises" / EXERCISE
+        _keep_mistakes(folder / "solutions" / EXERCISE / "mistakes.md")
         self.submissions = folder / "submissions"
         self.submissions.mkdir()
         exercise = load(self.exercise)
@@ -91,6 +95,13 @@ class SmallClass:
         """Return the points that count, by student."""
         students = sorted(file.parent.name for file in (self.folder / out).glob("students/*/grade.json"))
         return {student: self.entry(student, out)["final"] for student in students}
+
+
+def _keep_mistakes(file: Path) -> None:
+    """Leave in the file only the mistakes that students make here, and one that nobody makes."""
+    parts = re.split(r"^(?=## )", file.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    kept = [part for part in parts if not part.startswith("## ") or part.split()[1] in MISTAKES]
+    file.write_text("".join(kept), encoding="utf-8")
 
 
 def _quiet(source: str) -> str:

@@ -10,7 +10,7 @@ from xdist.workermanage import WorkerController
 #: All tests of one file run in one worker. So do those of each of these folders, whose files share something that is
 #: expensive to make: a chapter that has run, a whole site, a class that was graded, a sandbox at each level.
 TOGETHER = (
-    *("audit", "classroom", "graph", "handout", "interface_compiler", "interfaces"),
+    *("audit", "classroom", "graph", "handout", "hostile", "interface_compiler", "interfaces"),
     *("report", "sandbox", "site", "submit"),
 )
 
@@ -21,8 +21,7 @@ LONGEST = (
     "kernel/test_commands.py",
     *("build/test_execution.py", "grading/test_solutions.py", "gradescope", "grading/test_course_solutions.py"),
     *(
-        "hostile/test_through_the_grader.py",
-        "hostile/test_attacks_on_the_grader.py",
+        "hostile",
         "kernel",
         "report",
         "grading",

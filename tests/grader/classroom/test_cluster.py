@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Coroutine, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
@@ -104,7 +105,8 @@ class Answers:
         return {"workers": {worker: {"last_seen": seen} for worker, seen in signs.items()}}
 
     def run_on_scheduler(self, remove: Callable[..., Coroutine[Any, Any, None]]) -> None:
-        asyncio.run(remove(self))
+        with ThreadPoolExecutor(1) as pool:  # a browser of other tests has a running loop in this thread
+            pool.submit(asyncio.run, remove(self)).result()
 
     async def remove_worker(self, address: str, stimulus_id: str) -> None:
         self.removed.append(address)

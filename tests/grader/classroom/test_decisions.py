@@ -117,14 +117,17 @@ def test_results_that_can_not_be_written_are_a_sentence(small_class: SmallClass,
     assert (small_class.folder / "a_file").read_text() == ""
 
 
-#: A small file system for the results, in a namespace of its own; sandboxes do not work inside it.
+#: Grades a class three times, in one process: on a file system for the results that is too small, on a larger one, and
+#: on one that can only be read. It is in a namespace of its own, inside which sandboxes do not work.
 FULL = """
-mount -t tmpfs -o size=120k tmpfs results || exit 99
-{python} -m grader speed_limit submissions --out results --isolation none; echo "code $?"
-mount -o remount,size=20m results
-{python} -m grader speed_limit submissions --out results --isolation none; echo "code $?"
-mount -o remount,ro results
-{python} -m grader speed_limit submissions --out results --isolation none; echo "code $?"
+import subprocess
+from grader.command import grade
+for options in ("size=120k", "remount,size=20m", "remount,ro"):
+    subprocess.run(["mount", "-t", "tmpfs", "-o", options, "tmpfs", "results"], check=True)
+    try:
+        grade(["speed_limit", "submissions", "--out", "results", "--isolation", "none"])
+    except SystemExit as end:
+        print("code", end.code, flush=True)
 """
 
 
@@ -134,7 +137,7 @@ mount -o remount,ro results
 def test_a_full_disk_stops_the_class_and_keeps_what_was_graded(small_class: SmallClass) -> None:
     (small_class.folder / "results").mkdir()
     done = subprocess.run(
-        ["unshare", "-Urm", "sh", "-c", FULL.format(python=sys.executable)],
+        ["unshare", "-Urm", sys.executable, "-c", FULL],
         cwd=small_class.folder,
         env=small_class.environment,
         capture_output=True,

@@ -74,59 +74,56 @@ def judged(workers: WorkerPool, job: JudgeJob) -> Verdict:
     return verdict
 
 
-def test_checks_are_imported_once_and_each_judging_finds_them_new(exercise: Exercise) -> None:
-    with WorkerPool() as workers:
-        workers.share([exercise])
-        first = [judged(workers, job_of(exercise)) for _ in range(3)]
+def test_checks_are_imported_once_and_each_judging_finds_them_new(exercise: Exercise, workers: WorkerPool) -> None:
+    workers.share([exercise])
+    first = [judged(workers, job_of(exercise)) for _ in range(3)]
     assert [verdict.status for verdict in first] == ["passed"] * 3
     assert imports(exercise) == 1
 
 
-def test_judgings_at_the_same_time_do_not_mix(exercise: Exercise) -> None:
+def test_judgings_at_the_same_time_do_not_mix(exercise: Exercise, workers: WorkerPool) -> None:
     logs = [f"log {i}" for i in range(12)]
-    with WorkerPool() as workers, ThreadPoolExecutor(4) as pool:
-        workers.share([exercise])
+    workers.share([exercise])
+    with ThreadPoolExecutor(4) as pool:
         verdicts = list(pool.map(lambda log: judged(workers, job_of(exercise, log)), logs))
     assert [verdict.finding and verdict.finding.text.splitlines()[0] for verdict in verdicts] == [
         f"it is {log}" for log in logs
     ]
 
 
-def test_an_exercise_that_is_not_shared_is_judged_as_well(exercise: Exercise) -> None:
-    with WorkerPool() as workers:
-        verdicts = [judged(workers, job_of(exercise)) for _ in range(2)]
+def test_an_exercise_that_is_not_shared_is_judged_as_well(exercise: Exercise, workers: WorkerPool) -> None:
+    verdicts = [judged(workers, job_of(exercise)) for _ in range(2)]
     assert [verdict.status for verdict in verdicts] == ["passed"] * 2
 
 
-def test_recordings_that_are_shared_later_are_judged(exercise: Exercise) -> None:
-    with WorkerPool() as workers:
-        workers.share([exercise])
-        judged(workers, job_of(exercise))
-        job = job_of(exercise, "shared later")
-        workers.share([*job.recordings.values(), *job.references.values()])
-        verdict = judged(workers, job)
+def test_recordings_that_are_shared_later_are_judged(exercise: Exercise, workers: WorkerPool) -> None:
+    workers.share([exercise])
+    judged(workers, job_of(exercise))
+    job = job_of(exercise, "shared later")
+    workers.share([*job.recordings.values(), *job.references.values()])
+    verdict = judged(workers, job)
     assert verdict.finding is not None
     assert "shared later" in verdict.finding.text
 
 
 @pytest.mark.parametrize("checks", ["import no_such_module\n", "", "def test_plain(first): pass\n"])
-def test_checks_that_cannot_be_used_are_the_authors_fault_in_each_judging(exercise: Exercise, checks: str) -> None:
+def test_checks_that_cannot_be_used_are_the_authors_fault_in_each_judging(
+    exercise: Exercise, workers: WorkerPool, checks: str
+) -> None:
     write(exercise.folder, checks)
-    with WorkerPool() as workers:
-        workers.share([exercise])
-        for _ in range(2):
-            with pytest.raises(ExerciseError, match=r"checks\.py"):
-                workers.judge(job_of(exercise))
+    workers.share([exercise])
+    for _ in range(2):
+        with pytest.raises(ExerciseError, match=r"checks\.py"):
+            workers.judge(job_of(exercise))
 
 
-def test_a_scenario_that_did_not_exist_before_is_found(exercise: Exercise) -> None:
-    with WorkerPool() as workers:
-        workers.share([exercise])
-        judged(workers, job_of(exercise))
-        job = job_of(exercise)
-        more = recording("right", "second")
-        both = JudgeJob(exercise, job.recordings | more, job.references | more, {})
-        assert judged(workers, both).status == "passed"
+def test_a_scenario_that_did_not_exist_before_is_found(exercise: Exercise, workers: WorkerPool) -> None:
+    workers.share([exercise])
+    judged(workers, job_of(exercise))
+    job = job_of(exercise)
+    more = recording("right", "second")
+    both = JudgeJob(exercise, job.recordings | more, job.references | more, {})
+    assert judged(workers, both).status == "passed"
 
 
 def test_a_process_that_has_died_is_replaced_and_all_end_with_the_pool(exercise: Exercise) -> None:
@@ -145,7 +142,7 @@ def test_a_process_that_has_died_is_replaced_and_all_end_with_the_pool(exercise:
     assert imports(exercise) == 2
 
 
-def test_checks_may_use_what_pytest_offers(exercise: Exercise) -> None:
+def test_checks_may_use_what_pytest_offers(exercise: Exercise, workers: WorkerPool) -> None:
     text = '''
 import logging, warnings
 import pytest
@@ -167,9 +164,8 @@ def test_fixtures(twice, times, tmp_path, monkeypatch, capfd, caplog) -> None:
     assert caplog.messages == ["logged"]
 '''
     write(exercise.folder, text)
-    with WorkerPool() as workers:
-        workers.share([exercise])
-        verdicts = [judged(workers, job_of(exercise)) for _ in range(2)]
+    workers.share([exercise])
+    verdicts = [judged(workers, job_of(exercise)) for _ in range(2)]
     assert [verdict.status for verdict in verdicts] == ["passed"] * 2
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import pickle
-import signal
 import subprocess
 import sys
 import tempfile
@@ -25,29 +24,29 @@ from grader.workers.shared import SharedObjects, receive
 EXERCISE = ROOT / "exercises" / "joint_velocity"
 
 
-def test_a_pool_whose_worker_was_killed_gets_another(monkeypatch: pytest.MonkeyPatch) -> None:
-    job = ListJob(load(EXERCISE))
-    others = workers_of(psutil.Process())
-    with WorkerPool() as workers:
-        before = workers.do(job)
-        worker = new_worker(others)
-        os.kill(worker.pid, signal.SIGKILL)
-        wait_until(lambda: not runs(worker))
-        assert workers.do(job) == before
-
-
-def test_a_worker_has_what_jobs_share_also_after_it_was_started_again() -> None:
+def test_jobs_are_done_until_the_pool_is_closed_whatever_process_of_it_dies() -> None:
     exercise = load(EXERCISE)
     job = ListJob(exercise)
     others = workers_of(psutil.Process())
     with WorkerPool() as workers:
-        before = workers.do(job)
+        with workers.reserve() as worker:
+            before = worker.do(job)
+            process = new_worker(others)
+            [first] = workers_of(process)
+            assert worker.do(job) == before
+            assert workers_of(process) == [first], "jobs are done in one process"
+            first.kill()
+            wait_until(lambda: not runs(first))
+            assert worker.do(job) == before
+            [second] = [other for other in workers_of(process) if other != first]
+        wait_until(lambda: not runs(second))
         workers.share([exercise])
         assert workers.do(job) == before
-        worker = new_worker(others)
-        os.kill(worker.pid, signal.SIGKILL)
-        wait_until(lambda: not runs(worker))
-        assert workers.do(job) == before
+        process.kill()
+        wait_until(lambda: not runs(process))
+        assert workers.do(job) == before, "the new worker has what jobs share"
+    with pytest.raises(HostFault, match="the worker process is gone"):
+        workers.do(job)
 
 
 def test_a_job_refers_to_what_its_process_has_and_carries_the_rest() -> None:
@@ -59,35 +58,11 @@ def test_a_job_refers_to_what_its_process_has_and_carries_the_rest() -> None:
     assert pickle.loads(carried) == pickle.loads(referred) == job
 
 
-def test_a_worker_does_its_jobs_in_one_process_and_in_another_once_that_died() -> None:
-    job = ListJob(load(EXERCISE))
-    others = workers_of(psutil.Process())
-    with WorkerPool() as workers:
-        with workers.reserve() as worker:
-            before = worker.do(job)
-            pool = new_worker(others)
-            [first] = workers_of(pool)
-            assert worker.do(job) == before
-            assert workers_of(pool) == [first]
-            first.kill()
-            wait_until(lambda: not runs(first))
-            assert worker.do(job) == before
-            [second] = [process for process in workers_of(pool) if process != first]
-        wait_until(lambda: not runs(second))
-
-
 def test_a_process_of_the_pool_that_takes_too_much_memory_gets_an_error_and_spares_the_machine() -> None:
     code = "from grader.workers.fork import limit_memory\nlimit_memory()\nlen(bytes(500 << 20))\nbytes(2 << 30)"
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert ended.stderr.strip().endswith("MemoryError")
     assert "line 4" in ended.stderr
-
-
-def test_a_pool_that_was_closed_does_no_more_jobs() -> None:
-    with WorkerPool() as workers:
-        pass
-    with pytest.raises(HostFault, match="the worker process is gone"):
-        workers.do(ListJob(load(EXERCISE)))
 
 
 def test_a_pool_leaves_nothing_among_temporary_files_even_if_its_process_was_killed(

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.signatures import signatures
 from grader.exercise import load, starter
 from grader.exercise.mistakes import mistakes_of
 from grader.grading import Options, grading_of
@@ -46,13 +45,6 @@ def test_the_solution_gets_full_marks_and_the_starter_nothing(graded: Grading) -
     source = starter(exercise.solution_file.read_text(encoding="utf-8"))
     nothing = graded.grade(of_source("starter", source.encode(), exercise))
     assert (nothing.outcome, nothing.score) == ("graded", 0)
-
-
-@pytest.mark.parametrize("graded", ["heartbeat"], indirect=True)
-def test_for_the_overview_only_mistakes_are_graded_that_may_explain_a_failure(graded: Grading) -> None:
-    assert signatures(graded, []) == ()
-    found = signatures(graded, [{"test_ends_on_ctrl_c"}])
-    assert [one.names for one in found] == [("goes_on_after_ctrl_c",), ("traceback_on_ctrl_c",)]
 
 
 @pytest.mark.parametrize("name", [*NAMES, "joint_velocity"])

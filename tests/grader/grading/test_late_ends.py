@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from few_scenarios import in_scenarios
 
 from grader.exercise.mistakes import mistake_of
 from grader.grading import Grade
@@ -16,6 +17,12 @@ SUBSCRIPTION = (
 CALLBACK = "    def on_joints(self, message):\n"
 
 
+def in_chapter(grading: Grading, source: str) -> Grade:
+    """Return the grade of a program in the first scenario."""
+    exercise = grading.runner.exercise
+    return in_scenarios(grading, "chapter").grade(of_source("test.py", source.encode(), exercise))
+
+
 def grade_with(grading: Grading, *changes: tuple[str, str]) -> Grade:
     """Return the grade of the solution with pieces of it replaced."""
     solution = grading.runner.exercise.solution_file
@@ -24,7 +31,7 @@ def grade_with(grading: Grading, *changes: tuple[str, str]) -> Grade:
     for old, new in changes:
         assert source.count(old) == 1
         source = source.replace(old, new)
-    return grading.grade(of_source("test.py", source.encode(), grading.runner.exercise))
+    return in_chapter(grading, source)
 
 
 @pytest.mark.parametrize(
@@ -78,5 +85,5 @@ def test_a_second_shutdown_after_ctrl_c_is_found_however_late_rclpys_own_thread_
     source = mistake_of(grading.runner.exercise, "traceback_on_ctrl_c").source
     late = source.replace("    rclpy.init()\n", LATE_THREAD)
     assert late != source
-    grade = grading.grade(of_source("test.py", late.encode(), grading.runner.exercise))
+    grade = in_chapter(grading, late)
     assert [verdict.name for verdict in grade.verdicts if verdict.status != "passed"] == ["test_ends_on_ctrl_c"]

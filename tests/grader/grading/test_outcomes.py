@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from few_scenarios import in_scenarios
 
 from grader.checking import ending_message
 from grader.exercise import Exercise
@@ -88,7 +89,7 @@ def test_a_crash_in_one_scenario_costs_only_its_checks(grading: Grading) -> None
         "        assert message.name, 'nobody expects an empty message'\n        positions = {\n",
         1,
     )
-    grade = grade_of(grading, source)
+    grade = grade_of(in_scenarios(grading, "chapter", "empty"), source)
     assert grade.outcome == "graded"
     failed = {verdict.name: verdict.finding for verdict in grade.verdicts if verdict.status == "failed"}
     assert set(failed) == {"test_empty_message"}
@@ -111,6 +112,6 @@ def test_a_race_between_ctrl_c_and_a_shutdown_that_asks_first_costs_nothing(grad
     solution = grading.runner.exercise.solution_file
     assert solution
     source = solution.read_text(encoding="utf-8").replace("rclpy.try_shutdown()", ending)
-    grade = grade_of(grading, source.replace("def main", twice, 1))
+    grade = grade_of(in_scenarios(grading, "chapter"), source.replace("def main", twice, 1))
     [verdict] = [verdict for verdict in grade.verdicts if "Ctrl-C" in verdict.title]
     assert verdict.status == "passed", verdict

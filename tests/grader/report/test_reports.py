@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
+from few_scenarios import in_scenarios
 from jsonschema import Draft202012Validator
 from rich.console import Console
 
@@ -39,7 +40,8 @@ def hostile(grading: Grading) -> Grade:
     assert solution
     source = solution.read_text(encoding="utf-8")
     source = source.replace("\n    def publish_velocities(self, message, positions, dt):", HOSTILE)
-    return grading.grade(of_source("\x1b[31mmine.py", source.encode(), grading.runner.exercise))
+    chapter = in_scenarios(grading, "chapter")
+    return chapter.grade(of_source("\x1b[31mmine.py", source.encode(), grading.runner.exercise))
 
 
 def test_the_terminal_shows_no_control_codes_of_a_students(hostile: Grade, grading: Grading) -> None:

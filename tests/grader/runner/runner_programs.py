@@ -145,12 +145,12 @@ POOL_OF_PROCESSES = "import concurrent.futures, multiprocessing\n" + program(
     body="self.answer(sum(self.pool.map(abs, [message.data - 1.0, 1.0])))",
 )
 
-#: Starts a program each time the one before has ended: 10 ms later, when the loop looks as well.
+#: Starts a program each time the one before has ended: 40 ms later, when the loop looks as well.
 ASYNCIO_AND_PROGRAMS = program(
     body="pass",
     spin="import asyncio\n"
     "async def programs():\n    while rclpy.ok():\n"
-    "        await (await asyncio.create_subprocess_exec('sleep', '0.01')).wait()\n"
+    "        await (await asyncio.create_subprocess_exec('sleep', '0.04')).wait()\n"
     "        node.answer(float(len(node.got)))\n"
     "async def turn():\n    task = asyncio.ensure_future(programs())\n    while rclpy.ok():\n"
     "        rclpy.spin_once(node, timeout_sec=0)\n        await asyncio.sleep(0.005)\n"

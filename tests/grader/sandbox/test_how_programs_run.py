@@ -70,15 +70,8 @@ PROGRAMS = {
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_warm_start_behaves_as_a_new_python(either_runner: Runner, name: str) -> None:
-    preloaded = either_runner.run(PROGRAMS[name])
-    cold = either_runner.run(PROGRAMS[name], preloaded=False)
-
-    if either_runner.level in (Isolation.LANDLOCK, Isolation.NONE):  # a folder with a random name
-        assert preloaded.exit == cold.exit
-        assert len(preloaded.text.splitlines()) == len(cold.text.splitlines())
-    else:
-        assert (preloaded.exit, preloaded.text) == (cold.exit, cold.text)
+def test_a_warm_start_behaves_as_a_new_python(strongest_runner: Runner, name: str) -> None:
+    assert strongest_runner.run(PROGRAMS[name]) == strongest_runner.run(PROGRAMS[name], preloaded=False)
 
 
 #: While its main thread ends with a long traceback, another one prints all the time.
@@ -195,9 +188,9 @@ def test_an_interrupt_is_what_ctrl_c_is(any_runner: Runner) -> None:
 
 
 def watch_cpu(fork_server: ForkServer, level: Isolation) -> tuple[float, float, int, int]:
-    busy = ProgramSpec("n.py", {"n.py": b"import time\nwhile time.process_time() < 0.5: pass"})
+    busy = ProgramSpec("n.py", {"n.py": b"import time\nwhile time.process_time() < 0.25: pass"})
     with fork_server.start(busy, level, core=0) as student:
-        while student.cpu_seconds() < 0.3:
+        while student.cpu_seconds() < 0.15:
             assert student.wait(0.001) is None
         running, processes = student.cpu_seconds(), student.processes()
         student.wait(60.0)
@@ -207,8 +200,8 @@ def watch_cpu(fork_server: ForkServer, level: Isolation) -> tuple[float, float, 
 def test_the_rig_sees_what_the_program_uses(any_runner: Runner) -> None:
     running_s, ended_s, processes, pid = any_runner.do(watch_cpu)
 
-    assert running_s >= 0.3
-    assert 0.5 <= ended_s < 0.95, "not twice what it used"
+    assert running_s >= 0.15
+    assert 0.25 <= ended_s < 0.48, "not twice what it used"
     assert processes == 1
     assert pid > 1
 

@@ -44,7 +44,7 @@ def ends_at(runner: Runner, limit: str, code: str) -> None:
     """Run a program and check that this limit ends it, and no other program."""
     if limit == "processes" and runner.level is Isolation.NONE and not runner.rootless:
         pytest.skip("the kernel does not limit root's processes, and this level leaves the program to root")
-    short: dict[str, Any] = {"cpu": {"cpu_s": 0.3}, "wall": {"wall_s": 0.5}, "processes": {"processes": 32}}
+    short: dict[str, Any] = {"cpu": {"cpu_s": 0.1}, "wall": {"wall_s": 0.5}, "processes": {"processes": 32}}
     short["memory"] = {"memory_bytes": 640 * MIB}
     limits = dataclasses.replace(SMALL, **short.get(limit, {}))
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from few_scenarios import in_scenarios
 
 from grader.exercise import Exercise, load
 from grader.exercise.exercise import ProgramFile
@@ -33,7 +33,7 @@ def pair(exercise: Exercise) -> Exercise:
 
 
 @pytest.fixture(scope="session")
-def grading(exercise: Exercise) -> Iterator[Grading]:
-    """A worker that is ready to grade the exercise heartbeat."""
-    with WorkerPool() as workers:
-        yield grading_of(exercise, Options(), workers)
+def grading(exercise: Exercise, workers: WorkerPool) -> Grading:
+    """A grading of heartbeat in its first scenario, which shows whether a submission was read as it should be."""
+    every = grading_of(exercise, Options(), workers)
+    return in_scenarios(every, every.runner.scenarios[0].name)

@@ -21,8 +21,8 @@ from student_work import (
 
 from grader.exercise import Exercise, starter
 from grader.grading.grading import Grading
+from grader.recording.places import place_of
 from grader.submission.code import Code, code_of
-from grader.submission.places import place_of
 from grader.submission.problems import AmbiguousProgram, Unreadable
 from grader.submission.program_choice import digest_of
 from grader.submission.python_code import missing, normalized, starts
