@@ -13,6 +13,7 @@ from typing import Any
 
 import click
 
+from groundwork.problem import AuthorError
 from spinbook import __version__
 from spinbook.problem import SpinbookError
 
@@ -193,8 +194,8 @@ def main() -> None:
     atexit.register(gc.freeze)  # runs last: the system frees the memory anyway, so there is nothing to collect
     try:
         spinbook(prog_name="spinbook")
-    except SpinbookError as error:
-        click.echo(str(error), err=True)
+    except AuthorError as error:
+        click.echo("\n".join(map(str, error.problems)), err=True)
         sys.exit(1)
     except OSError as error:
         if error.errno not in NOT_WRITABLE or not error.filename:

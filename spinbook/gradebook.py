@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from pathlib import Path
 
@@ -13,7 +14,6 @@ from grader.exercise.exercise import ExerciseError
 from grader.exercise.loading import load
 from groundwork.files import write_if_changed
 from groundwork.words import counted
-from spinbook.chapter.classify import CellKind
 from spinbook.chapters import read_all
 from spinbook.course.course import Course, find_course
 
@@ -55,16 +55,13 @@ def gradebook(results: Path, start: Path) -> None:
 def exercises_in_order(course: Course) -> tuple[str, ...]:
     """Return the course's exercises in the order in which its chapters have them, then those that no chapter has."""
     chapters = [reading.chapter for reading in read_all(course) if reading.chapter]
-    cells = [cell for chapter in chapters for cell in chapter.cells]
-    named = [cell.name for cell in cells if cell.kind is CellKind.EXERCISE and cell.name]
+    named = [cell.name for chapter in chapters for cell in chapter.exercises if cell.name]
     return tuple(dict.fromkeys([*named, *sorted(course.exercises)]))
 
 
 def _titles(course: Course) -> dict[str, str]:
     titles = {}
     for name in course.exercises:
-        try:
+        with contextlib.suppress(ExerciseError):  # the page uses its name
             titles[name] = load(course.root / "exercises" / name).title
-        except ExerciseError:
-            continue  # the page uses its name
     return titles

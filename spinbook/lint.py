@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import click
 
 from grader.checking.proofreader import problems_of
+from groundwork.files import from_here
 from groundwork.problem import Problem, Severity
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.read import ReadResult
@@ -42,10 +43,9 @@ def lint(start: Path, strict: bool, show_static: bool, as_json: bool) -> None:
     of_course = [*_interfaces(course), *_exercises(course)]
     problems = [*of_course, *(problem for reading in readings for problem in reading.problems)]
     if as_json:
-        others = {"chapter": None, "problems": [_plain(problem) for problem in of_course], "cells": [], "static": []}
-        click.echo(
-            json.dumps([*(_as_json(reading) for reading in readings), *([others] if of_course else [])], indent=1)
-        )
+        # What is wrong in the course's other files is in no chapter.
+        readings += [ReadResult(None, tuple(of_course))] if of_course else []
+        click.echo(json.dumps([_as_json(reading) for reading in readings], indent=1))
     else:
         for problem in problems:
             click.echo(str(problem))
@@ -84,12 +84,7 @@ def _exercise_files(course: Course) -> list[Path]:
 def _exercises(course: Course) -> tuple[Problem, ...]:
     """Return what is wrong in the course's exercises and their solutions."""
     problems = [problem for file in _exercise_files(course) for problem in problems_of(file.parent)]
-    return tuple(replace(problem, file=_near(problem.file)) for problem in problems)
-
-
-def _near(file: Path) -> Path:
-    """Return the path as seen from where the author is, if the file is below."""
-    return file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file
+    return tuple(replace(problem, file=from_here(problem.file)) for problem in problems)
 
 
 def _summary(reading: ReadResult, show_static: bool) -> None:
@@ -106,26 +101,10 @@ def _summary(reading: ReadResult, show_static: bool) -> None:
 
 def _as_json(reading: ReadResult) -> dict[str, object]:
     chapter = reading.chapter
+    cells, static_fences = (chapter.cells, chapter.static_fences) if chapter else ((), ())
     return {
         "chapter": chapter.file.as_posix() if chapter else None,
-        "problems": [_plain(problem) for problem in reading.problems],
-        "cells": [{"id": cell.id, "kind": cell.kind.value, "line": cell.line} for cell in chapter.cells]
-        if chapter
-        else [],
-        "static": [
-            {"line": f.line, "language": f.language, "why": f.why, "sign": f.sign} for f in chapter.static_fences
-        ]
-        if chapter
-        else [],
-    }
-
-
-def _plain(problem: Problem) -> dict[str, object]:
-    return {
-        "file": problem.file.as_posix(),
-        "line": problem.line,
-        "severity": problem.severity.value,
-        "problem": problem.problem,
-        "fix": problem.fix,
-        "group": problem.group,
+        "problems": [problem.plain for problem in reading.problems],
+        "cells": [{"id": cell.id, "kind": cell.kind.value, "line": cell.line} for cell in cells],
+        "static": [asdict(fence) for fence in static_fences],
     }

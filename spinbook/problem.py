@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from groundwork.problem import Problem
+from groundwork.problem import AuthorError
 
 
-class SpinbookError(Exception):
+class SpinbookError(AuthorError):
     """Raised if the work can't continue, with every problem that stopped it."""
-
-    def __init__(self, *problems: Problem) -> None:
-        super().__init__("\n".join(str(problem) for problem in problems))
-        self.problems = problems

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from groundwork.problem import Problem
+from groundwork.problem import AuthorError, Problem
 
 Direction = Literal["subscribe", "publish"]
 Reliability = Literal["reliable", "best_effort"]
@@ -180,7 +180,7 @@ class Exercise:
         return tuple(endpoint for endpoint in self.endpoints if endpoint.role == role)
 
 
-class ExerciseError(Exception):
+class ExerciseError(AuthorError):
     """Raised before any student is graded, when an exercise can't be used as its author wrote it.
 
     `problem` says what is in the file, `fix` what was expected and what to do. `line` counts from 1, and is None if the
@@ -189,7 +189,10 @@ class ExerciseError(Exception):
 
     def __init__(self, file: Path, problem: str, fix: str, line: int | None = None) -> None:
         self.problem = Problem(file, line, problem, fix)
-        super().__init__(f"{self.problem.place}: {problem}\n    {fix}")
+        super().__init__(self.problem)
+
+    def __str__(self) -> str:
+        return f"{self.problem.place}: {self.problem.problem}\n    {self.problem.fix}"
 
     def __reduce__(self) -> tuple[type[ExerciseError], tuple[Path, str, str, int | None]]:
         """Keep the problem when the error crosses from one process to another."""

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from grader.gradescope.pins import NAME
 from groundwork.files import cached, write_if_changed
-from groundwork.problem import Problem
+from groundwork.problem import AuthorError, Problem
 from interface_compiler.wheel_file import record, zipped
 
 #: The root of a checkout: the folder with pyproject.toml.
@@ -28,12 +28,11 @@ _BUILD = "import sys; from setuptools.build_meta import build_wheel; print(build
 _INSTALLERS = ("INSTALLER", "REQUESTED", "direct_url.json")
 
 
-class NoWheel(Exception):
-    """Raised if the wheel can't be made; `problem` says what to do."""
+class NoWheel(AuthorError):
+    """Raised if the wheel can't be made, with what to do."""
 
     def __init__(self, why: str, fix: str) -> None:
-        self.problem = Problem(SOURCE, None, f"the wheel of Spinbook could not be built: {why}", fix)
-        super().__init__(str(self.problem))
+        super().__init__(Problem(SOURCE, None, f"the wheel of Spinbook could not be built: {why}", fix))
 
 
 def is_checkout() -> bool:

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import grader
-from groundwork.files import write_if_changed
+from groundwork.files import json_object, write_if_changed
 from interface_compiler import activation
 from spinbook.build.digest import code_digest, digest, folders_digest, versions
 from spinbook.build.failures import CellFailure, find_failures, find_node_errors, find_warnings
@@ -87,6 +87,16 @@ class NotebookJob:
         """The folder in which it runs."""
         return self.build_folder / "run" / self.name
 
+    @property
+    def raw(self) -> Path:
+        """The path of the notebook with its outputs, as its process writes it."""
+        return self.folder.with_name(f"{self.name}.ipynb")
+
+    @property
+    def raw_graph(self) -> Path:
+        """The path of the node graph, as its process writes it."""
+        return self.folder.with_name(f"{self.name}.graph.json")
+
 
 def execute(
     jobs: Iterable[NotebookJob], at_once: int, on_progress: Callable[[NotebookProgress], None], *, again: bool = False
@@ -116,16 +126,14 @@ def _execute_one(
         _write_graph(job, remembered["graph"])
         return _result(job, json.loads(job.executed.read_text(encoding="utf-8")), [], 0.0, cached=True)
     started = time.monotonic()
-    raw = job.folder.with_name(f"{job.name}.ipynb")
-    ended = _run(job, raw, on_progress, given_up)
-    ran = _read(raw) or notebook
+    ended = _run(job, on_progress, given_up)
+    ran = json_object(job.raw) or notebook
     failures = find_failures(job.chapter, ran, ended)
     outputs = {cell["id"]: _tidy(cell, job) for cell in ran["cells"] if cell["cell_type"] == "code"}
     write_if_changed(job.executed, _with_outputs(notebook, outputs))
-    graph = _text(_graph_of(raw))
+    graph = job.raw_graph.read_text(encoding="utf-8") if job.raw_graph.exists() else None
     _write_graph(job, graph)
-    for file in (raw, _graph_of(raw)):
-        file.unlink(missing_ok=True)
+    _remove_raw(job)
     job.record.unlink(missing_ok=True)
     if not failures:
         write_if_changed(job.record, json.dumps({"key": key, "outputs": outputs, "graph": graph}))
@@ -139,26 +147,26 @@ def _result(
     return ExecutionResult(job.chapter, job.executed, tuple(failures), seconds, cached, tuple(warnings), tuple(errors))
 
 
-def _graph_of(raw: Path) -> Path:
-    return raw.with_name(raw.name.removesuffix(".ipynb") + ".graph.json")
+def _remove_raw(job: NotebookJob) -> None:
+    for file in (job.raw, job.raw_graph):
+        file.unlink(missing_ok=True)
 
 
 def _run(
-    job: NotebookJob, raw: Path, on_progress: Callable[[NotebookProgress], None], given_up: threading.Event
+    job: NotebookJob, on_progress: Callable[[NotebookProgress], None], given_up: threading.Event
 ) -> dict[str, Any]:
     """Run the notebook's process. Returns its last report of how it ended, {} if it ended well."""
     shutil.rmtree(job.folder, ignore_errors=True)
     job.folder.mkdir(parents=True)
-    for file in (raw, _graph_of(raw)):
-        file.unlink(missing_ok=True)
+    _remove_raw(job)
     # The path of a socket has to be short, so the build folder is not used.
     with tempfile.TemporaryDirectory(prefix="sb-", ignore_cleanup_errors=True) as sockets:
-        return _follow(job, _start(job, raw, sockets), on_progress, given_up)
+        return _follow(job, _start(job, sockets), on_progress, given_up)
 
 
-def _start(job: NotebookJob, raw: Path, sockets: str) -> KeptProcess:
+def _start(job: NotebookJob, sockets: str) -> KeptProcess:
     private = {"IPYTHONDIR": str(job.folder / ".ipython"), "ROS_LOG_DIR": str(job.folder / ".ros-log")}
-    words = (str(job.notebook), str(raw), str(job.deadline_s), sockets)
+    words = (str(job.notebook), str(job.raw), str(job.raw_graph), str(job.deadline_s), sockets)
     argv = [sys.executable, "-m", "spinbook.build.run_notebook", *words]
     return KeptProcess(argv, {**os.environ, **private}, job.folder)
 
@@ -208,15 +216,8 @@ def _key(notebook: dict[str, Any], job: NotebookJob) -> str:
 
 
 def _remembered(job: NotebookJob, key: str) -> dict[str, Any] | None:
-    try:
-        record = json.loads(job.record.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
+    record = json_object(job.record)
     return record if record.get("key") == key else None
-
-
-def _text(file: Path) -> str | None:
-    return file.read_text(encoding="utf-8") if file.exists() else None
 
 
 def _write_graph(job: NotebookJob, graph: str | None) -> None:
@@ -239,11 +240,3 @@ def _tidy(cell: dict[str, Any], job: NotebookJob) -> dict[str, Any]:
     for folder, name in ((job.folder, "."), (Path(sys.prefix), ".venv")):
         text = text.replace(json.dumps(f"{folder}/")[1:-1], f"{name}/")
     return {"outputs": json.loads(text), "execution_count": cell["execution_count"]}
-
-
-def _read(file: Path) -> dict[str, Any] | None:
-    try:
-        notebook = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    return notebook if isinstance(notebook, dict) else None

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from grader.exercise.exercise import ExerciseError
-from groundwork.files import write_if_changed
-from groundwork.problem import Problem, Severity
+from groundwork.files import json_object, write_if_changed
+from groundwork.problem import Problem
 from spinbook.build.digest import code_digest, digest, files_digest
 from spinbook.build.notebook import notebook_json
 from spinbook.chapter.files import locate
@@ -61,33 +61,28 @@ def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[Buil
     known = surroundings(course)
     code = code_digest("chapter", "chapters.py", "build", "course", "interfaces")
     common = digest(code, repr(course), repr(_sorted(known)), str(is_strict))
-    parts = ("exercises", "solutions")
-    exercise_files = files_digest(
-        (file for part in parts for file in (course.root / part).rglob("*") if file.is_file()), course.root
-    )
+    files = (file for part in ("exercises", "solutions") for file in (course.root / part).rglob("*"))
+    own = digest(common, files_digest(filter(Path.is_file, files), course.root))
     after: dict[str, Any] = {}
     for chapter in course.chapters:
         notebook = folder / f"{known.names[chapter]}.ipynb"
         entry = before.get(chapter.as_posix())
-        own = digest(common, exercise_files)
         key = _key(own, chapter, entry["uses"] if entry else [], course, known)
         if entry and entry["key"] == key and notebook.exists():
-            built = BuildResult(
-                chapter, notebook, tuple(_problem(p) for p in entry["problems"]), False, tuple(entry["uses"])
-            )
+            problems = tuple(map(Problem.from_plain, entry["problems"]))
+            built = BuildResult(chapter, notebook, problems, False, tuple(entry["uses"]))
         else:
             built = _build(course, chapter, notebook, known, is_strict)
         if not built.failed:
-            problems = [_plain(problem) for problem in built.problems]
-            record_of = {
+            after[chapter.as_posix()] = {
                 "key": _key(own, chapter, built.uses, course, known),
                 "notebook": notebook.name,
-                "uses": list(built.uses),
+                "uses": built.uses,
+                "problems": [problem.plain for problem in built.problems],
             }
-            after[chapter.as_posix()] = {**record_of, "problems": problems}
         yield built
     names = {f"{name}.ipynb" for name in known.names.values()}
-    for name in {entry.get("notebook", "") for entry in before.values()} - names - {""}:
+    for name in {entry["notebook"] for entry in before.values()} - names:
         (folder / name).unlink(missing_ok=True)
         (course.build_folder / "executed" / name).unlink(missing_ok=True)
     write_if_changed(record, json.dumps(after, indent=1, sort_keys=True) + "\n")
@@ -135,28 +130,5 @@ def _named(known: Surroundings) -> tuple[Any, ...]:
 
 
 def _read_record(file: Path) -> Mapping[str, Any]:
-    try:
-        record = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    is_ours = isinstance(record, dict) and all("uses" in entry for entry in record.values())
-    return record if is_ours else {}
-
-
-def _plain(problem: Problem) -> dict[str, Any]:
-    return {
-        "file": problem.file.as_posix(),
-        "line": problem.line,
-        "problem": problem.problem,
-        "fix": problem.fix,
-        "severity": problem.severity.value,
-        "group": problem.group,
-        "alone": problem.alone,
-    }
-
-
-def _problem(plain: Mapping[str, Any]) -> Problem:
-    severity = Severity(plain["severity"])
-    return Problem(
-        Path(plain["file"]), plain["line"], plain["problem"], plain["fix"], severity, plain["group"], plain["alone"]
-    )
+    record = json_object(file)
+    return record if all("uses" in entry for entry in record.values()) else {}

@@ -1,19 +1,17 @@
-"""Runs one notebook in a process of its own: `python -m spinbook.build.run_notebook NOTEBOOK OUT DEADLINE FOLDER`.
+"""Runs one notebook in its own process: `python -m spinbook.build.run_notebook NOTEBOOK OUT GRAPH DEADLINE FOLDER`.
 
 Prints one JSON object per line: {"cells": N} first, {"done": K} after each cell, and at the end {"finished": true},
 {"timed_out": INDEX} where the deadline (s) passed in that cell, or {"died": INDEX} where the kernel ended in it. What
-had run by then is written to OUT all the same, and the node graph that was seen to OUT's name with .graph.json. FOLDER
-is for the sockets of the kernel; the caller removes it, as this process may be killed. Its path has to be short.
+had run by then is written to OUT all the same, and the node graph that was seen to GRAPH. FOLDER is for the sockets of
+the kernel; the caller removes it, as this process may be killed. Its path has to be short.
 """
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
-import ctypes
 import json
 import os
-import signal
 import sys
 from asyncio.subprocess import DEVNULL, PIPE, Process
 from pathlib import Path
@@ -31,6 +29,7 @@ from spinbook.graph.model import GraphNode, GraphTopic, NodeGraph, one_each
 from spinbook.kernel.environment import DOMAIN_NOTE, EXECUTING, for_domain
 from spinbook.kernel.long_lines import whole_in, with_short_lines
 from spinbook.kernel.node_errors import ERROR
+from spinbook.kernel.supervisor import die_with_parent
 
 
 class History:
@@ -67,7 +66,6 @@ class History:
 COUNTED_CELLS = ("%%node", "%plot")
 #: An observer that does not answer within this time (s) is abandoned: the notebook matters more than its picture.
 _TIME_LIMIT_S = 60.0
-_PR_SET_PDEATHSIG = 1
 
 
 class GraphWatch:
@@ -87,7 +85,7 @@ class GraphWatch:
         environment = {**os.environ, **for_domain(0, os.environ)}
         argv = (sys.executable, "-m", "spinbook.graph.watcher")
         self._observer = await asyncio.create_subprocess_exec(
-            *argv, env=environment, stdin=PIPE, stdout=PIPE, stderr=DEVNULL, limit=1 << 24, preexec_fn=_die_with_parent
+            *argv, env=environment, stdin=PIPE, stdout=PIPE, stderr=DEVNULL, limit=1 << 24, preexec_fn=die_with_parent
         )
 
     async def cell_begins(self, source: str) -> None:
@@ -132,10 +130,6 @@ class GraphWatch:
         """What has been seen of the chapter so far; None if nothing."""
         graph = self._history.graph()
         return graph if graph.nodes else None
-
-
-def _die_with_parent() -> None:
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
 
 
 #: How long a cancelled notebook's kernel may take to end (s); the supervisor ends it otherwise.
@@ -228,7 +222,8 @@ def _kernel_manager(folder: Path) -> Any:
 
 def main() -> None:
     """Run the notebook that the command line names."""
-    source, out, deadline_s, folder = Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3]), Path(sys.argv[4])
+    source, out, graph, folder = (Path(sys.argv[number]) for number in (1, 2, 3, 5))
+    deadline_s = float(sys.argv[4])
     os.environ[EXECUTING] = "1"
     notebook = nbformat.reads(source.read_text(encoding="utf-8"), as_version=4)
     os.environ[DOMAIN_NOTE] = os.fspath(folder / "domain")
@@ -241,7 +236,7 @@ def main() -> None:
             cell.outputs = joined(cell.outputs)
             with_short_lines(cell.outputs, whole_in(Path.cwd(), cell.id))
     if watch.graph is not None:
-        write_if_changed(out.with_name(out.name.removesuffix(".ipynb") + ".graph.json"), watch.graph.to_json())
+        write_if_changed(graph, watch.graph.to_json())
     write_if_changed(out, json.dumps(notebook, ensure_ascii=False, indent=1, sort_keys=True) + "\n")
 
 

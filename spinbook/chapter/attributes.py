@@ -12,11 +12,10 @@ import yaml
 STYLES = ("note", "tip", "important", "warning", "caution")
 _STYLE = {
     **{style: style for style in STYLES},
-    **dict.fromkeys(
-        ("info", "abstract", "summary", "quote", "cite", "example", "seealso", "todo", "secondary"), "note"
-    ),
+    **dict.fromkeys(("info", "abstract", "summary", "quote", "cite", "example", "seealso", "todo"), "note"),
     **dict.fromkeys(("callout-note", "callout", "theorem", "topic", "admonition", "sidebar", "margin"), "note"),
     **dict.fromkeys(("prerequisites", "learninggoals", "keytakeaways", "exercise", "solution", "hint-info"), "note"),
+    "secondary": "note",
     **dict.fromkeys(("hint", "success", "check", "done", "question", "help", "faq", "callout-tip", "highlight"), "tip"),
     **dict.fromkeys(("danger", "error", "bug", "failure", "fail", "missing", "callout-caution", "caution"), "caution"),
     **dict.fromkeys(("attention", "warn", "callout-warning", "new"), "warning"),
@@ -31,15 +30,6 @@ _TABS = frozenset({"Tabs", "TabItem", "Tab", "tabs", "tab", "CodeGroup", "TabPan
 _HOLDING = frozenset({"Admonition", "details", "Details", "highlight", "raw", "capture", "comment", "code"})
 
 
-class _PairedTags:
-    """The names of tags that come in pairs: every capitalised one of MDX, and a few others."""
-
-    def __contains__(self, name: str) -> bool:
-        is_ours = name in _TABS or name in _HOLDING or name in _STYLE
-        return is_ours or name[:1].isupper() or name.capitalize() in _BOXES or name in _FOLDED
-
-
-PAIRED = _PairedTags()
 _PAIR = re.compile(r"""([A-Za-z_][\w-]*)\s*[=:]\s*(?:\{?\s*"([^"]*)"\s*\}?|\{?\s*'([^']*)'\s*\}?|([^\s,{}>]+))""")
 _EXERCISE = re.compile(r"^<!--\s*exercise:\s*([\w-]+)\s*-->")
 _OPTION = re.compile(r"^:([\w-]+):\s*(.*)$")
@@ -59,6 +49,12 @@ _JSX = re.compile(r"`[^`]*`|<[a-z]\w*\s(?:[^<>{}]|\{(?:[^{}]|\{[^{}]*\})*\})*>")
 _PROPERTY = re.compile(r"\s+([\w-]+)=\{((?:[^{}]|\{[^{}]*\})*)\}")
 _PATH = re.compile(r"""(["'`])([^"'`]+)\1""")
 _QUOTED = re.compile(r"\"((?:[^\"\\]|\\.)*)\"|'((?:[^'\\]|\\.)*)'")
+
+
+def is_paired(name: str) -> bool:
+    """Return whether tags of this name come in pairs: every capitalised one of MDX, and a few others."""
+    is_ours = name in _TABS or name in _HOLDING or name in _STYLE
+    return is_ours or name[:1].isupper() or name.capitalize() in _BOXES or name in _FOLDED
 
 
 def exercise(html: str) -> str:
@@ -177,12 +173,9 @@ def paired(name: str, properties: dict[str, str], words: str) -> tuple[str, str,
     positional = words.strip().strip("\"'") if "=" not in words else ""
     if name in {"TabItem", "Tab", "tab", "TabPanel"}:
         # jekyll-tabs names the group first: `tab group title`.
-        positional = positional.partition(" ")[2] or positional
-        return (
-            "tab",
-            "",
-            properties.get("label") or properties.get("title") or properties.get("value") or positional.strip("\"'"),
-        )
+        positional = (positional.partition(" ")[2] or positional).strip("\"'")
+        labels = (properties.get(key) for key in ("label", "title", "value"))
+        return "tab", "", next(filter(None, labels), positional)
     title = properties.get("title") or properties.get("summary") or properties.get("header") or ""
     if name.lower() in _FOLDED:
         return "details", "note", title or properties.get("label") or positional
@@ -195,11 +188,9 @@ def paired(name: str, properties: dict[str, str], words: str) -> tuple[str, str,
     if name.lower() in _STYLE and name not in {"highlight"}:
         title = properties.get("title") or ("" if name.lower() in STYLES else in_words(name))
         return "admonition", _STYLE[name.lower()], title
-    return (
-        ("dropped", "", "")
-        if name == "comment"
-        else ("group", "", title if name[:1].isupper() or name == "code" else "")
-    )
+    if name == "comment":
+        return "dropped", "", ""
+    return "group", "", title if name[:1].isupper() or name == "code" else ""
 
 
 def part_of_file(text: str, options: Mapping[str, str]) -> str:

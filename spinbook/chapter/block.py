@@ -88,6 +88,11 @@ def as_fence(fence: Fence, lines: tuple[SourceLine, ...]) -> tuple[SourceLine, .
     return (SourceLine(f"{mark}{fence.language}{title}", number), *code, SourceLine(mark, lines[-1].number))
 
 
+def fence_block(fence: Fence, lines: tuple[SourceLine, ...], *, closed: bool = True) -> Block:
+    """Return the block of a fence that is written anew in place of these lines."""
+    return Block(BlockKind.FENCE, lines, fence=fence, closed=closed, new=as_fence(fence, lines))
+
+
 def merged_callouts(blocks: list[Block]) -> list[Block]:
     """Make an admonition of each paragraph or quotation with kramdown's `{: .note }` before or after it."""
     out: list[Block] = []
@@ -132,9 +137,10 @@ def paired(blocks: list[Block]) -> tuple[Block, ...]:
     """Join an opening tag and its closing tag to one block that holds what is between them."""
     stack: list[tuple[Block | None, list[Block]]] = [(None, [])]
     for block in blocks:
-        if block.kind is BlockKind.DROPPED and block.style == "open" and block.title in attributes.PAIRED:
+        role = block.style if block.kind is BlockKind.DROPPED and attributes.is_paired(block.title) else ""
+        if role == "open":
             stack.append((block, []))
-        elif block.kind is BlockKind.DROPPED and block.style == "close" and block.title in attributes.PAIRED:
+        elif role == "close":
             if any(opened and opened.title == block.title for opened, _ in stack):
                 while True:
                     opened, inner = stack.pop()
@@ -154,8 +160,8 @@ def paired(blocks: list[Block]) -> tuple[Block, ...]:
 
 
 def _pair(opened: Block, inner: list[Block], closing: Block | None) -> Block:
-    properties = attributes.pairs(opened.new[0].text if opened.new else "")
     words = opened.new[0].text if opened.new else ""
+    properties = attributes.pairs(words)
     kind, style, title = attributes.paired(opened.title, properties, words)
     summary = next((block for block in inner if block.style == "summary"), None)
     if summary and summary.new:
@@ -164,8 +170,7 @@ def _pair(opened: Block, inner: list[Block], closing: Block | None) -> Block:
     inner = [block for block in inner if block is not summary]
     if opened.title == "highlight":
         code = "".join(f"{line.text}\n" for block in inner for line in block.lines)
-        fence = make_fence(words.split(" ")[0] or "text", code, opened.line)
-        return Block(BlockKind.FENCE, lines, fence=fence, new=as_fence(fence, lines))
+        return fence_block(make_fence(words.split(" ")[0] or "text", code, opened.line), lines)
     if opened.title == "details" and summary is None and "title" not in properties:
         title = "Details"
     return Block(BlockKind(kind), lines, tuple(inner), title, style)

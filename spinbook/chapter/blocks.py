@@ -8,7 +8,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from markdown_it.token import Token
 
@@ -21,6 +21,7 @@ from spinbook.chapter.block import (
     as_fence,
     closes,
     dedented,
+    fence_block,
     merged_callouts,
     offset_of,
     paired,
@@ -45,7 +46,6 @@ _MARKDOWN = _HOLDERS | {"heading_open", "paragraph_open"}
 class _Reader:
     include: Include
     depth: int = 0
-    tokens: list[Token] = field(default_factory=list)
 
     def blocks(self, lines: Sequence[SourceLine]) -> tuple[Block, ...]:
         if self.depth > _DEEPEST:
@@ -108,7 +108,7 @@ class _Reader:
             return self._directive(name, argument, lines, body, closed)
         fence = self._included(make_fence(token.info, token.content, lines[0].number))
         if len(pieces := in_pieces(fence)) > 1:
-            return [Block(BlockKind.FENCE, lines, fence=piece, new=as_fence(piece, lines)) for piece in pieces]
+            return [fence_block(piece, lines) for piece in pieces]
         expanded = fence.code != token.content and "".join(f"{line.text}\n" for line in body) != fence.code
         new = as_fence(fence, lines) if expanded and not fence.skipped else None
         return [Block(BlockKind.FENCE, lines, fence=fence, closed=closed, new=new)]
@@ -139,27 +139,21 @@ class _Reader:
         info = f"{directive.argument} " + " ".join(f'{key}="{value}"' for key, value in directive.options.items())
         fence = make_fence(f"{{code-cell}} {info}", directive.code, directive.lines[0].number)
         fence = self._included(replace(fence, skipped=directive.skipped))
-        new = as_fence(fence, directive.lines)
-        return [Block(BlockKind.FENCE, directive.lines, fence=fence, closed=directive.closed, new=new)]
+        return [fence_block(fence, directive.lines, closed=directive.closed)]
 
     def _literal(self, directive: Directive) -> list[Block]:
-        file, lines = directive.argument, directive.lines
+        file = directive.argument
         text = self.include(file)
         language = directive.options.get("language", "python" if file.endswith(".py") else "text")
-        if text is None:
-            fence = make_fence(language, f'--8<-- "{file}"\n', lines[0].number)
-            return [Block(BlockKind.FENCE, lines, fence=fence, new=as_fence(fence, lines))]
-        piece = attributes.part_of_file(text, directive.options)
+        piece = f'--8<-- "{file}"' if text is None else attributes.part_of_file(text, directive.options)
         title = f' title="{file.rsplit("/", 1)[-1]}"' if file.endswith(".py") and piece == text else ""
-        text = piece
-        fence = make_fence(language + title, text.rstrip("\n") + "\n", lines[0].number)
-        return [Block(BlockKind.FENCE, lines, fence=fence, new=as_fence(fence, lines))]
+        fence = make_fence(language + title, piece.rstrip("\n") + "\n", directive.lines[0].number)
+        return [fence_block(fence, directive.lines)]
 
     def _prompt(self, directive: Directive) -> list[Block]:
         """Return the fence of sphinx-prompt's `{prompt} bash $`, whose lines stand for what follows the prompt."""
         fence = make_fence(directive.argument.split(" ")[0], directive.code, directive.lines[0].number)
-        fence = replace(fence, skipped=directive.skipped)
-        return [Block(BlockKind.FENCE, directive.lines, fence=fence, new=as_fence(fence, directive.lines))]
+        return [fence_block(replace(fence, skipped=directive.skipped), directive.lines)]
 
     def _list_table(self, directive: Directive) -> list[Block]:
         rows: list[list[str]] = []
@@ -175,23 +169,18 @@ class _Reader:
             return self._holding(directive)
         table = [rows[0], ["---"] * len(rows[0]), *rows[1:]]
         title = [f"**{directive.argument}**", ""] if directive.argument else []
-        texts = [*title, *(f"| {' | '.join(row)} |" for row in table), ""]
-        new = tuple(SourceLine(text, directive.lines[0].number) for text in texts)
+        new = _at(directive.lines, *title, *(f"| {' | '.join(row)} |" for row in table), "")
         return [Block(BlockKind.TEXT, directive.lines, title=directive.argument, new=new)]
 
     def _include(self, directive: Directive) -> list[Block]:
-        text, number = self.include(directive.argument), directive.lines[0].number
+        text = self.include(directive.argument)
         if not text:
             return [Block(BlockKind.DROPPED, directive.lines)]
-        return list(self.inside([SourceLine(line, number) for line in text.split("\n")]))
+        return list(self.inside(_at(directive.lines, *text.split("\n"))))
 
     def _image(self, directive: Directive) -> list[Block]:
-        number = directive.lines[0].number
-        new = (
-            SourceLine(attributes.image(directive.argument, directive.options), number),
-            SourceLine("", number),
-            *directive.body,
-        )
+        image = attributes.image(directive.argument, directive.options)
+        new = (*_at(directive.lines, image, ""), *directive.body)
         caption = next((line.text.strip() for line in directive.body if line.text.strip()), "")
         return [Block(BlockKind.TEXT, directive.lines, title=caption, new=new)]
 
@@ -211,9 +200,9 @@ class _Reader:
         if kind is None:
             fence = make_fence(directive.name, directive.code, directive.lines[0].number)
             return [Block(BlockKind.FENCE, directive.lines, fence=replace(fence, skipped=directive.skipped))]
-        inner, number = directive.body, directive.lines[0].number
+        inner = directive.body
         if style and not title and directive.argument:
-            inner = [SourceLine(directive.argument, number), SourceLine("", number), *inner]
+            inner = [*_at(directive.lines, directive.argument, ""), *inner]
         return [Block(BlockKind(kind), directive.lines, self.inside(inner), title, style)]
 
     def _snippet(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
@@ -222,7 +211,7 @@ class _Reader:
             return [Block(BlockKind.TEXT, lines)]
         return [
             replace(block, new=block.new or block.lines) if block.kind is BlockKind.TEXT else block
-            for block in self.inside([SourceLine(t, lines[0].number) for t in text.split("\n")])
+            for block in self.inside(_at(lines, *text.split("\n")))
         ]
 
     def _container_any_open(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
@@ -238,7 +227,7 @@ class _Reader:
         kind, style, title = attributes.container(name, argument, colon=not is_myst)
         title = title or options.get("title", "") or quarto_title(name, inner)
         if style and not title and argument and is_myst:
-            inner[:skipped] = [SourceLine(argument, lines[0].number), SourceLine("", lines[0].number)]
+            inner[:skipped] = _at(lines, argument, "")
             skipped = 0
         return [Block(BlockKind(kind or "group"), lines, self.inside(inner[skipped:]), title, style)]
 
@@ -254,18 +243,11 @@ class _Reader:
         return [Block(BlockKind.TAB, lines, self.inside(dedented(lines[1:], 4)), token.info)]
 
     def _callout(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
-        inner = (SourceLine(token.info, lines[0].number),)
-        return [
-            Block(
-                BlockKind.ADMONITION,
-                lines,
-                (Block(BlockKind.TEXT, inner),),
-                style="warning" if token.tag == "!" else "tip",
-            )
-        ]
+        inner = (Block(BlockKind.TEXT, _at(lines, token.info)),)
+        return [Block(BlockKind.ADMONITION, lines, inner, style="warning" if token.tag == "!" else "tip")]
 
     def _jsx(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
-        return [Block(BlockKind.TEXT, lines, new=(SourceLine(token.content, lines[0].number),))]
+        return [Block(BlockKind.TEXT, lines, new=_at(lines, token.content))]
 
     def _kramdown(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         title = "titled" if "-title" in token.info else ""
@@ -278,15 +260,14 @@ class _Reader:
         return [Block(BlockKind.DROPPED, lines)]
 
     def _marked(self, token: Token, lines: tuple[SourceLine, ...], mark: str, name: str) -> list[Block]:
-        return [Block(BlockKind.DROPPED, lines, title=name, style=mark, new=(SourceLine(token.info, lines[0].number),))]
+        return [Block(BlockKind.DROPPED, lines, title=name, style=mark, new=_at(lines, token.info))]
 
     def _liquid(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         if token.tag in {"include", "figure", "img", "image"}:
             properties = attributes.pairs(token.info)
             source = next((properties[key] for key in ("image_path", "src", "url", "file") if key in properties), "")
             if source:
-                new = (SourceLine(attributes.image(source, properties), lines[0].number),)
-                return [Block(BlockKind.TEXT, lines, new=new)]
+                return [Block(BlockKind.TEXT, lines, new=_at(lines, attributes.image(source, properties)))]
             return [Block(BlockKind.DROPPED, lines)]
         if token.tag.startswith("end"):
             return self._marked(token, lines, "close", token.tag[3:])
@@ -302,24 +283,18 @@ class _Reader:
 
     def _tag_self(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
         if token.tag == "summary":
-            return [
-                Block(
-                    BlockKind.DROPPED,
-                    lines,
-                    title="summary",
-                    style="summary",
-                    new=(SourceLine(attributes.plain(token.content), 1),),
-                )
-            ]
+            words = _at(lines, attributes.plain(token.content))
+            return [Block(BlockKind.DROPPED, lines, title="summary", style="summary", new=words)]
         if token.content:
-            return [self._one_line(token, lines, token.content.rpartition("</")[0].strip())]
+            return [self._one_line(token, lines)]
         if picture := attributes.picture(token.info):
-            return [Block(BlockKind.TEXT, lines, new=(SourceLine(picture, lines[0].number),))]
-        return [Block(BlockKind.DROPPED, lines, new=_words(token, lines))]
+            return [Block(BlockKind.TEXT, lines, new=_at(lines, picture))]
+        # A component without content shows the words among its properties.
+        return [Block(BlockKind.DROPPED, lines, new=_at(lines, *attributes.words_of(token.tag, token.info)))]
 
-    def _one_line(self, token: Token, lines: tuple[SourceLine, ...], words: str) -> Block:
+    def _one_line(self, token: Token, lines: tuple[SourceLine, ...]) -> Block:
         """Return the block of a component that opens and closes on its line."""
-        inner = (SourceLine(words, lines[0].number),)
+        inner = _at(lines, token.content.rpartition("</")[0].strip())
         kind, style, title = attributes.paired(token.tag, attributes.pairs(token.info), token.info)
         if kind == "group" and not title:
             return Block(BlockKind.TEXT, lines, new=inner)
@@ -336,20 +311,15 @@ class _Reader:
 
     def _items(self, lines: tuple[SourceLine, ...]) -> tuple[Block, ...]:
         tokens = parser().parse("\n".join(line.text for line in lines))
-        items = [
-            (token, token.map[0])
-            for token in tokens
-            if token.type == "list_item_open" and token.level == 1 and token.map
-        ]
-        ends = [start for _, start in items[1:]] + [len(lines)]
-        result = []
-        for (token, start), end in zip(items, ends, strict=False):
-            own = lines[start:end]
-            offset = offset_of(own[0].text, len(token.info) + len(token.markup))
-            first = SourceLine(own[0].text[offset:], own[0].number)
-            inner = self.inside([first, *dedented(own[1:], offset)])
-            result.append(Block(BlockKind.ITEM, own, inner, title=token.info, style=token.markup, offset=offset))
-        return tuple(result)
+        items = [token for token in tokens if token.type == "list_item_open" and token.level == 1 and token.map]
+        starts = [(token.map or [0])[0] for token in items]
+        return tuple(map(self._item, items, (lines[a:b] for a, b in itertools.pairwise([*starts, len(lines)]))))
+
+    def _item(self, token: Token, lines: tuple[SourceLine, ...]) -> Block:
+        offset = offset_of(lines[0].text, len(token.info) + len(token.markup))
+        first = SourceLine(lines[0].text[offset:], lines[0].number)
+        inner = self.inside([first, *dedented(lines[1:], offset)])
+        return Block(BlockKind.ITEM, lines, inner, title=token.info, style=token.markup, offset=offset)
 
 
 def read_blocks(text: str, include: Include) -> tuple[Block, ...]:
@@ -380,6 +350,6 @@ def _inside(tokens: Sequence[Token], index: int) -> Iterator[Token]:
     return itertools.takewhile(lambda token: token.level > level, itertools.islice(tokens, index + 1, None))
 
 
-def _words(token: Token, lines: tuple[SourceLine, ...]) -> tuple[SourceLine, ...]:
-    """Return what an MDX component without content shows: the words among its properties."""
-    return tuple(SourceLine(text, lines[0].number) for text in attributes.words_of(token.tag, token.info))
+def _at(lines: Sequence[SourceLine], *texts: str) -> tuple[SourceLine, ...]:
+    """Return texts as lines in the place of the first of these lines."""
+    return tuple(SourceLine(text, lines[0].number) for text in texts)

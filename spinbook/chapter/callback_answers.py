@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from spinbook.chapter.interface_fields import WrongField
-from spinbook.chapter.syntax import last_name, syntax_tree
+from spinbook.chapter.syntax import keywords_of, last_name, parsed
 from spinbook.chapter.variable_types import Function, ProgramTypes, TypedValue, callback_argument, interface_argument
 
 #: Calls that register a callback whose answer rclpy needs.
@@ -16,29 +16,24 @@ _REGISTERING = frozenset({"create_service", "ActionServer", "add_on_set_paramete
 
 def unanswered(program: str) -> list[WrongField]:
     """Return the callbacks of a program that can end without their answer; none if it is not Python."""
-    try:
-        types = ProgramTypes(syntax_tree(program))
-    except (SyntaxError, ValueError, RecursionError):
+    tree = parsed(program)
+    if tree is None:
         return []
-    calls = ((item, function) for function in types.functions for item in function.own_nodes)
-    return [
-        wrong
-        for call, function in calls
-        if isinstance(call, ast.Call)
-        for wrong in missing_answers(call, function, types)
-    ]
+    types = ProgramTypes(tree)
+    calls = ((call, function) for function in types.functions for call in function.calls)
+    return [wrong for call, function in calls for wrong in missing_answers(call, function, types)]
 
 
 def missing_answers(call: ast.Call, function: Function, types: ProgramTypes) -> Iterator[WrongField]:
     """Yield that a callback that a call registers can end without an answer, or returns something else."""
-    for asked in _asked(call):
-        target = types.function_of(asked.callback, function)
+    for needed in _needed_answers(call):
+        target = types.function_of(needed.callback, function)
         if target is not None and isinstance(target.node, ast.FunctionDef | ast.AsyncFunctionDef):
-            yield from _without_answer(target, target.node, asked, types.class_of(asked.interface, function), types)
+            yield from _without_answer(target, target.node, needed, types.class_of(needed.interface, function), types)
 
 
 @dataclass(frozen=True)
-class _Asked:
+class _NeededAnswer:
     """What rclpy wants from a callback: `words` and `answer` say it; `part` is that of the interface, "" if none."""
 
     callback: ast.expr
@@ -48,46 +43,46 @@ class _Asked:
     part: str = ""
 
 
-def _asked(call: ast.Call) -> Iterator[_Asked]:
+def _needed_answers(call: ast.Call) -> Iterator[_NeededAnswer]:
     """Yield the callbacks in a call whose answer rclpy needs."""
     name = last_name(call.func)
     if name not in _REGISTERING:
         return
     interface = interface_argument(call) or call.func
-    named = {keyword.arg: keyword.value for keyword in call.keywords}
+    named = keywords_of(call)
     callback = callback_argument(call) if name in {"create_service", "ActionServer"} else None
     if callback and name == "create_service":
-        yield _Asked(callback, "the service's response", "response", interface, "Response")
+        yield _NeededAnswer(callback, "the service's response", "response", interface, "Response")
     elif callback:
-        yield _Asked(callback, "the action's result", f"{ast.unparse(interface)}.Result()", interface, "Result")
+        yield _NeededAnswer(callback, "the action's result", f"{ast.unparse(interface)}.Result()", interface, "Result")
     for key, kind in (("goal_callback", "GoalResponse"), ("cancel_callback", "CancelResponse")):
         if name == "ActionServer" and key in named:
-            yield _Asked(named[key], f"a {kind}", f"{kind}.ACCEPT", interface)
+            yield _NeededAnswer(named[key], f"a {kind}", f"{kind}.ACCEPT", interface)
     if name == "add_on_set_parameters_callback" and (first := [*call.args, *named.values()]):
-        yield _Asked(first[0], "a SetParametersResult", "SetParametersResult(successful=True)", interface)
+        yield _NeededAnswer(first[0], "a SetParametersResult", "SetParametersResult(successful=True)", interface)
 
 
 def _without_answer(
     callback: Function,
     node: ast.FunctionDef | ast.AsyncFunctionDef,
-    asked: _Asked,
+    needed: _NeededAnswer,
     of: TypedValue | None,
     types: ProgramTypes,
 ) -> Iterator[WrongField]:
     returns = [item for item in callback.own_nodes if isinstance(item, ast.Return)]
     if node.decorator_list or any(isinstance(item, ast.Yield) for item in callback.own_nodes):
         return
-    answer = callback.arguments[1] if asked.part == "Response" and len(callback.arguments) > 1 else asked.answer
+    answer = callback.arguments[1] if needed.part == "Response" and len(callback.arguments) > 1 else needed.answer
     fix = f"End each way through it with `return {answer}`: otherwise its caller gets no answer."
     empty = [item for item in returns if item.value is None or ast.unparse(item.value) == "None"]
     if empty or _falls_through(node.body):
         line = empty[0].lineno if empty else node.lineno
-        yield WrongField(line, f"`{node.name}` can end without returning {asked.words}.", fix)
+        yield WrongField(line, f"`{node.name}` can end without returning {needed.words}.", fix)
     for item in returns:
-        value = types.value_of(item.value, callback) if item.value and asked.part else None
-        is_other = value is not None and of is not None and (value.interface, value.part) != (of.interface, asked.part)
+        value = types.value_of(item.value, callback) if item.value and needed.part else None
+        is_other = value is not None and of is not None and (value.interface, value.part) != (of.interface, needed.part)
         if item not in empty and (isinstance(item.value, ast.Constant) or is_other):
-            problem = f"`{node.name}` returns `{ast.unparse(item)[7:]}`, which is not {asked.words}."
+            problem = f"`{node.name}` returns `{ast.unparse(item)[7:]}`, which is not {needed.words}."
             yield WrongField(item.lineno, problem, fix)
 
 

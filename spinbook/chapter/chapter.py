@@ -11,7 +11,7 @@ from typing import Any
 
 from spinbook.chapter.block import BlockKind, SourceLine
 from spinbook.chapter.classify import CellKind, ClassifiedFence
-from spinbook.chapter.layout import Piece
+from spinbook.chapter.layout import Piece, without_blanks_around
 from spinbook.chapter.terminal import Command, CommandKind
 
 
@@ -109,6 +109,11 @@ class Chapter:
         return (cell for cell in self.cells if cell.kind is CellKind.FILE)
 
     @property
+    def exercises(self) -> Iterator[ChapterCell]:
+        """The cells that are exercises, in order."""
+        return (cell for cell in self.cells if cell.kind is CellKind.EXERCISE)
+
+    @property
     def nodes(self) -> Iterator[ChapterCell]:
         """The cells that are nodes, in order, without the programs of earlier chapters."""
         return (cell for cell in self.cells if cell.kind is CellKind.NODE and cell.shown_in is None)
@@ -155,11 +160,7 @@ def _borrowed(cell: ChapterCell, line: int, ids: _Ids) -> ChapterCell:
 def _prose(pieces: list[Piece], ids: _Ids) -> Iterator[ChapterCell]:
     """Yield a piece of prose without the empty lines around it, which begins with the section's heading if it has
     one."""
-    lines = [piece.line for piece in pieces if piece.line is not None]
-    while lines and not lines[0].text.strip():
-        lines.pop(0)
-    while lines and not lines[-1].text.strip():
-        lines.pop()
+    lines = [piece.line for piece in without_blanks_around(pieces) if piece.line is not None]
     if lines:
         heading = next((piece.line for piece in pieces if piece.heading), None)
         text = "\n".join(line.text for line in lines)
@@ -192,14 +193,9 @@ def _runnable(item: ClassifiedFence, ids: _Ids) -> ChapterCell:
 
 
 def _id(item: ClassifiedFence, ids: _Ids) -> str:
-    if item.kind is CellKind.NODE:
-        return ids.named(f"node-{item.name}")
-    if item.kind is CellKind.PART:
-        return ids.named(f"part-{item.name}")
-    if item.kind is CellKind.INTERFACE:
-        return ids.named(f"interface-{(item.name or '').rpartition('/')[2]}")
-    if item.kind is CellKind.FILE:
-        return ids.named(f"file-{(item.name or '').rpartition('/')[2]}")
+    if item.kind in {CellKind.NODE, CellKind.PART, CellKind.INTERFACE, CellKind.FILE}:
+        kind = item.kind.value.removeprefix("package_")
+        return ids.named(f"{kind}-{(item.name or '').rpartition('/')[2]}")
     if item.kind is CellKind.SHELL:
         return ids.named(next(command for command in item.commands if command.kind is not CommandKind.NOTE).text)
     return ids.snippet()

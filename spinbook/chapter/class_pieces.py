@@ -8,7 +8,7 @@ import re
 import textwrap
 from collections.abc import Sequence
 
-from spinbook.chapter.syntax import descendants, syntax_tree
+from spinbook.chapter.syntax import calls_in, parsed
 
 _INDENT = " " * 4
 
@@ -19,7 +19,7 @@ def names_begun(code: str) -> frozenset[str]:
     if not lines or not lines[-1].split("#")[0].rstrip().endswith(":"):
         return frozenset()
     margin = lines[-1][: len(lines[-1]) - len(lines[-1].lstrip())]
-    tree = _parsed(f"{code.rstrip()}\n{margin}{_INDENT}pass\n")
+    tree = parsed(f"{code.rstrip()}\n{margin}{_INDENT}pass\n")
     statements = tree.body if tree else []
     return frozenset(i.name for i in statements if isinstance(i, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef))
 
@@ -37,8 +37,7 @@ def methods_alone(tree: ast.Module) -> frozenset[str]:
 
 def uses_super_outside(tree: ast.Module) -> bool:
     """Return whether code that is in no class calls `super()`."""
-    outside = (item for item in tree.body if not isinstance(item, ast.ClassDef))
-    calls = (item for statement in outside for item in descendants(statement) if isinstance(item, ast.Call))
+    calls = [call for item in tree.body if not isinstance(item, ast.ClassDef) for call in calls_in(item)]
     return any(isinstance(call.func, ast.Name) and call.func.id == "super" and not call.args for call in calls)
 
 
@@ -64,7 +63,7 @@ def _class_from(start: int, pieces: Sequence[str]) -> tuple[tuple[int, ...], str
             grown = f"{grown.rstrip()}\n\n{more}" if more else ""
             if not grown:
                 break
-            if _parsed(grown):
+            if parsed(grown):
                 text, end = grown, number
     return tuple(range(start, end + 1)), text
 
@@ -79,12 +78,5 @@ def _as_body(code: str) -> str:
     if first[:1].isspace():
         dedented = textwrap.dedent(code)
         return textwrap.indent(dedented, _INDENT) if re.match(r"(async )?def |@", first.lstrip()) else code
-    tree = _parsed(code)
+    tree = parsed(code)
     return textwrap.indent(code, _INDENT) if tree and methods_alone(tree) else ""
-
-
-def _parsed(code: str) -> ast.Module | None:
-    try:
-        return syntax_tree(code)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return None

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import contextlib
-import difflib
 import re
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 
 from groundwork.problem import Problem, Severity
+from groundwork.words import did_you_mean, similar
 from spinbook.chapter.attributes import not_included
 from spinbook.chapter.fence import ATTRIBUTES, Fence, interface_of, interface_title
 from spinbook.chapter.installed_interfaces import is_someone_elses
 from spinbook.chapter.launch_files import is_package_file, unsupported_in_launch_file
 from spinbook.chapter.node_classes import snake_case
 from spinbook.chapter.own_packages import is_setup_excerpt
-from spinbook.chapter.python_code import CodeError, PythonCode, has_magics, inspect, programs_in_magics
+from spinbook.chapter.python_code import CodeError, PythonCode, facts_of, has_magics, inspect, programs_in_magics
 from spinbook.chapter.terminal import (
     SHOWN_PROMPT,
     Command,
@@ -96,6 +95,13 @@ class ClassifiedFence:
     """Whether it counts its command-line arguments, and a command below gives it some."""
     has_main_above: bool = False
     """Whether `before` has the `main` of an earlier version."""
+    problems: tuple[Problem, ...] = ()
+    """What is wrong in the fence itself."""
+
+    @property
+    def is_static(self) -> bool:
+        """Whether it becomes no cell."""
+        return self.kind is CellKind.STATIC
 
     @property
     def runs_main(self) -> bool:
@@ -128,60 +134,63 @@ class ClassifiedFence:
         return self.before + self.fence.code
 
 
-def first_look(fence: Fence, file: Path, interface_package: str = "") -> tuple[ClassifiedFence, list[Problem]]:
+def static(
+    fence: Fence, why: str, *problems: Problem, sign: str = "", code: PythonCode | None = None
+) -> ClassifiedFence:
+    """Return a fence that is only shown; `sign` is what readers are told below it, "" for nothing."""
+    return ClassifiedFence(fence, CellKind.STATIC, why, sign, code=code, problems=problems)
+
+
+def first_look(fence: Fence, file: Path, interface_package: str = "") -> ClassifiedFence:
     """Classify a fence by itself. Python that can run is a snippet here, or a node if it is a program.
 
     `interface_package` is the package of an interface whose title does not name one.
     """
-    problems = [*_unknown_attributes(fence, file), *_unknown_tags(fence, file)]
+    item = _by_title(fence, file, interface_package) or _by_content(with_language(fence), file)
+    return replace(item, problems=(*_unknown_attributes(fence, file), *_unknown_tags(fence, file), *item.problems))
+
+
+def _by_title(fence: Fence, file: Path, interface_package: str) -> ClassifiedFence | None:
+    """Return what the title or the word `static` makes of a fence; None if its content decides."""
+    title = fence.title or ""
     if fence.has("static"):
-        return ClassifiedFence(fence, CellKind.STATIC, "it says `static`"), problems
-    if interface := interface_of(fence, interface_package):
-        return _interface(fence, interface, interface_package), problems
-    if meant := interface_title(fence.title or ""):
-        return ClassifiedFence(fence, CellKind.STATIC, "its title is not an interface's name"), [
-            _unnamed(fence, meant, file)
-        ]
-    if is_package_file(fence.title or "") and (item := _package_file(fence)):
-        return item, problems
-    fence = with_language(fence)
+        return static(fence, "it says `static`")
+    if path := interface_of(fence, interface_package):
+        package = path.partition("/")[0]
+        if is_someone_elses(package, interface_package):
+            return static(fence, f"it shows an interface of {package}, which is installed")
+        return ClassifiedFence(fence, CellKind.INTERFACE, name=path)
+    if meant := interface_title(title):
+        problem = f"this definition is shown and not compiled: its title `{title}` is not an interface's name."
+        fix = f'Write title="{meant}", or write `static` after the language if it is only to be shown.'
+        not_run = Problem(file, fence.line, problem, fix, Severity.NOT_RUN)
+        return static(fence, "its title is not an interface's name", not_run)
+    if is_package_file(title) and not (fence.is_python and _is_no_launch_file(fence.code)):
+        return ClassifiedFence(fence, CellKind.FILE, name=title)
+    return None
+
+
+def _is_no_launch_file(code: str) -> bool:
+    """Return whether `ros2 launch` can't run a file here: it is not Python, or uses what is not supported."""
+    try:
+        return bool(unsupported_in_launch_file(code))
+    except SyntaxError:
+        return True
+
+
+def _by_content(fence: Fence, file: Path) -> ClassifiedFence:
     if fence.is_shell:
-        item, more = _shell(fence, file)
-        return item, problems + more
-    if (fence.is_python or fence.is_shell) and (absent := not_included(fence.code)):
-        item, more = _absent(fence, absent, file)
-        return item, problems + more
+        return _shell(fence, file)
+    if fence.is_python and (name := not_included(fence.code)):
+        fix = "Write the path relative to the chapter's folder, or to the course's."
+        text, group = f"the fence includes `{name}`, and there is no such file.", "files that are not there"
+        why = f"it includes `{name}`, which is not here"
+        return static(fence, why, Problem(file, fence.line, text, fix, Severity.NOT_RUN, group), sign=f"{why}.")
     if fence.is_python:
         code, output = split_session(fence.code)
-        item, more = _python(replace(fence, code=code), file)
-        return replace(item, output=output), problems + more
+        return replace(_python(replace(fence, code=code), file), output=output)
     what = f"`{fence.language}` is" if fence.language else "a fence without a language is"
-    return ClassifiedFence(fence, CellKind.STATIC, f"{what} neither Python nor shell"), problems
-
-
-def _interface(fence: Fence, path: str, own: str) -> ClassifiedFence:
-    """Return a definition that is compiled, or one of an installed package, which is shown."""
-    package = path.partition("/")[0]
-    if is_someone_elses(package, own):
-        return ClassifiedFence(fence, CellKind.STATIC, f"it shows an interface of {package}, which is installed")
-    return ClassifiedFence(fence, CellKind.INTERFACE, name=path)
-
-
-def _unnamed(fence: Fence, meant: str, file: Path) -> Problem:
-    problem = f"this definition is shown and not compiled: its title `{fence.title}` is not an interface's name."
-    fix = f'Write title="{meant}", or write `static` after the language if it is only to be shown.'
-    return Problem(file, fence.line, problem, fix, Severity.NOT_RUN)
-
-
-def _package_file(fence: Fence) -> ClassifiedFence | None:
-    """Return a launch or parameter file of the package; None for one that `ros2 launch` can't run here."""
-    if fence.is_python:
-        try:
-            if unsupported_in_launch_file(fence.code):
-                return None
-        except SyntaxError:
-            return None
-    return ClassifiedFence(fence, CellKind.FILE, name=fence.title)
+    return static(fence, f"{what} neither Python nor shell")
 
 
 def with_language(fence: Fence) -> Fence:
@@ -194,9 +203,9 @@ def with_language(fence: Fence) -> Fence:
     if is_unknown and _is_program(fence):
         return replace(fence, language="python")
     if looks_like_shell(split_transcript(fence.code)[0] if SHOWN_PROMPT.match(fence.code.lstrip()) else fence.code):
-        return Fence("bash", fence.code, fence.line, fence.attributes, fence.skipped)
+        return replace(fence, language="bash")
     if not fence.language and _IMPORTS_ROS.search(fence.code):
-        return Fence("python", fence.code, fence.line, fence.attributes, fence.skipped)
+        return replace(fence, language="python")
     return fence
 
 
@@ -205,20 +214,16 @@ _IMPORTS_ROS = re.compile(r"^(import|from) (rclpy|\w+(_msgs|_srvs|_interfaces))\
 
 def _is_program(fence: Fence) -> bool:
     """Return whether a fence of a language that nobody knows is a program for rclpy, such as `pyhton`."""
-    if "rclpy" not in fence.code or not _IMPORTS_ROS.search(fence.code):
-        return False
-    with contextlib.suppress(CodeError):
-        return not inspect(fence.code).fragment
-    return False
+    return "rclpy" in fence.code and bool(_IMPORTS_ROS.search(fence.code)) and not facts_of(fence.code).fragment
 
 
 def _unknown_attributes(fence: Fence, file: Path) -> list[Problem]:
     """Return attributes that look like misspellings of ours; those of other book tools are ignored."""
-    unknown = [a for a in fence.attributes if a not in ATTRIBUTES and difflib.get_close_matches(a, ATTRIBUTES, 1, 0.75)]
+    unknown = [name for name in fence.attributes if name not in ATTRIBUTES and similar(name, ATTRIBUTES, 0.75)]
     if not unknown or not (fence.is_python or fence.is_shell):
         return []
     known = "; ".join(f"`{name}`: {meaning}" for name, meaning in ATTRIBUTES.items())
-    problem = f"unknown attribute {', '.join(f'`{a}`' for a in unknown)} on this fence."
+    problem = f"unknown attribute {', '.join(f'`{name}`' for name in unknown)} on this fence."
     return [Problem(file, fence.line, problem, f"Known are {known}.", Severity.WARNING)]
 
 
@@ -229,23 +234,15 @@ _TAGS += ("skip-execution", "raises-exception")
 
 def _unknown_tags(fence: Fence, file: Path) -> list[Problem]:
     """Return tags that look like misspellings of MyST's; others may be the author's own."""
-    close = {tag: difflib.get_close_matches(tag, _TAGS, 1, 0.85) for tag in fence.tags if tag not in _TAGS}
+    meant = {tag: did_you_mean(tag, _TAGS, "", "`{}`", 0.85) for tag in fence.tags if tag not in _TAGS}
     return [
-        Problem(file, fence.line, f"unknown tag `{tag}` on this cell.", f"Did you mean `{meant[0]}`?", Severity.WARNING)
-        for tag, meant in close.items()
-        if meant
+        Problem(file, fence.line, f"unknown tag `{tag}` on this cell.", question, Severity.WARNING)
+        for tag, question in meant.items()
+        if question
     ]
 
 
-def _absent(fence: Fence, name: str, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
-    text = f"the fence includes `{name}`, and there is no such file."
-    fix = "Write the path relative to the chapter's folder, or to the course's."
-    problem = Problem(file, fence.line, text, fix, Severity.NOT_RUN, group="files that are not there")
-    why = f"it includes `{name}`, which is not here"
-    return ClassifiedFence(fence, CellKind.STATIC, why, f"{why}."), [problem]
-
-
-def _shell(fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
+def _shell(fence: Fence, file: Path) -> ClassifiedFence:
     code, output = split_transcript(fence.code)
     read = read_commands(code)
     refused = [command for command in read if isinstance(command, UnsupportedCommand)]
@@ -253,68 +250,53 @@ def _shell(fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
     runnable = [command for command in commands if command.kind is not CommandKind.NOTE]
     if runnable and not refused:
         fence = replace(fence, code=without_gaps(code, output)) if output else fence
-        return ClassifiedFence(fence, CellKind.SHELL, commands=commands, output=output), []
+        return ClassifiedFence(fence, CellKind.SHELL, commands=commands, output=output)
     ros = next((command for command in refused if command.is_ros or command.meant), None) or next(
         (command for command in refused if re.search(r"\bros2 (run|launch|\w+ \w+)", command.text)), None
     )
     if runnable or ros:
         shown = ros or refused[0]
-        return ClassifiedFence(fence, CellKind.STATIC, shown.why, f"{shown.why}."), [_not_run(fence, shown, file)]
-    why = refused[0].why if refused else "it contains no command that a notebook runs"
-    return ClassifiedFence(fence, CellKind.STATIC, why), []
+        return static(fence, shown.why, _not_run(fence, shown, file), sign=f"{shown.why}.")
+    return static(fence, refused[0].why if refused else "it contains no command that a notebook runs")
 
 
 def _not_run(fence: Fence, command: UnsupportedCommand, file: Path) -> Problem:
-    line = fence.first_code_line + command.line - 1
+    line, problem = fence.first_code_line + command.line - 1, f"{command.why} (`{command.text}`)."
     if command.meant:
-        return Problem(
-            file, line, f"{command.why} (`{command.text}`).", f"Did you mean `{command.meant}`?", Severity.NOT_RUN
-        )
-    problem = f"this shell fence is shown and not run: {command.why} (`{command.text}`)."
+        return Problem(file, line, problem, f"Did you mean `{command.meant}`?", Severity.NOT_RUN)
+    problem = f"this shell fence is shown and not run: {problem}"
     fix = "Put what can run into a fence of its own, or write `static` after the language to say that this is meant."
     return Problem(file, line, problem, fix, Severity.WARNING, group="a real shell")
 
 
-def _python(fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
+def _python(fence: Fence, file: Path) -> ClassifiedFence:
     try:
         code = inspect(fence.code)
     except CodeError as error:
-        if is_setup_excerpt(fence.code):
-            return ClassifiedFence(fence, CellKind.STATIC, "it is a setup.py"), []
-        return _broken(fence, error, file)
+        return static(fence, "it is a setup.py") if is_setup_excerpt(fence.code) else _broken(fence, error, file)
     if why := _why_static(fence, code):
-        sign = f"{why}." if why.startswith("it is a fragment") else ""
-        return ClassifiedFence(fence, CellKind.STATIC, why, sign, code=code), []
-    if refused := _refused(fence, code):
-        return ClassifiedFence(fence, CellKind.STATIC, refused, f"{refused}.", code=code), []
-    if _is_file(fence) or code.is_node:
-        problems = _magics_in_node(fence, file)
-        if problems:
-            return ClassifiedFence(
-                fence, CellKind.STATIC, "it contains a notebook command", "it contains a notebook command.", code=code
-            ), problems
-        return ClassifiedFence(fence, CellKind.NODE, code=code), []
-    return ClassifiedFence(fence, CellKind.SNIPPET, code=code), []
+        return static(fence, why, sign=f"{why}." if why.startswith("it is a fragment") else "", code=code)
+    if why := _why_refused(fence, code):
+        return static(fence, why, sign=f"{why}.", code=code)
+    if not (fence.is_file or code.is_node):
+        return ClassifiedFence(fence, CellKind.SNIPPET, code=code)
+    if has_magics(fence.code):
+        problem = "a node's code contains a notebook command (a line that begins with % or !)."
+        fix = "A node is a file of its own, which Python runs: put the command into another fence."
+        not_run, why = Problem(file, fence.line, problem, fix, Severity.NOT_RUN), "it contains a notebook command"
+        return static(fence, why, not_run, sign=f"{why}.", code=code)
+    return ClassifiedFence(fence, CellKind.NODE, code=code)
 
 
-def _broken(fence: Fence, error: CodeError, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
+def _broken(fence: Fence, error: CodeError, file: Path) -> ClassifiedFence:
     line = fence.first_code_line + error.line - 1
     fix = "Fix the code, or write `static` after the language if it is only to be shown and not run."
     text = f"not Python: {error.message} (column {error.column})."
-    problem = Problem(file, line, text, fix, Severity.NOT_RUN)
     sign = f"line {error.line} is not valid Python ({error.message})."
-    return ClassifiedFence(fence, CellKind.STATIC, "it is not Python", sign), [problem]
+    return static(fence, "it is not Python", Problem(file, line, text, fix, Severity.NOT_RUN), sign=sign)
 
 
-def _magics_in_node(fence: Fence, file: Path) -> list[Problem]:
-    if not has_magics(fence.code):
-        return []
-    problem = "a node's code contains a notebook command (a line that begins with % or !)."
-    fix = "A node is a file of its own, which Python runs: put the command into another fence."
-    return [Problem(file, fence.line, problem, fix, Severity.NOT_RUN)]
-
-
-def _refused(fence: Fence, code: PythonCode) -> str:
+def _why_refused(fence: Fence, code: PythonCode) -> str:
     """Return why Python that could run is not run here, if so."""
     started = {**code.programs, **programs_in_magics(fence.code)}
     if never := sorted(set(started) & NEVER_RUN):
@@ -322,10 +304,6 @@ def _refused(fence: Fence, code: PythonCode) -> str:
     if code.asks and not fence.has("raises"):
         return "it waits for keyboard input"
     return ""
-
-
-def _is_file(fence: Fence) -> bool:
-    return bool(fence.title and fence.title.endswith(".py"))
 
 
 def _why_static(fence: Fence, code: PythonCode) -> str:
@@ -349,7 +327,7 @@ def _why_static(fence: Fence, code: PythonCode) -> str:
 def node_name(item: ClassifiedFence, text: str, file: Path) -> tuple[str, bool, list[Problem]]:
     """Return (a node's file without .py, whether the author named it, problems). The text names the file `text`."""
     code = item.code
-    named_file = item.fence.title if item.fence.title and item.fence.title.endswith(".py") else text
+    named_file = item.fence.title if item.fence.is_file else text
     if named_file:
         stem = named_file.rsplit("/", 1)[-1].removesuffix(".py")
         if stem.isidentifier():

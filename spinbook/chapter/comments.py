@@ -10,7 +10,7 @@ from markdown_it import MarkdownIt
 from markdown_it.rules_inline import StateInline
 
 from spinbook.chapter.flavours import parser
-from spinbook.chapter.links import places_of, watch
+from spinbook.chapter.links import place_of, places_of, watch
 
 _BEGIN, _END = "<!--", "-->"
 
@@ -74,10 +74,8 @@ def _code(markdown: str) -> Iterator[Span]:
         elif token.type == "inline":
             places = list(places_of(lines, read_to, first, token.content))
             for start, end in _code_in_line(token.content):
-                row = token.content.count("\n", 0, start)
-                if place := places[row] if row < len(places) else None:
-                    number, column = place
-                    begin = starts[number] + column + start - (token.content.rfind("\n", 0, start) + 1)
+                if place := place_of(places, token.content, start):
+                    begin = starts[place[0]] + place[1]
                     yield begin, begin + end - start
 
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 from interface_compiler import prefixes
 from spinbook.chapter.class_pieces import assembled
-from spinbook.chapter.python_code import CodeError, PythonCode, inspect
-from spinbook.chapter.syntax import descendants, syntax_tree
+from spinbook.chapter.python_code import PythonCode, facts_of, inspect, is_main_guard
+from spinbook.chapter.syntax import calls_in, descendants, parsed, syntax_tree
 
 #: Module -> the names that ROS 2's own tutorials import from it.
 _USUAL = {
@@ -108,7 +108,7 @@ def join(code: str, pieces: Sequence[str]) -> CompleteProgram:
     needs = dict(facts.needs)
     amended, base = _amended(code, pieces)
     version, main = earlier_main(facts, pieces)
-    needs |= dict.fromkeys((name for name in _needs_of(main) if name not in facts.defines), 1)
+    needs |= dict.fromkeys((name for name in facts_of(main).needs if name not in facts.defines), 1)
     missing: dict[str, int] = {}
     taken: dict[int, set[int]] = {}
     imports: dict[str, None] = {}
@@ -127,7 +127,7 @@ def join(code: str, pieces: Sequence[str]) -> CompleteProgram:
         new = statements - taken.get(number, set())
         taken.setdefault(number, set()).update(new)
         text = "\n".join(_piece(pieces[number]).text(i) for i in sorted(new))
-        more = [n for n in _needs_of(text) if n not in seen]
+        more = [n for n in facts_of(text).needs if n not in seen]
         seen.update(more)
         todo += more
     before = _above(imports, taken, pieces) + (f"{main}\n\n\n" if main else "")
@@ -178,8 +178,7 @@ def _main_of(piece: _CodePiece, classes: set[str]) -> str:
         main = piece.statements[piece.bound["main"][-1]]
         return piece.text(piece.bound["main"][-1]) if _uses(main, classes) else ""
     for statement in piece.statements:
-        if _is_guard(statement) and _uses(statement, classes):
-            assert isinstance(statement, ast.If)
+        if isinstance(statement, ast.If) and is_main_guard(statement) and _uses(statement, classes):
             first, last = statement.body[0].lineno, statement.body[-1].end_lineno
             body = textwrap.dedent("\n".join(piece.source.split("\n")[first - 1 : last]))
             return _as_main(body, statement.body)
@@ -189,7 +188,9 @@ def _main_of(piece: _CodePiece, classes: set[str]) -> str:
     return ""
 
 
-_DEFINITIONS = (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef, ast.Import, ast.ImportFrom)
+_IMPORTS = (ast.Import, ast.ImportFrom)
+_NAMED = (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+_DEFINITIONS = (*_NAMED, *_IMPORTS)
 
 
 def _as_main(body: str, statements: Iterable[ast.stmt]) -> str:
@@ -209,8 +210,7 @@ def _above(imports: Iterable[str], taken: Mapping[int, set[int]], pieces: Sequen
     for number in sorted(taken):
         piece = _piece(pieces[number])
         for i in sorted(taken[number]):
-            is_import = isinstance(piece.statements[i], ast.Import | ast.ImportFrom)
-            (first if is_import else then).append(piece.text(i))
+            (first if isinstance(piece.statements[i], _IMPORTS) else then).append(piece.text(i))
     lines = [*dict.fromkeys(first), *(["", ""] if first and then else []), *then]
     return "\n".join(lines) + "\n\n\n" if lines else ""
 
@@ -222,47 +222,37 @@ def _binding(name: str, pieces: Sequence[str]) -> tuple[int, set[int]] | None:
         if name not in piece.bound:
             continue
         statements = piece.bound[name]
-        kinds = {type(piece.statements[i]) for i in statements}
-        if kinds <= {ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef}:
+        if all(isinstance(piece.statements[i], _DEFINITIONS) for i in statements):
             return number, {statements[-1]}
         if all(_is_plain(piece.statements[i]) for i in statements):
             return number, set(statements)
         if piece.blocks:
             continue
         # A script that continues: all that it did so far.
-        return number, {i for i, s in enumerate(piece.statements) if not _is_guard(s)}
+        return number, {i for i, s in enumerate(piece.statements) if not is_main_guard(s)}
     return None
 
 
 def _is_import(binding: tuple[int, set[int]], pieces: Sequence[str], name: str) -> bool:
-    piece = _piece(pieces[binding[0]])
-    return all(isinstance(piece.statements[i], ast.Import | ast.ImportFrom) for i in binding[1]) and (
-        usual_import(name) in [piece.text(i) for i in binding[1]]
-    )
+    piece, statements = _piece(pieces[binding[0]]), binding[1]
+    are_imports = all(isinstance(piece.statements[i], _IMPORTS) for i in statements)
+    return are_imports and usual_import(name) in [piece.text(i) for i in statements]
 
 
 def _is_plain(statement: ast.stmt) -> bool:
     """Return whether a statement only gives a name to a value, and calls nothing that has an effect."""
     if not isinstance(statement, ast.Assign | ast.AnnAssign) or statement.value is None:
         return False
-    calls = [item for item in descendants(statement.value) if isinstance(item, ast.Call)]
-    return all(ast.unparse(call.func)[:1].isupper() for call in calls)
-
-
-def _is_guard(statement: ast.stmt) -> bool:
-    return isinstance(statement, ast.If) and "__main__" in ast.dump(statement.test)
+    return all(ast.unparse(call.func)[:1].isupper() for call in calls_in(statement.value))
 
 
 @functools.lru_cache(maxsize=512)
 def _piece(source: str) -> _CodePiece:
     """Return what a piece binds; nothing, if it is not valid Python by itself."""
-    try:
-        facts = inspect(source)
-        statements = tuple(syntax_tree(source).body)
-    except (CodeError, SyntaxError, ValueError):
+    facts, tree = facts_of(source), parsed(source)
+    if facts.fragment or tree is None:
         return _CodePiece(source, (), {}, blocks=True)
-    if facts.fragment:
-        return _CodePiece(source, (), {}, blocks=True)
+    statements = tuple(tree.body)
     bound: dict[str, list[int]] = {}
     for number, statement in enumerate(statements):
         for name in _bound_by(statement):
@@ -272,29 +262,20 @@ def _piece(source: str) -> _CodePiece:
 
 
 def _spins(statement: ast.stmt) -> bool:
-    if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-        return False
-    calls = [item for item in descendants(statement) if isinstance(item, ast.Call)]
+    calls = [] if isinstance(statement, _NAMED) else calls_in(statement)
     return any(isinstance(call.func, ast.Attribute) and call.func.attr == "spin" for call in calls)
 
 
 def _bound_by(statement: ast.stmt) -> Iterable[str]:
-    if _is_guard(statement):
+    if is_main_guard(statement):
         return ()
-    if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+    if isinstance(statement, _NAMED):
         return (statement.name,)
-    if isinstance(statement, ast.Import | ast.ImportFrom):
+    if isinstance(statement, _IMPORTS):
         return tuple(alias.asname or alias.name.partition(".")[0] for alias in statement.names)
     return tuple(
         item.id for item in descendants(statement) if isinstance(item, ast.Name) and isinstance(item.ctx, ast.Store)
     )
-
-
-def _needs_of(text: str) -> Iterable[str]:
-    try:
-        return inspect(text).needs
-    except CodeError:
-        return ()
 
 
 @functools.cache

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from spinbook.chapter.classify import CellKind, ClassifiedFence
 from spinbook.chapter.fence import Fence
-from spinbook.chapter.python_code import CodeError, inspect
+from spinbook.chapter.python_code import facts_of
 
 
 def excerpts(fences: Sequence[Fence]) -> dict[int, str]:
@@ -29,7 +29,7 @@ def is_excerpt(item: ClassifiedFence, place: str) -> bool:
         return False
     if item.kind is CellKind.NODE:
         return place == "above"
-    return item.kind is CellKind.STATIC and (item.code is None or bool(item.code.fragment))
+    return item.is_static and (item.code is None or bool(item.code.fragment))
 
 
 def _lines(code: str) -> str:
@@ -39,8 +39,5 @@ def _lines(code: str) -> str:
 
 
 def _is_whole(code: str) -> bool:
-    try:
-        facts = inspect(code)
-    except CodeError:
-        return False
+    facts = facts_of(code)
     return facts.is_complete and facts.is_node and bool(facts.imports) and not facts.fragment

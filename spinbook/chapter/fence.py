@@ -68,6 +68,11 @@ class Fence:
         return self.attributes.get("title") or None
 
     @property
+    def is_file(self) -> bool:
+        """Whether the title names a file of Python."""
+        return bool(self.title and self.title.endswith(".py"))
+
+    @property
     def tags(self) -> tuple[str, ...]:
         """The tags of a MyST code cell, such as `hide-input`."""
         return _tags(self.attributes)

@@ -32,7 +32,7 @@ def locate(root: Path, folder: str, target: str) -> Path | None:
     path, _ = split(target)
     if not path:
         return None
-    path = path.removeprefix("@site/") if path.startswith("@site/") else path
+    path = path.removeprefix("@site/")
     if target.startswith("@site/"):
         bases = _upwards(folder)
     elif path.startswith("/"):
@@ -40,21 +40,12 @@ def locate(root: Path, folder: str, target: str) -> Path | None:
         bases = [posixpath.join(base, inside) for base in _upwards(folder) for inside in ("", *_SITE_FOLDERS)]
     else:
         bases = [folder]
-    for base in bases:
-        full = posixpath.normpath(posixpath.join(base, path))
-        if full.startswith(".."):
-            continue
-        if found := _file(root, full):
-            return found
-    return _beside(root, folder, path) if not path.startswith("/") else None
-
-
-def _beside(root: Path, folder: str, path: str) -> Path | None:
-    """Find a target written as MkDocs and Docusaurus link to pages, where the page's own name is one more folder."""
-    if not path.startswith("../"):
-        return None
-    full = posixpath.normpath(posixpath.join(folder, path[3:]))
-    return None if full.startswith("..") else _file(root, full)
+    places = [posixpath.join(base, path) for base in bases]
+    if path.startswith("../"):
+        # MkDocs and Docusaurus link to pages as if each page's own name were one more folder.
+        places.append(posixpath.join(folder, path[3:]))
+    inside = (full for full in map(posixpath.normpath, places) if not full.startswith(".."))
+    return next(filter(None, (_file(root, full) for full in inside)), None)
 
 
 def _file(root: Path, full: str) -> Path | None:
@@ -76,8 +67,7 @@ def _upwards(folder: str) -> list[str]:
 def read_included(root: Path, folder: str, name: str, included: list[Path]) -> str | None:
     """Return the text of an included file, and add the file to `included`; None if it is not in the course."""
     name, _, section = name.partition(":")
-    places = [folder, *_upwards(folder)]
-    for place in places:
+    for place in _upwards(folder):
         full = posixpath.normpath(posixpath.join(place, name.lstrip("/")))
         file = root / full
         if not full.startswith("..") and file.is_file() and file.resolve().is_relative_to(root.resolve()):

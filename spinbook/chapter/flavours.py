@@ -67,10 +67,6 @@ def _text(state: StateBlock, line: int) -> str:
     return state.src[state.bMarks[line] + state.tShift[line] : state.eMarks[line]].strip()
 
 
-def _is_code(state: StateBlock, line: int) -> bool:
-    return state.is_code_block(line)
-
-
 def _push(
     state: StateBlock, kind: str, start: int, end: int, name: str = "", info: str = "", content: str = ""
 ) -> None:
@@ -83,7 +79,7 @@ def _push(
 def _line(state: StateBlock, start: int, end: int, silent: bool) -> bool:
     """Parse a line that only book tools understand."""
     text = _text(state, start)
-    if not text or _is_code(state, start):
+    if not text or state.is_code_block(start):
         return False
     kind, name, info = _parse(text)
     if not kind:
@@ -120,7 +116,7 @@ def _complete(text: str) -> bool:
 def _tab(state: StateBlock, start: int, end: int, silent: bool) -> bool:
     """Parse `=== "Title"` and the lines below it that are indented by four."""
     text = _text(state, start)
-    if not text.startswith("=== ") or _is_code(state, start):
+    if not text.startswith("=== ") or state.is_code_block(start):
         return False
     if silent:
         return True
@@ -140,7 +136,7 @@ def _tag(state: StateBlock, start: int, end: int, silent: bool) -> bool:
         return False
     text = _text(state, start)
     match = _TAG.match(text)
-    if match is None or _is_code(state, start):
+    if match is None or state.is_code_block(start):
         return False
     stop = start + 1
     while (close := _tag_end(text)) < 0 and stop < min(end, start + 200):
@@ -162,7 +158,7 @@ def _tag(state: StateBlock, start: int, end: int, silent: bool) -> bool:
 def _jsx(state: StateBlock, start: int, end: int, silent: bool) -> bool:
     """Parse an HTML tag with properties as in MDX: `<img src={require('./a.png').default} style={{…}} />`."""
     text = _text(state, start)
-    if not re.match(r"<[a-z]", text) or _is_code(state, start):
+    if not re.match(r"<[a-z]", text) or state.is_code_block(start):
         return False
     stop = start + 1
     while (close := _tag_end(text)) < 0 and stop < min(end, start + 20):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
+from groundwork.words import did_you_mean
 from interface_compiler import prefixes
 from ros_in_python.example_robots import share_folders
 from ros_in_python.ros2 import executables
@@ -47,13 +47,11 @@ def foreign_program(package: str, executable: str, course_package: str, own: Col
         there |= {path.name for path in executables.in_prefix(prefix, package)} if prefix else set()
     if executable in there:
         needed = executables.interfaces_used(package, executable)
-        lacks = bool(needed) and needed not in ros_packages()
-        return lacking(needed) if lacks else None
+        return lacking(needed) if needed and needed not in ros_packages() else None
     if there:
-        meant = "".join(f"Did you mean `{name}`? " for name in similar(executable, there))
-        fix = f"{meant}It has these: {', '.join(sorted(there))}."
+        meant = did_you_mean(executable, there, "", "`{}`", 0.7)
+        fix = f"{meant} It has these: {', '.join(sorted(there))}.".lstrip()
         return Reason(f"`{package}` has no program `{executable}` here", fix, f"programs of {package}")
-    close = difflib.get_close_matches(package, [course_package, *executables.BUILT_IN, *own], n=1, cutoff=0.85)
     if package in own:
         stem = executable.removesuffix(".py")
         fix = f'Show its program in a fence above: ```python title="{stem}.py"'
@@ -61,7 +59,7 @@ def foreign_program(package: str, executable: str, course_package: str, own: Col
     if is_placeholder(package):
         return TO_FILL_IN
     show = f"Show its program in a fence of the chapter, or {IN_ROS}."
-    fix = f"Did you mean `{close[0]}`?" if close else show
+    fix = did_you_mean(package, [course_package, *executables.BUILT_IN, *own], show, "`{}`", 0.85)
     return Reason(f"there is no package `{package}` here", fix, package)
 
 
@@ -69,11 +67,6 @@ def has_launch_file(package: str, name: str) -> bool:
     """Return whether an installed package has this launch file."""
     shares = share_folders(package) if name and Path(name).name == name else []
     return any(path.is_file() for share in shares for path in share.rglob(name))
-
-
-def similar(name: str, there: Collection[str], cutoff: float = 0.7) -> list[str]:
-    """Return the name that was probably meant, in a list; an empty one if none is spelled alike."""
-    return difflib.get_close_matches(name, there, n=1, cutoff=cutoff)
 
 
 def missing_type(command: Command, own_interfaces: Collection[str]) -> Reason | None:
@@ -84,8 +77,7 @@ def missing_type(command: Command, own_interfaces: Collection[str]) -> Reason | 
         if not own and package not in ros_packages():
             return lacking(package)
         if known and name not in known:
-            close = difflib.get_close_matches(name, known, n=1)
-            fix = f"Did you mean `{close[0]}`?" if close else "See `ros2 interface list`."
+            fix = did_you_mean(name, known, "See `ros2 interface list`.", "`{}`")
             return Reason(f"`{package}/{kind}` has no `{name}`", fix, "")
     return None
 

@@ -26,11 +26,15 @@ def imported(everything: Sequence[ast.AST]) -> dict[str, Any]:
     return {"imports": imports, "interfaces": interfaces, "relative_imports": relative}
 
 
+def modules_imported(tree: ast.Module) -> set[str]:
+    """Return the modules that the code's top level imports."""
+    modules = {item.module for item in tree.body if isinstance(item, ast.ImportFrom) and item.module}
+    return modules | {alias.name for item in tree.body if isinstance(item, ast.Import) for alias in item.names}
+
+
 def imports_launch(tree: ast.Module) -> bool:
     """Return whether it is a piece of a launch file: it imports from ROS 2's launch, and not rclpy."""
-    modules = {item.module for item in tree.body if isinstance(item, ast.ImportFrom) and item.module}
-    modules |= {alias.name for item in tree.body if isinstance(item, ast.Import) for alias in item.names}
-    tops = {module.partition(".")[0] for module in modules}
+    tops = {module.partition(".")[0] for module in modules_imported(tree)}
     return bool(tops & {"launch", "launch_ros"}) and "rclpy" not in tops
 
 
@@ -46,12 +50,3 @@ def _optional_imports(everything: Sequence[ast.AST]) -> set[ast.AST]:
             assert isinstance(item, ast.Try | ast.If)
             optional |= {i for i in item.body if isinstance(i, ast.Import | ast.ImportFrom)}
     return optional
-
-
-def imports_setuptools(tree: ast.Module) -> bool:
-    """Return whether it imports setuptools, as a setup.py does."""
-    return any(
-        (isinstance(s, ast.ImportFrom) and s.module in {"setuptools", "distutils.core"})
-        or (isinstance(s, ast.Import) and any(a.name == "setuptools" for a in s.names))
-        for s in tree.body
-    )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 import importlib.util
 import re
@@ -12,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import ros_in_python
+from groundwork.words import did_you_mean, similar
 from interface_compiler import prefixes, shipped
 from spinbook.chapter.python_code import PythonCode
 from spinbook.chapter.terminal import is_placeholder
@@ -53,7 +53,7 @@ class MissingPackage:
     """A package that is missing here. `package` is the one to install."""
 
     package: str
-    found: str
+    problem: str
     fix: str
     line: int
 
@@ -133,28 +133,23 @@ def remedy(package: str) -> str:
 def _no_module(module: str, names: list[str], line: int) -> MissingPackage:
     top, _, rest = module.partition(".")
     there = sorted(name for name in _modules_in(top) if not name.startswith(("_", f"{top}_s_")))
-    close = difflib.get_close_matches(rest.partition(".")[0], there, n=1)
-    elsewhere = _places_of(set(names), top)
-    fix = f"Did you mean `{top}.{close[0]}`?" if close else f"It has {', '.join(there[:8])}."
-    if elsewhere and names:
+    fix = did_you_mean(rest.partition(".")[0], there, f"It has {', '.join(there[:8])}.", f"`{top}.{{}}`")
+    if elsewhere := _places_of(set(names), top):
         fix = f"Did you mean `from {elsewhere[0]} import {names[0]}`?"
     return MissingPackage(module, f"imports `{module}`, and `{top}` has no such module.", fix, line)
 
 
 def _places_of(names: set[str], package: str) -> list[str]:
     """Return the modules that have interfaces of these names, those of `package` first."""
-    found = (place for place, known in _all_interfaces().items() if known & names)
-    return sorted(found, key=lambda place: (place.partition(".")[0] != package, place))
+    modules = (module for module, known in _all_interfaces().items() if known & names)
+    return sorted(modules, key=lambda module: (module.partition(".")[0] != package, module))
 
 
 def _no_interface(module: str, name: str, known: frozenset[str], line: int) -> MissingPackage:
-    close = difflib.get_close_matches(name, known, n=1)
-    if close:
-        fix = f"Did you mean `{close[0]}`?"
-    elif elsewhere := _places_of({name}, module.partition(".")[0]):
-        fix = f"Did you mean `from {elsewhere[0]} import {name}`?"
-    else:
-        fix = f"It has {', '.join(sorted(known)[:8])} …"
+    otherwise = f"It has {', '.join(sorted(known)[:8])} …"
+    if elsewhere := _places_of({name}, module.partition(".")[0]):
+        otherwise = f"Did you mean `from {elsewhere[0]} import {name}`?"
+    fix = did_you_mean(name, known, otherwise, "`{}`")
     return MissingPackage(f"{module}.{name}", f"`{module}` has no `{name}`.", fix, line)
 
 
@@ -202,17 +197,13 @@ def _of_ours() -> frozenset[str]:
 def _similar(module: str) -> str:
     if module in _REAL:
         return ""
-    known = [*ros_packages(), *_of_ours(), "rclpy", "numpy", "matplotlib"]
-    close = difflib.get_close_matches(module, known, n=1, cutoff=0.8)
+    close = similar(module, [*ros_packages(), *_of_ours(), "rclpy", "numpy", "matplotlib"], 0.8)
     # geometry_msgs_py is not a misspelt geometry_msgs.
-    if close and (module.startswith(f"{close[0]}_") or close[0].startswith(f"{module}_")):
+    if module.startswith(f"{close}_") or close.startswith(f"{module}_"):
         return ""
     # Interface packages have similar names: control_msgs is not a misspelt sensor_msgs.
-    alike = close and module.rpartition("_")[2] == close[0].rpartition("_")[2] and "_" in module
-    stem = module.rpartition("_")[0]
-    if alike and not difflib.get_close_matches(stem, [close[0].rpartition("_")[0]], n=1, cutoff=0.8):
-        return ""
-    return close[0] if close else ""
+    (stem, _, ending), (known_stem, _, known_ending) = module.rpartition("_"), close.rpartition("_")
+    return "" if stem and ending == known_ending and not similar(stem, [known_stem], 0.8) else close
 
 
 @functools.cache

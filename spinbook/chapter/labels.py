@@ -24,7 +24,7 @@ from mdit_py_plugins.myst_role import myst_role_plugin
 from groundwork.problem import Problem, Severity
 from spinbook.chapter.block import Block, BlockKind
 from spinbook.chapter.files import is_elsewhere, locate
-from spinbook.chapter.links import places_of, watch
+from spinbook.chapter.links import put, watch
 
 _ROLES = frozenset({"ref", "doc", "numref", "any", "std:ref", "std:doc", "std:numref"})
 #: The content of a role: `words <target>`.
@@ -155,11 +155,8 @@ class References:
         lines = text.split("\n")
         at = [0] * len(lines)
         for first, content, references in _references(text):
-            places = list(places_of(lines, at, first, content))
-            for item in reversed(references):
-                new, _ = self._new(item)
-                if new is not None:
-                    _put(lines, at, places, content, item, new)
+            new = ((item, self._new(item)[0]) for item in references)
+            put(lines, at, first, content, ((item.start, item.end, text) for item, text in new if text is not None))
         return "\n".join(lines)
 
     def problems(self, blocks: Iterable[Block]) -> Iterator[Problem]:
@@ -281,31 +278,3 @@ def _in_inline(md: MarkdownIt, token: Token, env: dict[str, Any]) -> list[_Label
         if not out or item.start >= out[-1].end:
             out.append(item)
     return out
-
-
-def _put(
-    lines: list[str],
-    at: list[int],
-    places: Sequence[tuple[int, int] | None],
-    content: str,
-    item: _LabelReference,
-    new: str,
-) -> None:
-    """Put a reference's link into its lines; a reference over two lines goes into the line that still has text."""
-    first, last = (content.count("\n", 0, offset) for offset in (item.start, item.end))
-    spots = places[first : last + 1]
-    if any(spot is None for spot in spots) or not spots:
-        return
-    parts = content[item.start : item.end].split("\n")
-    kept: list[tuple[int, int, int]] = []
-    for row, (spot, part) in enumerate(zip(spots, parts, strict=True)):
-        number, column = spot or (0, 0)
-        column += item.start - (content.rfind("\n", 0, item.start) + 1) if row == 0 else 0
-        kept.append((number, column, len(part)))
-    number, column, length = kept[-1]
-    rest = lines[number][column + length :].strip()
-    chosen = 0 if len(kept) == 1 or rest else len(kept) - 1
-    for row, (number, column, length) in enumerate(kept):
-        text = new if row == chosen else ""
-        lines[number] = lines[number][:column] + text + lines[number][column + length :].lstrip(" " if not text else "")
-        at[number] += len(text) - length

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from groundwork.words import similar
 from spinbook.chapter.classify import CellKind, ClassifiedFence
 from spinbook.chapter.launch_files import (
     LaunchedNode,
@@ -15,7 +15,7 @@ from spinbook.chapter.launch_files import (
     named_nodes,
     unsupported_in_launch_file,
 )
-from spinbook.chapter.terminal import Command, CommandKind
+from spinbook.chapter.terminal import Command, CommandKind, note
 
 
 @dataclass
@@ -39,7 +39,7 @@ class Launches:
         """Remember a fence that is a launch or parameter file; `number` is its place among the fences."""
         if item.kind is CellKind.FILE:
             self.files.add((item.name or "").rpartition("/")[2])
-        elif item.kind is CellKind.STATIC and (item.fence.title or "").endswith((".xml", ".yaml", ".yml", ".py")):
+        elif item.is_static and (item.fence.title or "").endswith((".xml", ".yaml", ".yml", ".py")):
             self.titles.add((item.fence.title or "").rpartition("/")[2])
         if _is_launch_file(item):
             name = item.fence.title or self.named_files.get(item.fence.line) or f"launch file {number}"
@@ -56,8 +56,8 @@ class Launches:
             nodes = self.nodes(command)
         except NotSupportedError:
             return [command]
-        note = Command(CommandKind.NOTE, f"# {command.text} starts:", (), command.line)
-        return [note, *(node.command(command.line) for node in nodes)] if nodes else [command]
+        started = [node.command(command.line) for node in nodes]
+        return [note(f"{command.text} starts:", command.line), *started] if nodes else [command]
 
     def is_of_package(self, command: Command) -> bool:
         """Return whether a cell above has put the launch file into the course's package."""
@@ -96,7 +96,7 @@ class Launches:
 
     def close(self, file: str) -> str:
         """Return the file whose name is most like this one; "" if none is."""
-        return next(iter(difflib.get_close_matches(file, [*self.files, *self._codes], n=1)), "")
+        return similar(file, [*self.files, *self._codes])
 
 
 def launch_words(command: Command) -> list[str]:

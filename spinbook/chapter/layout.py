@@ -6,11 +6,16 @@ cell. Text that needs no change stays as it is, to the byte.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+import itertools
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from spinbook.chapter.attributes import STYLES
 from spinbook.chapter.block import Block, BlockKind, SourceLine
+
+if TYPE_CHECKING:
+    from spinbook.chapter.classify import ClassifiedFence
 
 _RESHAPED = frozenset({BlockKind.ADMONITION, BlockKind.TAB, BlockKind.GROUP})
 
@@ -31,13 +36,10 @@ class Piece:
 
 @dataclass(frozen=True)
 class ChapterLayout:
-    """How blocks are laid out. `runs` says which fences become cells, `sign` gives the note below one that does not,
-    `output` what the author's terminal printed, below one that does.
-    """
+    """How blocks are laid out. `fences` are what fences become, by their lines; `exercises` are those that exist."""
 
-    runs: Callable[[Block], bool]
-    sign: Callable[[Block], str]
-    output: Callable[[Block], str]
+    fences: Mapping[int, ClassifiedFence]
+    exercises: Collection[str]
 
     def pieces(self, blocks: Sequence[Block]) -> list[Piece]:
         """Return the chapter's pieces, in order."""
@@ -47,11 +49,21 @@ class ChapterLayout:
                 first, *rest = block.lines
                 out += [Piece(first, heading=True), *_lines(rest)]
             else:
-                out += self._block(block, 0)
+                out += self._block(block)
         return out
 
+    def _classified(self, block: Block) -> ClassifiedFence | None:
+        return self.fences[block.fence.line] if block.kind is BlockKind.FENCE and block.fence is not None else None
+
+    def _sign(self, block: Block) -> str:
+        """Return the note below a fence that is not run; "" if readers need none."""
+        item = self._classified(block)
+        return f"<small>Not run here: {item.sign}</small>" if item and item.sign else ""
+
     def _becomes_cell(self, block: Block) -> bool:
-        return block.kind in {BlockKind.EXERCISE, BlockKind.FENCE} and self.runs(block)
+        item = self._classified(block)
+        is_exercise = block.kind is BlockKind.EXERCISE and block.title in self.exercises
+        return is_exercise or (item is not None and not item.is_static)
 
     def _holds_cell(self, block: Block) -> bool:
         return any(self._becomes_cell(inner) for inner in block.walk())
@@ -62,89 +74,71 @@ class ChapterLayout:
             or inner.kind in _RESHAPED
             or inner.kind is BlockKind.DROPPED
             or (inner.kind is BlockKind.DETAILS and not inner.lines[0].text.lstrip().startswith("<details"))
-            or (inner.kind is BlockKind.FENCE and bool(self.sign(inner)))
+            or bool(self._sign(inner))
             for inner in block.walk()
         )
 
-    def _block(self, block: Block, depth: int) -> list[Piece]:
+    def _block(self, block: Block) -> list[Piece]:
         if self._becomes_cell(block):
-            return [Piece(block=block), *_printed(self.output(block), block)]
+            item = self._classified(block)
+            return [Piece(block=block), *_printed(item.output if item else "", block)]
         if not self._is_changed(block) and not self._holds_cell(block):
             return _lines(block.lines)
-        shown = {
-            BlockKind.FENCE: self._fence,
-            BlockKind.ADMONITION: self._admonition,
-            BlockKind.TAB: self._tab,
-            BlockKind.DETAILS: self._details,
-            BlockKind.LIST: self._list,
-            BlockKind.QUOTE: self._quote,
-            BlockKind.GROUP: self._group,
-        }.get(block.kind)
-        if shown:
-            return shown(block, depth)
-        if block.kind is BlockKind.DROPPED:
-            return _lines(block.new or ()) if not block.style else []
-        return _lines(block.lines if block.new is None else block.new)
+        lay_out = getattr(self, f"_{block.kind.value}", None)
+        return lay_out(block) if lay_out else _written(block)
 
-    def _children(self, blocks: Iterable[Block], depth: int) -> list[Piece]:
+    def _children(self, blocks: Iterable[Block]) -> list[Piece]:
         out: list[Piece] = []
         before: Block | None = None
         for block in blocks:
             if block.kind is BlockKind.TAB and not self._holds_cell(block):
-                out += self._folded(block, depth, is_open=before is None or before.kind is not BlockKind.TAB)
+                out += self._folded(block, is_open=before is None or before.kind is not BlockKind.TAB)
             else:
-                out += self._block(block, depth)
+                out += self._block(block)
             before = block if any(line.text.strip() for line in block.lines) else before
         return out
 
-    def _fence(self, block: Block, depth: int) -> list[Piece]:
-        lines = _lines(block.lines if block.new is None else block.new)
-        number = block.lines[-1].number
-        sign = self.sign(block)
-        return (
-            [*lines, *_lines([SourceLine("", number), SourceLine(sign, number), SourceLine("", number)])]
-            if sign
-            else lines
-        )
+    # A method `_KIND` lays out the blocks of that kind.
 
-    def _group(self, block: Block, depth: int) -> list[Piece]:
-        return self._titled(block, depth)
+    def _dropped(self, block: Block) -> list[Piece]:
+        return [] if block.style else _lines(block.new or ())
 
-    def _admonition(self, block: Block, depth: int) -> list[Piece]:
+    def _fence(self, block: Block) -> list[Piece]:
+        sign, number = self._sign(block), block.lines[-1].number
+        note = [SourceLine(text, number) for text in ("", sign, "")] if sign else []
+        return [*_written(block), *_lines(note)]
+
+    def _admonition(self, block: Block) -> list[Piece]:
         style = block.style if block.style in STYLES else "note"
         colons = ":" * (3 + _height(block))
         opening = (
             [f"{colons}{{admonition}} {block.title}", f":class: {style}"] if block.title else [f"{colons}{{{style}}}"]
         )
-        inside = self._children(block.children, depth + 1)
+        inside = self._children(block.children)
         first = next((piece for piece in inside if not piece.is_blank), None)
         # A box that begins with a cell has no text to be around; its title stays.
         title = _bold(block) if first is not None and first.block is not None else []
         return [*title, *_wrapped(inside, opening, [colons], block)]
 
-    def _tab(self, block: Block, depth: int) -> list[Piece]:
-        if not self._holds_cell(block):
-            return self._folded(block, depth, is_open=True)
-        return self._titled(block, depth)
+    def _tab(self, block: Block) -> list[Piece]:
+        return self._group(block) if self._holds_cell(block) else self._folded(block, is_open=True)
 
-    def _details(self, block: Block, depth: int) -> list[Piece]:
-        return self._titled(block, depth) if self._holds_cell(block) else self._folded(block, depth, is_open=False)
+    def _details(self, block: Block) -> list[Piece]:
+        return self._group(block) if self._holds_cell(block) else self._folded(block, is_open=False)
 
-    def _titled(self, block: Block, depth: int) -> list[Piece]:
-        return _spaced([*_bold(block), *self._children(block.children, depth)], block)
+    def _group(self, block: Block) -> list[Piece]:
+        return _spaced([*_bold(block), *self._children(block.children)], block)
 
-    def _folded(self, block: Block, depth: int, *, is_open: bool) -> list[Piece]:
+    def _folded(self, block: Block, *, is_open: bool) -> list[Piece]:
         title = block.title or block.style.capitalize()
         opening = [f"<details{' open' if is_open else ''}>", f"<summary>{title}</summary>", ""]
-        inside = self._children(block.children, depth + 1)
+        inside = self._children(block.children)
         return _spaced(_wrapped(inside, opening, ["", "</details>"], block), block)
 
-    def _quote(self, block: Block, depth: int) -> list[Piece]:
-        return [
-            _changed(piece, lambda text: f"> {text}".rstrip()) for piece in self._children(block.children, depth + 1)
-        ]
+    def _quote(self, block: Block) -> list[Piece]:
+        return [_changed(piece, lambda text: f"> {text}".rstrip()) for piece in self._children(block.children)]
 
-    def _list(self, block: Block, depth: int) -> list[Piece]:
+    def _list(self, block: Block) -> list[Piece]:
         out: list[Piece] = []
         cut = self._holds_cell(block)
         for index, item in enumerate(block.children):
@@ -153,7 +147,7 @@ class ChapterLayout:
                 # A list that is cut continues its numbers.
                 number = int(block.children[0].title) + index
                 marker = marker.replace(item.title, str(number), 1)
-            out += _item(self._children(item.children, depth + 1), marker, item)
+            out += _item(self._children(item.children), marker, item)
         return out
 
 
@@ -194,6 +188,17 @@ def _lines(lines: Iterable[SourceLine]) -> list[Piece]:
     return [Piece(line) for line in lines]
 
 
+def _written(block: Block) -> list[Piece]:
+    """Return a block's lines: the new ones if Markdown tools would not understand the author's."""
+    return _lines(block.lines if block.new is None else block.new)
+
+
+def without_blanks_around(pieces: Sequence[Piece]) -> list[Piece]:
+    """Return the pieces without the empty lines before the first and after the last that is not empty."""
+    shown = [at for at, piece in enumerate(pieces) if not piece.is_blank]
+    return list(pieces[shown[0] : shown[-1] + 1]) if shown else []
+
+
 def _prefixed(piece: Piece, prefix: str) -> Piece:
     return _changed(piece, lambda text: f"{prefix}{text}".rstrip() if text else "")
 
@@ -219,24 +224,11 @@ def _spaced(pieces: list[Piece], block: Block) -> list[Piece]:
 def _wrapped(pieces: list[Piece], opening: Sequence[str], closing: Sequence[str], block: Block) -> list[Piece]:
     """Put the opening and closing lines around the pieces, and again around the parts between cells."""
     out: list[Piece] = []
-    lines: list[Piece] = []
-
-    def flush() -> None:
-        while lines and lines[0].is_blank:
-            lines.pop(0)
-        while lines and lines[-1].is_blank:
-            lines.pop()
-        if lines:
+    for is_cell, part in itertools.groupby(pieces, lambda piece: piece.block is not None):
+        if is_cell:
+            out += part
+        elif lines := without_blanks_around(list(part)):
             end = lines[-1].line.number if lines[-1].line else block.line
-            out.extend([*_lines(SourceLine(text, block.line) for text in opening), *lines])
-            out.extend(_lines([*(SourceLine(text, end) for text in closing), SourceLine("", end)]))
-        lines.clear()
-
-    for piece in pieces:
-        if piece.block is not None:
-            flush()
-            out.append(piece)
-        else:
-            lines.append(piece)
-    flush()
+            before = _lines(SourceLine(text, block.line) for text in opening)
+            out += [*before, *lines, *_lines(SourceLine(text, end) for text in (*closing, ""))]
     return out

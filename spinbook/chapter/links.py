@@ -6,8 +6,9 @@ markdown-it parses; wrappers around its rules for links, images and HTML record 
 from __future__ import annotations
 
 import functools
+import itertools
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape, unescape
 from html.parser import HTMLParser
@@ -110,8 +111,8 @@ def _destination(state: StateInline, label: int, token: Token) -> _LinkTarget | 
     at += 1
     while state.src[at : at + 1] in {" ", "\n"}:
         at += 1
-    found = state.md.helpers.parseLinkDestination(state.src, at, state.posMax)
-    return _LinkTarget(at, found.pos, found.str, is_image) if found.ok and found.str else None
+    parsed = state.md.helpers.parseLinkDestination(state.src, at, state.posMax)
+    return _LinkTarget(at, parsed.pos, parsed.str, is_image) if parsed.ok and parsed.str else None
 
 
 def _attribute_list(state: StateInline) -> str:
@@ -141,7 +142,7 @@ def links_in(text: str) -> tuple[tuple[str, int], ...]:
         return ()
     tokens, references = _parsed(text)
     inline = (token for token in tokens if token.type == "inline" and "[" in token.content)
-    return tuple(found for token in inline for found in _links_of(token, references))
+    return tuple(link for token in inline for link in _links_of(token, references))
 
 
 def _links_of(token: Token, references: Mapping[str, Any]) -> Iterator[tuple[str, int]]:
@@ -175,7 +176,7 @@ def linked(text: str, target: Target, references: Mapping[str, Any] = MappingPro
         if token.type == "inline":
             env |= {"watched": token.content, "found": []}
             md.inline.parse(token.content, md, env, [])
-            _replace(lines, at, first, token.content, env["found"], target)
+            put(lines, at, first, token.content, _edits(token.content, env["found"], target))
         elif token.type == "html_block":
             for number, line in enumerate(token.content.rstrip("\n").split("\n"), start=first):
                 if line and (place := lines[number].find(line)) >= 0:
@@ -184,21 +185,37 @@ def linked(text: str, target: Target, references: Mapping[str, Any] = MappingPro
     return "\n".join(lines)
 
 
-def _replace(
-    lines: list[str], at: list[int], first: int, content: str, found: list[_LinkTarget], target: Target
-) -> None:
-    """Put new targets into the lines of an inline token. `at` is how far each line has been read."""
+#: A part of an inline token's content, from a character to another one, and its new text.
+Edit = tuple[int, int, str]
+
+
+def _edits(content: str, targets: Iterable[_LinkTarget], target: Target) -> Iterator[Edit]:
+    """Yield the new targets in an inline token's content; a target over several lines stays."""
+    for item in targets:
+        new = None if "\n" in content[item.start : item.end] else _new(content, item, target)
+        if new is not None:
+            yield item.start, item.end, new
+
+
+def put(lines: list[str], at: list[int], first: int, content: str, edits: Iterable[Edit]) -> None:
+    """Put new texts into the lines of an inline token. `at` is how far each line has been read; it is updated.
+
+    What replaces a part over several lines goes into the first of them if the last has more text, else into the last.
+    """
     places = list(places_of(lines, at, first, content))
-    for item in sorted(found, key=lambda item: -item.start):
-        new = _new(content, item, target)
-        row = content.count("\n", 0, item.start)
-        if new is None or "\n" in content[item.start : item.end] or row >= len(places) or places[row] is None:
+    for start, end, new in sorted(edits, key=lambda edit: -edit[0]):
+        parts = content[start:end].split("\n")
+        starts = itertools.accumulate((len(part) + 1 for part in parts[:-1]), initial=start)
+        spots = [spot for spot in (place_of(places, content, offset) for offset in starts) if spot is not None]
+        if len(spots) < len(parts):
             continue
-        number, place = places[row] or (0, 0)
-        column = place + item.start - (content.rfind("\n", 0, item.start) + 1)
-        line = lines[number]
-        lines[number] = line[:column] + new + line[column + item.end - item.start :]
-        at[number] += len(new) - (item.end - item.start)
+        number, column = spots[-1]
+        has_more = bool(lines[number][column + len(parts[-1]) :].strip())
+        chosen = 0 if has_more else len(parts) - 1
+        for row, ((number, column), part) in enumerate(zip(spots, parts, strict=True)):
+            text, rest = new if row == chosen else "", lines[number][column + len(part) :]
+            lines[number] = lines[number][:column] + text + (rest if row == chosen else rest.lstrip(" "))
+            at[number] += len(text) - len(part)
 
 
 def places_of(lines: list[str], at: list[int], first: int, content: str) -> Iterator[tuple[int, int] | None]:
@@ -212,6 +229,12 @@ def places_of(lines: list[str], at: list[int], first: int, content: str) -> Iter
         if place >= 0:
             at[number] = place + len(part)
         yield (number, place) if place >= 0 else None
+
+
+def place_of(places: Sequence[tuple[int, int] | None], content: str, offset: int) -> tuple[int, int] | None:
+    """Return where a character of an inline token's content is, given the `places_of` its lines."""
+    place = places[content.count("\n", 0, offset)]
+    return place and (place[0], place[1] + offset - (content.rfind("\n", 0, offset) + 1))
 
 
 def _new(content: str, item: _LinkTarget, target: Target) -> str | None:
@@ -247,7 +270,7 @@ def in_html(html: str, target: Target) -> str:
     """Return a piece of HTML with the targets of its images and links replaced."""
     tags = _Tags()
     tags.feed(html)
-    for tag, raw, value in tags.found:
+    for tag, raw, value in tags.with_target:
         new = target(value, tag != "a")
         if new is not None:
             quoted = next((q for q in (f'"{value}"', f"'{value}'", f'"{escape(value)}"') if q in raw), None)
@@ -261,9 +284,9 @@ class _Tags(HTMLParser):
 
     def __init__(self) -> None:
         super().__init__(convert_charrefs=False)
-        self.found: list[tuple[str, str, str]] = []
+        self.with_target: list[tuple[str, str, str]] = []
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         value = dict(attrs).get(_ATTRIBUTES.get(tag, ""))
         if value:
-            self.found.append((tag, self.get_starttag_text() or "", unescape(value)))
+            self.with_target.append((tag, self.get_starttag_text() or "", unescape(value)))

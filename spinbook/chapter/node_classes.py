@@ -10,10 +10,20 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from spinbook.chapter.syntax import descendants, dotted_name, last_name, syntax_tree
+from spinbook.chapter.syntax import calls_in, descendants, dotted_name, last_name, syntax_tree
 
 #: rclpy's classes of nodes.
 NODE_CLASSES = frozenset({"Node", "LifecycleNode"})
+
+
+def is_node(own: ast.ClassDef) -> bool:
+    """Return whether a class derives from one of rclpy's nodes."""
+    return any(last_name(base) in NODE_CLASSES for base in own.bases)
+
+
+def methods_of(own: ast.ClassDef) -> dict[str, ast.FunctionDef]:
+    """Return the methods of a class by their names."""
+    return {item.name: item for item in own.body if isinstance(item, ast.FunctionDef)}
 
 
 def ros_name(everything: Sequence[ast.AST], classes: Mapping[str, ast.ClassDef]) -> str | None:
@@ -55,9 +65,9 @@ def _name_passed_on(
 ) -> str | None:
     """Return the name that is an argument, or its default, of a constructor that passes it to Node's."""
     for name, own in classes.items():
-        init = next((i for i in own.body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
-        given = [_name_given(call) for call in descendants(init) if isinstance(call, ast.Call)] if init else []
-        passed = next((value.id for value in given if isinstance(value, ast.Name)), "")
+        init = methods_of(own).get("__init__")
+        names = map(_name_given, calls_in(init) if init else [])
+        passed = next((value.id for value in names if isinstance(value, ast.Name)), "")
         if init is None or not passed:
             continue
         parameters = [parameter.arg for parameter in init.args.args]
@@ -93,13 +103,13 @@ def can_stand_alone(name: str, classes: Mapping[str, ast.ClassDef], everything: 
 
 def needs_arguments(own: ast.ClassDef) -> bool:
     """Return whether a class can't be created without arguments."""
-    init = next((i for i in own.body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
+    init = methods_of(own).get("__init__")
     return init is not None and takes_arguments(init)
 
 
 def serves(own: ast.ClassDef) -> bool:
     """Return whether a class does something while it only spins: it has timers, subscriptions or servers."""
-    return any(isinstance(item, ast.Call) and last_name(item.func) in _SERVING for item in descendants(own))
+    return any(last_name(call.func) in _SERVING for call in calls_in(own))
 
 
 _SERVING = frozenset({"create_timer", "create_subscription", "create_service", "ActionServer", "TransformListener"})
@@ -114,8 +124,11 @@ def takes_arguments(init: ast.FunctionDef) -> bool:
 
 def gives_no_name(own: ast.ClassDef) -> bool:
     """Return whether a class uses the constructor of rclpy's Node, which needs a name."""
-    has_init = any(isinstance(i, ast.FunctionDef) and i.name == "__init__" for i in own.body)
-    return not has_init and [last_name(base) for base in own.bases] in (["Node"], ["LifecycleNode"])
+    return "__init__" not in methods_of(own) and _is_only_node(own)
+
+
+def _is_only_node(own: ast.ClassDef) -> bool:
+    return len(own.bases) == 1 and is_node(own)
 
 
 def attributes_lacking(
@@ -157,7 +170,7 @@ def _read_of_self(own: ast.ClassDef) -> Iterator[tuple[str, int]]:
 def used_by_init(lacking: Mapping[str, int], names: list[str], classes: Mapping[str, ast.ClassDef]) -> str:
     """Return the first missing attribute that a class uses in `__init__` or in a method called there; "" if none."""
     for name in names:
-        methods = {item.name: item for item in classes[name].body if isinstance(item, ast.FunctionDef)}
+        methods = methods_of(classes[name])
         used: set[str] = set()
         for method in _called_from("__init__", methods):
             used |= {i.attr for i in descendants(methods[method]) if isinstance(i, ast.Attribute)}
@@ -181,15 +194,12 @@ def _called_from(start: str, methods: Mapping[str, ast.FunctionDef]) -> list[str
 
 def never_initialized(names: Sequence[str], classes: Mapping[str, ast.ClassDef]) -> dict[str, int]:
     """Return the Node classes whose `__init__` does not call Node's, so that nothing in them works -> line."""
-    lines: dict[str, int] = {}
-    for name in names:
-        bases = [last_name(base) for base in classes[name].bases]
-        init = next((i for i in classes[name].body if isinstance(i, ast.FunctionDef) and i.name == "__init__"), None)
-        if init is None or bases not in (["Node"], ["LifecycleNode"]):
-            continue
-        if not any(isinstance(i, ast.Attribute) and i.attr == "__init__" for i in descendants(init)):
-            lines[name] = init.lineno
-    return lines
+    inits = {name: methods_of(classes[name]).get("__init__") for name in names if _is_only_node(classes[name])}
+    return {
+        name: init.lineno
+        for name, init in inits.items()
+        if init and not any(isinstance(i, ast.Attribute) and i.attr == "__init__" for i in descendants(init))
+    }
 
 
 @functools.cache

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from spinbook.chapter.node_classes import snake_case
 from spinbook.chapter.python_code import PythonCode, inspect
-from spinbook.chapter.syntax import descendants, last_name, syntax_tree
+from spinbook.chapter.syntax import calls_in, last_name, syntax_tree
 
 #: Calls that make an end of a topic, service or action -> where they have its name, and what fits the end.
 _ENDS = {
@@ -35,29 +35,24 @@ class NodeVersions:
 
     _shown: list[_Version] = field(default_factory=list)
 
-    def add(self, name: str, code: PythonCode | None, program: str) -> None:
+    def add(self, name: str, code: PythonCode, program: str) -> None:
         """Add a node; `program` is its whole code."""
-        if code is not None:
-            self._shown.append(_Version(name, _ros_name(code, program), frozenset(code.node_classes), program))
+        self._shown.append(_Version(name, _ros_name(code, program), frozenset(code.node_classes), program))
 
-    def of(self, code: PythonCode | None, program: str) -> str:
+    def of(self, code: PythonCode, program: str) -> str:
         """Return the name of the earlier node of which this is a newer version; "" if there is none.
 
         It has the same ROS name or, without one, a class of the same name, and does not talk to the earlier one.
         """
         for earlier in reversed(self._shown):
-            if (
-                code is not None
-                and _is_same(earlier, code, _ros_name(code, program))
-                and not _talk(earlier.program, program)
-            ):
+            if _is_same(earlier, code, _ros_name(code, program)) and not _talk(earlier.program, program):
                 return earlier.name
         return ""
 
-    def free_name(self, name: str, code: PythonCode | None) -> str:
+    def free_name(self, name: str, code: PythonCode) -> str:
         """Return a name that no other node has: this one, its class's, or one with a number."""
         taken = {item.name for item in self._shown}
-        classes = [snake_case(item) for item in code.node_classes] if code else []
+        classes = [snake_case(item) for item in code.node_classes]
         names = [name, *classes, *(f"{(classes or [name])[0]}_{count}" for count in range(2, len(taken) + 3))]
         return next(item for item in names if item not in taken)
 
@@ -73,15 +68,15 @@ def _is_same(earlier: _Version, code: PythonCode, ros_name: str) -> bool:
     return bool(earlier.classes & set(code.node_classes))
 
 
-def _talk(one: str, other: str) -> bool:
+def _talk(earlier: str, later: str) -> bool:
     """Return whether two programs have ends that fit: they are meant to run side by side."""
-    ends = set(_ends_of(other))
-    return any((_ENDS[kind][1], name) in ends for kind, name in _ends_of(one))
+    ends = set(_ends_of(later))
+    return any((_ENDS[kind][1], name) in ends for kind, name in _ends_of(earlier))
 
 
 def _ends_of(program: str) -> Iterator[tuple[str, str]]:
     """Yield (call, name) for each topic, service and action that a program names literally."""
-    for call in (item for item in descendants(syntax_tree(program)) if isinstance(item, ast.Call)):
+    for call in calls_in(syntax_tree(program)):
         place, _ = _ENDS.get(last_name(call.func), (0, ""))
         name = call.args[place] if place and len(call.args) > place else None
         if isinstance(name, ast.Constant) and isinstance(name.value, str):

@@ -144,10 +144,13 @@ def _package_of(path: str) -> str:
 
 
 def named_files(blocks: Iterable[Block]) -> dict[int, str]:
-    """Map the line of a fence to its Python file, as named in its first comment or in the text just before it."""
+    """Map the line of a fence to its Python file, as named in its first comment or in the text just before it.
+
+    `blocks` are all of a chapter, also those in others.
+    """
     files: dict[int, str] = {}
     words: list[str] = []
-    for block in (inner for top in blocks for inner in top.walk()):
+    for block in blocks:
         if block.kind in {BlockKind.TEXT, BlockKind.HEADING}:
             text = "\n".join(line.text for line in block.lines)
             if text.strip():

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from groundwork.words import similar
 from spinbook.chapter.classify import ClassifiedFence
+from spinbook.chapter.node_classes import snake_case
 from spinbook.chapter.own_packages import OwnPackages
 
 #: Words that say nothing about which node it is.
@@ -51,17 +52,16 @@ class ProgramNames:
         """Return the name that may have been meant: one spelled alike, or with half of its words; "" if none."""
         names = {name: item.name or name for item in self.nodes.values() for name in _names(item)}
         known = {name.lower(): name for name in names}
-        alike = [known[name] for name in difflib.get_close_matches(executable.lower(), known, n=1, cutoff=0.7)]
         mine = _words(executable)
         shared = [name for name in names if 2 * len(mine & _words(name)) >= max(len(mine), len(_words(name)))]
-        best = (alike or shared or [""])[0]
+        best = known.get(similar(executable.lower(), known, 0.7)) or next(iter(shared), "")
         return names.get(best, "")
 
 
 def _names(item: ClassifiedFence) -> list[str]:
     """Return what a node is called: its file, its ROS name, its classes in words."""
     code = item.code
-    classes = [re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower() for name in (code.node_classes if code else ())]
+    classes = map(snake_case, code.node_classes if code else ())
     return [name for name in (item.name, code.ros_name if code else "", *classes) if name]
 
 
@@ -72,6 +72,5 @@ def _words(name: str) -> frozenset[str]:
 
 def _differ_by_a_word(first: str, second: str, is_own: bool) -> bool:
     """Return whether one name has one word more; in a package that the chapter does not make, two must be equal."""
-    one, other = _words(first), _words(second)
-    common = one & other
-    return len(one ^ other) == 1 and len(common) >= (1 if is_own else 2)
+    differing, common = _words(first) ^ _words(second), _words(first) & _words(second)
+    return len(differing) == 1 and len(common) >= (1 if is_own else 2)

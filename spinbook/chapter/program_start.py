@@ -6,24 +6,24 @@ import ast
 import re
 from collections.abc import Iterator, Sequence
 
-from spinbook.chapter.syntax import descendants, dotted_name, last_name
+from spinbook.chapter.node_classes import is_node, methods_of
+from spinbook.chapter.syntax import calls_in, descendants, dotted_name, last_name
 
 #: Functions that start a program, under whatever name they are imported.
 _STARTING = frozenset(
-    ["system", "popen", "Popen", "check_call", "check_output", "getoutput", "getstatusoutput", "startfile"]
-) | {
-    "create_subprocess_exec",
-    "create_subprocess_shell",
-}
+    [
+        *("system", "popen", "Popen", "check_call", "check_output", "getoutput", "getstatusoutput", "startfile"),
+        *("create_subprocess_exec", "create_subprocess_shell"),
+    ]
+)
 _STARTING_FAMILIES = ("exec", "spawn", "posix_spawn")
 #: Functions of `subprocess` with names that other modules use, too.
 _OF_SUBPROCESS = frozenset({"run", "call"})
 
 
 #: Calls that fail before `rclpy.init`.
-_NEEDS_INIT = frozenset(
-    ["Node", "rclpy.node.Node", "rclpy.create_node", "rclpy.spin", "rclpy.spin_once", "rclpy.shutdown"]
-) | {"rclpy.spin_until_future_complete"}
+_NEEDS_INIT = frozenset({"Node", "rclpy.node.Node", "rclpy.create_node", "rclpy.spin", "rclpy.spin_once"})
+_NEEDS_INIT |= {"rclpy.spin_until_future_complete", "rclpy.shutdown"}
 _EXECUTORS = frozenset({"SingleThreadedExecutor", "MultiThreadedExecutor"})
 _SPINS = frozenset({"spin", "spin_once", "spin_until_future_complete"})
 _ENDS = frozenset({"exit", "quit", "sys.exit", "os._exit"})
@@ -96,9 +96,7 @@ def loops_forever(statement: ast.stmt) -> bool:
 
 def with_init(everything: Sequence[ast.AST]) -> int:
     """Return the line of `with rclpy.init():`, which ROS 2 has since Kilted; 0 if there is none."""
-    items = (
-        item.context_expr for statement in everything if isinstance(statement, ast.With) for item in statement.items
-    )
+    items = (item.context_expr for with_ in everything if isinstance(with_, ast.With) for item in with_.items)
     calls = (item for item in items if isinstance(item, ast.Call))
     return next((call.lineno for call in calls if dotted_name(call.func) == "rclpy.init"), 0)
 
@@ -116,9 +114,8 @@ def wants_ros(tree: ast.Module) -> int:
     `rclpy.init` before it; 0 if there is none."""
     names = _NEEDS_INIT
     if spins(tree):
-        names |= _EXECUTORS | {item.name for item in tree.body if isinstance(item, ast.ClassDef) and _is_node(item)}
-    outside = (item for item in tree.body if not isinstance(item, ast.ClassDef))
-    calls = (item for statement in outside for item in descendants(statement) if isinstance(item, ast.Call))
+        names |= _EXECUTORS | {item.name for item in tree.body if isinstance(item, ast.ClassDef) and is_node(item)}
+    calls = [call for item in tree.body if not isinstance(item, ast.ClassDef) for call in calls_in(item)]
     return min((call.lineno for call in calls if dotted_name(call.func) in names), default=0)
 
 
@@ -138,7 +135,7 @@ def spinning_methods(own: ast.ClassDef) -> list[ast.FunctionDef]:
     """Return the public methods of a class that spin or loop without end, also in others that they call, and that the
     class itself does not use.
     """
-    methods = {item.name: item for item in own.body if isinstance(item, ast.FunctionDef)}
+    methods = methods_of(own)
     uses = {
         name: {i.attr for i in descendants(method) if isinstance(i, ast.Attribute)} for name, method in methods.items()
     }
@@ -154,8 +151,7 @@ def _loops_inside(method: ast.FunctionDef) -> bool:
 
 
 def _calls_spin(statement: ast.stmt) -> bool:
-    calls = (item for item in descendants(statement) if isinstance(item, ast.Call))
-    return any(last_name(call.func) in _SPINS for call in calls)
+    return any(last_name(call.func) in _SPINS for call in calls_in(statement))
 
 
 def leaves(tree: ast.Module) -> str:
@@ -163,17 +159,13 @@ def leaves(tree: ast.Module) -> str:
     for statement in tree.body:
         if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.If):
             continue
-        for call in (item for item in descendants(statement) if isinstance(item, ast.Call)):
+        for call in calls_in(statement):
             if dotted_name(call.func) in _ENDS:
                 return "it ends its program"
             own_words = [a for a in call.args if "argv" not in ast.unparse(a)]
             if last_name(call.func) in _READS_COMMAND_LINE and not own_words:
                 return "it reads its command line"
     return ""
-
-
-def _is_node(own: ast.ClassDef) -> bool:
-    return any(last_name(base) in {"Node", "LifecycleNode"} for base in own.bases)
 
 
 def _starts_a_program(call: ast.Call, of_subprocess: frozenset[str]) -> bool:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import ast
-import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from groundwork.problem import Problem, Severity
+from groundwork.words import did_you_mean
 from spinbook.chapter.classify import CellKind, ClassifiedFence, node_name
 from spinbook.chapter.complete_program import CompleteProgram, join, usual_import
 from spinbook.chapter.imports import MissingPackage, missing_imports
@@ -60,12 +60,12 @@ class Programs:
         """Return whether code spins for a while what snippets above have made, as in a notebook."""
         code = item.code
         is_piece = code is not None and set(code.needs) <= self._defined and not (code.initializes or code.node_classes)
-        return self._has_ros and is_piece and "rclpy.spin(" not in item.fence.code and not _is_file(item)
+        return self._has_ros and is_piece and "rclpy.spin(" not in item.fence.code and not item.fence.is_file
 
     def _is_gone_on_with(self, item: ClassifiedFence, below: Iterable[ClassifiedFence]) -> bool:
         """Return whether snippets below use what code made that ends at once, as the cells of a notebook do."""
         code = item.code
-        if code is None or self._has_ros or code.spins or code.loops or code.needs or _is_file(item):
+        if code is None or self._has_ros or code.spins or code.loops or code.needs or item.fence.is_file:
             return False
         made = code.defines - set(code.node_classes) if code.initializes and not code.has_main else frozenset()
         snippets = (other.code for other in below if other.kind is CellKind.SNIPPET and other.code)
@@ -74,22 +74,29 @@ class Programs:
     def _node(self, number: int, item: ClassifiedFence, out: Sequence[ClassifiedFence]) -> ClassifiedFence:
         code = item.code
         assert code is not None
-        joined = self._joined(item, out)
-        if item.fence.has("raises"):
-            # It is meant to fail.
-            return self._made(number, item, joined)
-        return self._not_run(item, code, joined) or self._made(number, item, joined)
+        joined = self._joined(item.fence.code, code, out)
+        # One that is meant to fail runs, whatever is wrong with it.
+        refused = None if item.fence.has("raises") else self._not_run(item, code, joined)
+        return refused or self._made(number, item, code, joined)
 
     def _not_run(self, item: ClassifiedFence, code: PythonCode, joined: CompleteProgram) -> ClassifiedFence | None:
         """Return the fence as a static one, with the reason; None if it can run."""
         if joined.missing:
             return self._undefined(item, code, joined.missing)
         if code.with_init and init_returns_nothing():
-            return self._too_new(item, code)
+            why = "`with rclpy.init():` needs ROS 2 Kilted or newer"
+            self._report(item, code.with_init, f"{why}, and rclpy here is older.", _INIT_ALONE)
+            return _static(item, why)
         if code.never_initialized:
-            return self._uninitialized(item, code)
+            name, line = next(iter(code.never_initialized.items()))
+            why = f"`{name}.__init__` never calls `super().__init__(…)`"
+            self._report(item, line, f"{why}, so nothing of this node works.", _INIT_OF_NODE)
+            return _static(item, why)
         if code.wants_ros and not _facts(joined, code).initializes:
-            return self._without_init(item, code)
+            if code.is_complete and code.imports:
+                problem = "nothing calls `rclpy.init` before this, so the program would fail."
+                self._report(item, code.wants_ros, problem, f"Call `rclpy.init()` first, {_ONLY_A_PIECE}")
+            return _static(item, _WITHOUT_INIT)
         if reason := _why_fragment(item, code, joined):
             return _static(item, f"it is a fragment: {reason}")
         if code.lacking and code.is_complete and not joined.amends:
@@ -99,18 +106,17 @@ class Programs:
         missing = missing_imports(_facts(joined, code), self.own, self.interfaces)
         return self._missing(item, missing, joined) if missing else None
 
-    def _made(self, number: int, item: ClassifiedFence, joined: CompleteProgram) -> ClassifiedFence:
+    def _made(self, number: int, item: ClassifiedFence, code: PythonCode, joined: CompleteProgram) -> ClassifiedFence:
         self._check_fields(item, joined.before)
         if joined.used:
             self._used[number] = tuple(self._pieces[i] for i in joined.used)
-        return replace(self._name(item, joined), before=joined.before, has_main_above=joined.has_main_above)
+        return replace(self._named(item, code, joined), before=joined.before, has_main_above=joined.has_main_above)
 
-    def _joined(self, item: ClassifiedFence, out: Sequence[ClassifiedFence]) -> CompleteProgram:
-        assert item.code is not None
-        is_class = bool(item.code.node_classes) and not item.code.is_complete
-        if not (item.code.needs or item.code.lacking or item.code.nameless or is_class):
-            return CompleteProgram(item.fence.code)
-        return join(item.fence.code, [out[i].fence.code for i in self._pieces])
+    def _joined(self, text: str, code: PythonCode, out: Sequence[ClassifiedFence]) -> CompleteProgram:
+        is_class = bool(code.node_classes) and not code.is_complete
+        if not (code.needs or code.lacking or code.nameless or is_class):
+            return CompleteProgram(text)
+        return join(text, [out[i].fence.code for i in self._pieces])
 
     def _snippet(self, item: ClassifiedFence) -> ClassifiedFence:
         code = item.code
@@ -131,7 +137,7 @@ class Programs:
             return _static(item, reason, f"{reason}.")
         starts_ros = code.initializes and code.starts_ros
         if code.leaves or (code.wants_ros and not code.initializes and not self._has_ros):
-            return _static(item, code.leaves or "nothing calls `rclpy.init` before it")
+            return _static(item, code.leaves or _WITHOUT_INIT)
         if starts_ros and (self._has_ros or "rclpy" not in code.imports or item.before):
             return _static(item, "it is a piece of a program")
         if absent := missing_imports(code, self.own, self.interfaces):
@@ -146,28 +152,8 @@ class Programs:
         verb = "is" if len(missing) == 1 else "are"
         if code.is_complete and code.imports:
             problem = f"{names} {verb} defined neither here nor above, so this program would fail."
-            fix = "Define or import it, or write `static` after the language if this is only a piece of a program."
-            line = item.fence.first_code_line + min(missing.values()) - 1
-            self.problems.append(Problem(self.file, line, problem, fix, Severity.NOT_RUN))
+            self._report(item, min(missing.values()), problem, f"Define or import it, {_ONLY_A_PIECE}")
         return _static(item, f"it uses {names}, which nothing above defines")
-
-    def _without_init(self, item: ClassifiedFence, code: PythonCode) -> ClassifiedFence:
-        """Return a program that never calls `rclpy.init` as a static fence; for a whole one, this is a mistake."""
-        if code.is_complete and code.imports:
-            problem = "nothing calls `rclpy.init` before this, so the program would fail."
-            fix = (
-                "Call `rclpy.init()` first, or write `static` after the language if this is only a piece of a program."
-            )
-            at = item.fence.first_code_line + code.wants_ros - 1
-            self.problems.append(Problem(self.file, at, problem, fix, Severity.NOT_RUN))
-        return _static(item, "nothing calls `rclpy.init` before it")
-
-    def _too_new(self, item: ClassifiedFence, code: PythonCode) -> ClassifiedFence:
-        problem = "`with rclpy.init():` needs ROS 2 Kilted or newer, and rclpy here is older."
-        fix = "Call `rclpy.init()` in a line of its own, and `rclpy.try_shutdown()` at the end; this works everywhere."
-        at = item.fence.first_code_line + code.with_init - 1
-        self.problems.append(Problem(self.file, at, problem, fix, Severity.NOT_RUN))
-        return _static(item, "`with rclpy.init():` needs ROS 2 Kilted or newer")
 
     def _check_fields(self, item: ClassifiedFence, before: str) -> None:
         """Report fields that messages do not have, in the fence itself, unless its failing is meant."""
@@ -176,62 +162,63 @@ class Programs:
         above = before.count("\n")
         for wrong in wrong_fields(before + item.fence.code):
             if wrong.line > above:
-                at = item.fence.first_code_line + wrong.line - above - 1
-                self.problems.append(Problem(self.file, at, wrong.problem, wrong.fix, Severity.WARNING))
+                self._report(item, wrong.line - above, wrong.problem, wrong.fix, Severity.WARNING)
 
-    def _uninitialized(self, item: ClassifiedFence, code: PythonCode) -> ClassifiedFence:
-        name, line = next(iter(code.never_initialized.items()))
-        problem = f"`{name}.__init__` never calls `super().__init__(…)`, so nothing of this node works."
-        fix = "Call it first, with the node's name, or write `static` after the language if this is a template."
+    def _report(
+        self, item: ClassifiedFence, line: int, problem: str, fix: str, severity: Severity = Severity.NOT_RUN
+    ) -> None:
+        """Report what is wrong in a line of a fence's code, counted from 1."""
         at = item.fence.first_code_line + line - 1
-        self.problems.append(Problem(self.file, at, problem, fix, Severity.NOT_RUN))
-        return _static(item, f"`{name}.__init__` never calls `super().__init__(…)`")
+        self.problems.append(Problem(self.file, at, problem, fix, severity))
 
     def _lacking(self, item: ClassifiedFence, code: PythonCode) -> None:
         name = code.fails_at_once or next(iter(code.lacking))
-        line = code.lacking[name]
+        meant = did_you_mean(name, node_attributes() | code.defines, "", "`self.{}`", 0.8)
+        fix = f"{meant} Set it in `__init__`, or check its name: the node fails where it is used.".lstrip()
         severity = Severity.NOT_RUN if code.fails_at_once else Severity.WARNING
-        problem = f"`self.{name}` is used but never set."
-        meant = difflib.get_close_matches(name, node_attributes() | code.defines, n=1, cutoff=0.8)
-        fix = "Set it in `__init__`, or check its name: the node fails where it is used."
-        fix = f"Did you mean `self.{meant[0]}`? {fix}" if meant else fix
-        at = item.fence.first_code_line + line - 1
-        self.problems.append(Problem(self.file, at, problem, fix, severity))
+        self._report(item, code.lacking[name], f"`self.{name}` is used but never set.", fix, severity)
 
     def _missing(
         self, item: ClassifiedFence, missing: Sequence[MissingPackage], joined: CompleteProgram
     ) -> ClassifiedFence:
         above = joined.before.count("\n")
         packages = list(dict.fromkeys(absent.package for absent in missing))
+        alone = len(packages) == 1
         for absent in missing:
             line = item.fence.first_code_line + max(absent.line - above, 1) - 1
-            alone = len(packages) == 1
             self.problems.append(
-                Problem(self.file, line, absent.found, absent.fix, Severity.NOT_RUN, group=absent.package, alone=alone)
+                Problem(self.file, line, absent.problem, absent.fix, Severity.NOT_RUN, absent.package, alone)
             )
         names = ", ".join(f"`{name}`" for name in packages)
         if packages == ["relative imports"]:
             return _static(item, "it imports relative to a package")
-        verb = "is" if len(packages) == 1 else "are"
+        verb = "is" if alone else "are"
         return _static(item, f"it needs {names}, which {verb} not installed", f"it needs {names}, not installed here.")
 
-    def _name(self, item: ClassifiedFence, joined: CompleteProgram) -> ClassifiedFence:
+    def _named(self, item: ClassifiedFence, code: PythonCode, joined: CompleteProgram) -> ClassifiedFence:
         """Name a node's cell. A file shown again keeps its name, and so does a node, which is then a newer version."""
         name, named, problems = node_name(item, self.named_files.get(item.fence.line, ""), self.file)
         self.problems += problems
-        earlier = self._versions.of(item.code, joined.whole)
+        earlier = self._versions.of(code, joined.whole)
         if not named:
-            name = earlier or self._versions.free_name(name, item.code)
+            name = earlier or self._versions.free_name(name, code)
         if name in self.own:
             # Otherwise an import would find the package's folder instead.
             name = f"{name}_node"
-        self._versions.add(name, item.code, joined.whole)
+        self._versions.add(name, code, joined.whole)
         return replace(item, name=name, named=named, replaces=earlier if earlier != name else "")
+
+
+#: What to do about a program that would fail.
+_ONLY_A_PIECE = "or write `static` after the language if this is only a piece of a program."
+_INIT_ALONE = "Call `rclpy.init()` in a line of its own, and `rclpy.try_shutdown()` at the end; this works everywhere."
+_INIT_OF_NODE = "Call it first, with the node's name, or write `static` after the language if this is a template."
+_WITHOUT_INIT = "nothing calls `rclpy.init` before it"
 
 
 def _why_fragment(item: ClassifiedFence, code: PythonCode, joined: CompleteProgram) -> str:
     """Return what keeps a class without a main from being a program; empty if nothing does."""
-    if code.does_nothing and not _is_file(item):
+    if code.does_nothing and not item.fence.is_file:
         return "nothing calls what it defines"
     if code.is_complete or not code.node_classes or code.calls_main or joined.has_main_above:
         return ""
@@ -242,9 +229,9 @@ def _why_fragment(item: ClassifiedFence, code: PythonCode, joined: CompleteProgr
         names = ", ".join(f"`self.{name}`" for name in list(code.lacking)[:3])
         return f"{names} {'is' if len(code.lacking) == 1 else 'are'} never set in it"
     is_piece = not code.alone or (bool(code.nameless) and not joined.amends)
-    if (is_piece and not _is_file(item)) or _needs_arguments(joined):
+    if (is_piece and not item.fence.is_file) or _needs_arguments(joined):
         return "nothing makes a node of its class"
-    if code.uncalled and not _is_file(item):
+    if code.uncalled and not item.fence.is_file:
         return f"nothing calls `{code.uncalled}`, which spins"
     return ""
 
@@ -258,10 +245,6 @@ def _needs_arguments(joined: CompleteProgram) -> bool:
     above = syntax_tree(joined.before).body if joined.amends else []
     classes = [item for item in above if isinstance(item, ast.ClassDef) and item.name == joined.amends]
     return bool(classes) and needs_arguments(classes[-1])
-
-
-def _is_file(item: ClassifiedFence) -> bool:
-    return bool(item.fence.title and item.fence.title.endswith(".py"))
 
 
 def _static(item: ClassifiedFence, why: str, sign: str = "") -> ClassifiedFence:
@@ -310,19 +293,12 @@ def _goes_on(number: int, used: Mapping[int, Iterable[int]], items: Sequence[Cla
 
 def _part_name(item: ClassifiedFence, taken: set[str | None]) -> str:
     """Return a name for a part: its class's, otherwise that of another name that it defines."""
-    code = item.code
-    names = sorted(code.defines) if code else []
-    classes = code.own_classes if code else []
-    base = (
-        "imports"
-        if code and code.imports and set(names) <= _imported(code)
-        else snake_case((classes or names or ["part"])[0])
-    )
-    name, count = base, 1
-    while name in taken:
-        count += 1
-        name = f"{base}_{count}"
-    return name
+    code = item.code or PythonCode()
+    names = sorted(code.defines)
+    is_imports = code.imports and set(names) <= _imported(code)
+    base = "imports" if is_imports else snake_case((code.own_classes or names or ["part"])[0])
+    free = (name for name in (base, *(f"{base}_{count}" for count in range(2, len(taken) + 3))) if name not in taken)
+    return next(free)
 
 
 def _without_file_name(file: Path, items: Sequence[ClassifiedFence]) -> list[Problem]:

@@ -11,12 +11,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from spinbook.chapter.class_pieces import methods_alone, names_begun, uses_super_outside
-from spinbook.chapter.imported_names import imported, imports_launch, imports_setuptools
+from spinbook.chapter.imported_names import imported, imports_launch, modules_imported
 from spinbook.chapter.node_classes import (
-    NODE_CLASSES,
     attributes_lacking,
     can_stand_alone,
     gives_no_name,
+    is_node,
     never_initialized,
     ros_name,
     serves,
@@ -38,24 +38,17 @@ from spinbook.chapter.program_start import (
     with_init,
     words_read,
 )
-from spinbook.chapter.syntax import descendants, last_name, syntax_tree
+from spinbook.chapter.syntax import calls_in, descendants, last_name, parsed, syntax_tree
 
 #: A line of IPython's own syntax: `%plot …`, `!ls`, `%%time`, `files = !ls`, `Node?`.
 _MAGIC = re.compile(
     r"^(?P<indent>\s*)(?P<names>[\w, ]+= *)?(?P<command>(?:%%?[A-Za-z]|!).*|\?{1,2}[\w.]+|[\w.]+\?{1,2})$"
 )
-#: What setup.py writes under console_scripts.
+#: What a setup.py imports, and what it writes under console_scripts.
+_SETUP = frozenset({"setuptools", "distutils.core"})
 _ENTRY_POINT = re.compile(r"[\w.-]+\s*=\s*[\w.]+:\w+")
-_ALWAYS_THERE = frozenset(dir(builtins)) | {
-    "__name__",
-    "__file__",
-    "__doc__",
-    "display",
-    "get_ipython",
-    "In",
-    "Out",
-    "_",
-}
+_ALWAYS_THERE = frozenset(dir(builtins)) | {"__name__", "__file__", "__doc__"}
+_ALWAYS_THERE |= {"display", "get_ipython", "In", "Out", "_"}
 
 
 class CodeError(Exception):
@@ -170,22 +163,13 @@ def blank_magics(code: str) -> str:
 
 def _blank(magic: re.Match[str]) -> str:
     names = magic["names"]
-    return (
-        f"{magic['indent']}{names}{', '.join(['None'] * (names.count(',') + 1))}" if names else f"{magic['indent']}pass"
-    )
+    blank = f"{names}{', '.join(['None'] * (names.count(',') + 1))}" if names else "pass"
+    return f"{magic['indent']}{blank}"
 
 
 def has_magics(code: str) -> bool:
     """Return whether a line is one of IPython's (`%plot`, `!ls`), and not of a text or an expression of Python's."""
-    return any(_MAGIC.match(line) for line in code.split("\n")) and not _is_python(code)
-
-
-def _is_python(code: str) -> bool:
-    try:
-        ast.parse(code)
-    except (SyntaxError, ValueError):
-        return False
-    return True
+    return any(_MAGIC.match(line) for line in code.split("\n")) and parsed(code) is None
 
 
 def programs_in_magics(code: str) -> dict[str, int]:
@@ -196,6 +180,14 @@ def programs_in_magics(code: str) -> dict[str, int]:
             for word in re.split(r"[\s;&|!%]+", match["command"]):
                 programs.setdefault(word.rsplit("/", 1)[-1], number)
     return programs
+
+
+def facts_of(code: str) -> PythonCode:
+    """Return the facts about a piece of Python; those about nothing if it isn't Python."""
+    try:
+        return inspect(code)
+    except CodeError as error:
+        return PythonCode(fragment=f"it is not Python: {error.message}")
 
 
 @functools.lru_cache(maxsize=4096)
@@ -221,8 +213,7 @@ def inspect(code: str) -> PythonCode:
         return PythonCode(fragment="it is a piece of a class", defines=methods)
     if uses_super_outside(tree):
         return PythonCode(fragment="`super()` is used outside a class")
-    outside = _only_inside_function(tree)
-    if outside:
+    if outside := _only_inside_function(tree):
         return PythonCode(fragment=outside)
     return _facts(tree, code)
 
@@ -246,11 +237,11 @@ def _only_inside_function(tree: ast.Module) -> str | None:
 
 def _facts(tree: ast.Module, code: str) -> PythonCode:
     everything = descendants(tree)
-    calls = [item for item in everything if isinstance(item, ast.Call)]
+    calls = calls_in(tree)
     called = {last_name(call.func) for call in calls}
     defines, needs = _names(everything, code)
     classes = {item.name: item for item in everything if isinstance(item, ast.ClassDef)}
-    node_classes = _node_classes(everything)
+    node_classes = [item.name for item in everything if isinstance(item, ast.ClassDef) and is_node(item)]
     lacking = attributes_lacking(everything, node_classes, classes)
     alone = tuple(name for name in node_classes if can_stand_alone(name, classes, everything))
     method, uncalled = _methods_to_call(alone, classes)
@@ -260,8 +251,9 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         ros_name=ros_name(everything, classes),
         spins=spins(tree),
         has_main=any(map(_is_main, tree.body)),
-        has_main_guard=any(map(_is_main_guard, tree.body)),
-        is_setup_script=("setup" in called and imports_setuptools(tree)) or any(map(_is_entry_point, everything)),
+        has_main_guard=any(map(is_main_guard, tree.body)),
+        is_setup_script=("setup" in called and bool(_SETUP & modules_imported(tree)))
+        or any(map(_is_entry_point, everything)),
         is_launch_file=any(map(_is_launch_function, everything)) or imports_launch(tree),
         defines=defines,
         needs=needs,
@@ -297,16 +289,12 @@ def _methods_to_call(alone: Sequence[str], classes: Mapping[str, ast.ClassDef]) 
     return "", f"{name}.{spinning[0].name}" if spinning and not serves(classes[name]) else ""
 
 
-def _node_classes(everything: Sequence[ast.AST]) -> list[str]:
-    classes = (item for item in everything if isinstance(item, ast.ClassDef))
-    return [item.name for item in classes if any(last_name(base) in NODE_CLASSES for base in item.bases)]
-
-
 def _is_main(statement: ast.stmt) -> bool:
     return isinstance(statement, ast.FunctionDef) and statement.name == "main"
 
 
-def _is_main_guard(statement: ast.stmt) -> bool:
+def is_main_guard(statement: ast.stmt) -> bool:
+    """Return whether a statement is `if __name__ == "__main__":`."""
     return isinstance(statement, ast.If) and "__main__" in ast.dump(statement.test)
 
 

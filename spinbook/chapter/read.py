@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -12,7 +13,7 @@ from groundwork.problem import Problem, Severity
 from spinbook.chapter.block import Block, BlockKind, SourceLine
 from spinbook.chapter.blocks import read_blocks
 from spinbook.chapter.chapter import Chapter, ChapterCell, StaticFence, make_cells
-from spinbook.chapter.classify import CellKind, ClassifiedFence, first_look, node_name, with_language
+from spinbook.chapter.classify import CellKind, ClassifiedFence, first_look, node_name, static, with_language
 from spinbook.chapter.excerpts import excerpts, is_excerpt
 from spinbook.chapter.fence import Fence, interface_of, interface_package
 from spinbook.chapter.files import is_elsewhere, locate, read_included
@@ -51,9 +52,14 @@ class _ParsedChapter:
     included: tuple[Path, ...] = ()
 
     @property
-    def fences(self) -> Iterator[Block]:
-        """The fences, in order."""
-        return (block for top in self.blocks for block in top.walk() if block.fence is not None)
+    def inner_blocks(self) -> Iterator[Block]:
+        """All blocks, each before those in it, in order."""
+        return (block for top in self.blocks for block in top.walk())
+
+    @property
+    def fences(self) -> Iterator[tuple[Block, Fence]]:
+        """The fences, in order, with their blocks."""
+        return ((block, block.fence) for block in self.inner_blocks if block.fence is not None)
 
 
 #: What has been read in this process, by root and file.
@@ -75,7 +81,7 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResu
     problems += [*fence_problems, *title_problems, *_references(parsed, surroundings, root, references)]
     problems.sort(key=lambda problem: (problem.line or 0, problem.problem))
     by_line = {item.fence.line: item for item in classified}
-    pieces = _layout(by_line, surroundings).pieces(parsed.blocks)
+    pieces = ChapterLayout(by_line, surroundings.exercises).pieces(parsed.blocks)
     cells = tuple(
         replace(cell, source=references.resolved(cell.source)) if cell.kind is CellKind.PROSE else cell
         for cell in make_cells([*_heading(parsed, title), *pieces], by_line, borrowed)
@@ -87,12 +93,12 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResu
         summary=str(parsed.source.front_matter.get("summary", "")),
         week=str(parsed.source.front_matter.get("week", "")),
         cells=cells,
-        uses=tuple(sorted({*_uses(parsed, root, file), *_shown_in(borrowed)})),
+        uses=tuple(sorted(_uses(parsed, root, file) | _shown_in(borrowed))),
         references=references_in(parsed.source.text),
         static_fences=tuple(
             StaticFence(item.fence.line, item.fence.language, item.why, item.sign)
             for item in classified
-            if item.kind is CellKind.STATIC
+            if item.is_static
         ),
     )
     return ReadResult(chapter, tuple(problems))
@@ -111,9 +117,8 @@ def definitions_of(root: Path, file: Path, own: str) -> Iterator[tuple[Fence, st
 def _fences(parsed: _ParsedChapter, own: str) -> Iterator[tuple[Block, Fence]]:
     """Yield each block that is a fence, and the fence, with the interface that it defines."""
     titles = _interfaces(parsed, own)
-    for block in parsed.fences:
-        if block.fence is not None:
-            yield block, replace(block.fence, interface=titles.get(block.fence.line, ""))
+    for block, fence in parsed.fences:
+        yield block, replace(fence, interface=titles.get(fence.line, ""))
 
 
 @functools.lru_cache(maxsize=512)
@@ -123,9 +128,8 @@ def _interfaces(parsed: _ParsedChapter, own: str) -> dict[int, str]:
 
 def modules_of(root: Path, file: Path) -> frozenset[str]:
     """Return the modules whose files a chapter shows: the titles of its fences."""
-    titles = (block.fence.title for block in _parse(root, file).fences if block.fence)
-    stems = (Path(title).name.removesuffix(".py") for title in titles if title and title.endswith(".py"))
-    return frozenset(stem for stem in stems if stem.isidentifier())
+    files = (Path(fence.title or "") for _, fence in _parse(root, file).fences if fence.is_file)
+    return frozenset(file.stem for file in files if file.stem.isidentifier())
 
 
 def labels_of(root: Path, file: Path) -> dict[str, Label]:
@@ -176,43 +180,38 @@ def _parsed(root: Path, file: Path) -> _ParsedChapter:
 def _classify(
     parsed: _ParsedChapter, file: Path, surroundings: Surroundings
 ) -> tuple[list[ClassifiedFence], list[Problem], dict[int, list[ChapterCell]]]:
-    problems: list[Problem] = []
     items: list[ClassifiedFence] = []
     not_executed: dict[int, ClassifiedFence] = {}
     own = interface_package(surroundings.package)
-    repeated = excerpts([with_language(block.fence) for block in parsed.fences if block.fence])
-    for_others = _for_other_systems(parsed.blocks)
+    repeated = excerpts([with_language(fence) for _, fence in parsed.fences])
+    for_others = _for_other_systems(parsed.inner_blocks)
     for block, fence in _fences(parsed, own):
-        item, fence_problems = first_look(fence, file, own) if block.closed else _unclosed(block, fence, file)
+        item = first_look(fence, file, own) if block.closed else _unclosed(block, fence, file)
         if is_excerpt(item, repeated.get(fence.line, "")):
-            item = ClassifiedFence(fence, CellKind.STATIC, "it is a piece of a program of the chapter")
-            fence_problems = []
+            item = static(fence, "it is a piece of a program of the chapter")
         if item.kind is CellKind.INTERFACE and (fault := surroundings.not_compiled.get((file, fence.first_code_line))):
-            why = "its definition is not compiled"
-            item, fence_problems = ClassifiedFence(fence, CellKind.STATIC, why, fault.problem), [fault]
+            item = static(fence, "its definition is not compiled", fault, sign=fault.problem)
         if fence.line in for_others and item.kind is CellKind.SHELL:
-            item, fence_problems = ClassifiedFence(fence, CellKind.STATIC, "its tab is for another system"), []
+            item = static(fence, "its tab is for another system")
         if SKIPPED in fence.tags:
             if item.kind in {CellKind.NODE, CellKind.SNIPPET, CellKind.SHELL}:
                 not_executed[len(items)] = item
-            item, fence_problems = ClassifiedFence(fence, CellKind.STATIC, "its tags say that it is not run"), []
-        bad = _bad_seconds(item, file)
-        items.append(replace(item, fence=_without_seconds(item.fence)) if bad else item)
-        problems += [*fence_problems, *bad]
+            item = static(fence, "its tags say that it is not run")
+        items.append(_with_valid_seconds(item, file))
+    problems = [problem for item in items for problem in item.problems]
     packages = own_packages(with_language(item.fence) for item in items)
-    own_modules = _own(packages, surroundings, items)
-    programs = Programs(file, own_modules, named_files(parsed.blocks), frozenset(surroundings.interfaces))
+    interfaces = frozenset(surroundings.interfaces)
+    programs = Programs(file, _own(packages, surroundings, items), named_files(parsed.inner_blocks), interfaces)
     items = programs.decide(items)
     modules = surroundings.modules | {item.name for item in items if item.kind is CellKind.NODE and item.name}
-    exercise = any(block.kind is BlockKind.EXERCISE for top in parsed.blocks for block in top.walk())
     shells = Shells(
         file,
         surroundings.package,
         modules,
         packages,
         programs.named_files,
-        exercise,
-        interfaces=frozenset(surroundings.interfaces),
+        has_exercise=any(block.kind is BlockKind.EXERCISE for block in parsed.inner_blocks),
+        interfaces=interfaces,
         earlier_programs=functools.partial(surroundings.earlier_programs, file),
     )
     items = shells.decide(items)
@@ -227,7 +226,7 @@ def _shown_in(borrowed: Mapping[int, Sequence[ChapterCell]]) -> set[Path]:
 
 def _for_other_systems(blocks: Iterable[Block]) -> set[int]:
     """Return the lines of the fences in tabs for Windows or macOS: ROS 2 runs on Linux here."""
-    tabs = (block for top in blocks for block in top.walk() if block.kind is BlockKind.TAB)
+    tabs = (block for block in blocks if block.kind is BlockKind.TAB)
     others = (tab for tab in tabs if _OTHER_SYSTEM.search(tab.title) and not _LINUX.search(tab.title))
     return {inner.fence.line for tab in others for inner in tab.walk() if inner.fence is not None}
 
@@ -248,52 +247,31 @@ def _kinds(surroundings: Surroundings) -> dict[str, frozenset[str]]:
     return {package: frozenset(kind for of, kind in pairs if of == package) for package, _ in pairs}
 
 
-def _unclosed(block: Block, fence: Fence, file: Path) -> tuple[ClassifiedFence, list[Problem]]:
-    text = f"the code fence that opens here (`{block.lines[0].text.strip()[:60]}`) is never closed."
-    fix = f"Close it with a line of its own: {block.lines[0].text.strip()[:3]}"
-    problem = Problem(file, fence.line, text, fix, Severity.NOT_RUN)
-    return ClassifiedFence(fence, CellKind.STATIC, "its fence is never closed", "its fence is never closed."), [problem]
+def _unclosed(block: Block, fence: Fence, file: Path) -> ClassifiedFence:
+    opening = block.lines[0].text.strip()
+    text = f"the code fence that opens here (`{opening[:60]}`) is never closed."
+    problem = Problem(file, fence.line, text, f"Close it with a line of its own: {opening[:3]}", Severity.NOT_RUN)
+    return static(fence, "its fence is never closed", problem, sign="its fence is never closed.")
 
 
-def _layout(by_line: Mapping[int, ClassifiedFence], surroundings: Surroundings) -> ChapterLayout:
-    def runs(block: Block) -> bool:
-        if block.kind is BlockKind.EXERCISE:
-            return block.title in surroundings.exercises
-        return block.fence is not None and by_line[block.fence.line].kind is not CellKind.STATIC
-
-    def sign(block: Block) -> str:
-        item = by_line[block.fence.line] if block.fence is not None else None
-        return f"<small>Not run here: {item.sign}</small>" if item and item.sign else ""
-
-    def output(block: Block) -> str:
-        return by_line[block.fence.line].output if block.fence is not None else ""
-
-    return ChapterLayout(runs, sign, output)
-
-
-def _bad_seconds(item: ClassifiedFence, file: Path) -> list[Problem]:
-    seconds = item.fence.attributes.get("seconds")
-    if seconds is None:
-        return []
-    try:
+def _with_valid_seconds(item: ClassifiedFence, file: Path) -> ClassifiedFence:
+    """Return the fence without its attribute `seconds` if that is not a time, and with a warning."""
+    attributes = dict(item.fence.attributes)
+    seconds = attributes.pop("seconds", "1")
+    with contextlib.suppress(ValueError):
         if 0 < float(seconds) <= 600:
-            return []
-    except ValueError:
-        pass
+            return item
     fix = "Write a number of seconds, above 0 and up to 600. Until then it is left out."
-    return [Problem(file, item.fence.line, f"`seconds={seconds}` is not a time.", fix, Severity.WARNING)]
-
-
-def _without_seconds(fence: Fence) -> Fence:
-    return replace(fence, attributes={key: value for key, value in fence.attributes.items() if key != "seconds"})
+    problem = Problem(file, item.fence.line, f"`seconds={seconds}` is not a time.", fix, Severity.WARNING)
+    return replace(item, fence=replace(item.fence, attributes=attributes), problems=(*item.problems, problem))
 
 
 def _references(
     parsed: _ParsedChapter, surroundings: Surroundings, root: Path, references: References
 ) -> Iterator[Problem]:
     file = references.file
-    for block in (inner for top in parsed.blocks for inner in top.walk() if inner.kind is BlockKind.EXERCISE):
-        if block.title not in surroundings.exercises:
+    for block in parsed.inner_blocks:
+        if block.kind is BlockKind.EXERCISE and block.title not in surroundings.exercises:
             known = ", ".join(sorted(surroundings.exercises)) or "none yet"
             problem = f"there is no exercise `{block.title}`."
             fix = f"The folder exercises/ holds: {known}."
@@ -310,13 +288,12 @@ def _references(
             yield Problem(file, line, problem, fix, Severity.WARNING, group="files that are not there")
 
 
-def _uses(parsed: _ParsedChapter, root: Path, file: Path) -> tuple[Path, ...]:
+def _uses(parsed: _ParsedChapter, root: Path, file: Path) -> set[Path]:
     """Return the files of the course that the chapter includes, or links to."""
     assert parsed.source is not None
     folder = file.parent.as_posix()
     targets = (target for target, _ in links_in(parsed.source.text) if not is_elsewhere(target))
-    places = {place for target in targets if (place := locate(root, folder, target))}
-    return tuple(sorted(places | set(parsed.included)))
+    return {place for target in targets if (place := locate(root, folder, target))} | set(parsed.included)
 
 
 def _heading(parsed: _ParsedChapter, title: str) -> list[Piece]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import itertools
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -11,6 +10,7 @@ from pathlib import Path
 
 from grader.recording.types import OWN_SERVICES
 from groundwork.problem import Problem, Severity
+from groundwork.words import did_you_mean, similar
 from ros_in_python.ros2 import executables
 from spinbook.chapter.chapter import ChapterCell
 from spinbook.chapter.classify import CellKind, ClassifiedFence
@@ -21,14 +21,13 @@ from spinbook.chapter.foreign_commands import (
     foreign_program,
     has_launch_file,
     missing_type,
-    similar,
 )
 from spinbook.chapter.imports import IN_ROS, ros_packages
 from spinbook.chapter.launch_files import NotSupportedError
 from spinbook.chapter.launches import Launches, launch_words
 from spinbook.chapter.own_packages import CREATE_OPTIONS, OwnPackages, created_node, created_package, unknown_option
 from spinbook.chapter.program_names import ProgramNames
-from spinbook.chapter.terminal import Command, CommandKind, is_placeholder
+from spinbook.chapter.terminal import Command, CommandKind, is_placeholder, note
 from spinbook.chapter.values_in_commands import wrong_values
 
 #: Commands that fail if the name they are given does not exist: noun -> verbs.
@@ -79,10 +78,10 @@ class Shells:
     package: str
     modules: frozenset[str]
     own: OwnPackages
-    named_files: Mapping[int, str] = field(default_factory=dict)
-    has_exercise: bool = False
-    interfaces: frozenset[str] = frozenset()
-    earlier_programs: Callable[[str, str], ChapterCell | None] = lambda package, executable: None
+    named_files: Mapping[int, str]
+    has_exercise: bool
+    interfaces: frozenset[str]
+    earlier_programs: Callable[[str, str], ChapterCell | None]
     borrowed: dict[int, list[ChapterCell]] = field(default_factory=dict)
     """The programs of earlier chapters that commands run, by the line of the fence."""
     problems: list[Problem] = field(default_factory=list)
@@ -111,7 +110,7 @@ class Shells:
                 out[number] = self._fence(item, out)
             elif item.kind is CellKind.INTERFACE:
                 self._created.add((item.name or "").partition("/")[0])
-            elif item.kind is not CellKind.STATIC:
+            elif not item.is_static:
                 self._said.add(item.whole)
             self._launches.add(number, item)
             if item.kind is CellKind.NODE:
@@ -145,18 +144,14 @@ class Shells:
 
     def _without_keys(self, item: ClassifiedFence) -> ClassifiedFence:
         """Make comments of programs that read keys, so that the other commands of their fence run."""
-        needs_keys = [command.runs in READ_KEYS for command in item.commands]
-        if all(
-            needs or command.kind is CommandKind.NOTE for needs, command in zip(needs_keys, item.commands, strict=True)
-        ):
-            return item
-        commands = [
-            Command(CommandKind.NOTE, f"# {command.text} (reads keys: run it in a terminal)", (), command.line)
-            if needs
+        commands = tuple(
+            note(f"{command.text} (reads keys: run it in a terminal)", command.line)
+            if command.runs in READ_KEYS
             else command
-            for needs, command in zip(needs_keys, item.commands, strict=True)
-        ]
-        return replace(item, commands=tuple(commands))
+            for command in item.commands
+        )
+        is_left = any(command.kind is not CommandKind.NOTE for command in commands)
+        return replace(item, commands=commands) if is_left else item
 
     def _refused(self, command: Command, out: list[ClassifiedFence], line: int) -> Reason | None:
         if command.kind is CommandKind.COLCON:
@@ -169,11 +164,8 @@ class Shells:
         if command.runs is not None:
             return self._run(command, out, line) or self._lacks_words(command, out)
         if command.words[1:2] == ("launch",):
-            return (
-                self._whole_launch(command, out, line)
-                if self._launches.is_of_package(command)
-                else self._launch(command)
-            )
+            is_ours = self._launches.is_of_package(command)
+            return self._whole_launch(command, out, line) if is_ours else self._launch(command)
         if command.words[1:3] == ("pkg", "create"):
             return self._create(command)
         self._check_values(command, line)
@@ -209,9 +201,9 @@ class Shells:
             return None
         if package == self.package:
             problem = f"the course's package `{package}` has no executable `{executable}`"
-            close = "".join(f"Did you mean `{name}`? " for name in similar(executable, self.modules))
-            fix = f"{close}Its node cells make these: {', '.join(sorted(self.modules)) or 'none'}."
-            return Reason(problem, fix, "")
+            meant = did_you_mean(executable, self.modules, "", "`{}`", 0.7)
+            fix = f"{meant} Its node cells make these: {', '.join(sorted(self.modules)) or 'none'}."
+            return Reason(problem, fix.lstrip(), "")
         return foreign_program(package, executable, self.package, self.own.names)
 
     def _shown_only(self, package: str, executable: str, out: Sequence[ClassifiedFence]) -> Reason | None:
@@ -219,7 +211,7 @@ class Shells:
         shown = {
             number: replace(item, name=_file_name(title).removesuffix(".py"))
             for number, item in enumerate(out)
-            if item.kind is CellKind.STATIC and item.code and item.fence.line < self._line
+            if item.is_static and item.code and item.fence.line < self._line
             if (title := item.fence.title or self.named_files.get(item.fence.line, "")) or item.code.node_classes
         }
         number = ProgramNames(shown, self.own).started(package, executable)
@@ -329,19 +321,17 @@ class Shells:
         makes = command.words[1:3] == ("pkg", "create") and created_package(command.words)[0] in packages
         chosen = _selected(command.words) if command.kind is CommandKind.COLCON else []
         if makes or (chosen and packages.issuperset(chosen)):
-            return Command(CommandKind.NOTE, f"# {command.text}", (), command.line)
+            return note(command.text, command.line)
         return command
 
     def _create(self, command: Command) -> Reason | None:
         name, build_type = created_package(command.words)
         if unknown := unknown_option(command.words):
-            close = difflib.get_close_matches(unknown, CREATE_OPTIONS, n=1)
-            fix = f"Did you mean `{close[0]}`?" if close else f"Its options: {', '.join(sorted(CREATE_OPTIONS))}."
+            fix = did_you_mean(unknown, CREATE_OPTIONS, f"Its options: {', '.join(sorted(CREATE_OPTIONS))}.", "`{}`")
             return Reason(f"`ros2 pkg create` has no option `{unknown}`", fix, "")
         if build_type != "ament_python":
-            return Reason(
-                "it makes a package for C++", "Python packages have --build-type ament_python.", "C++ packages"
-            )
+            fix = "Python packages have --build-type ament_python."
+            return Reason("it makes a package for C++", fix, "C++ packages")
         if name and is_placeholder(name):
             return TO_FILL_IN
         if not re.fullmatch(r"[a-z][a-z0-9_]*", name):

@@ -17,6 +17,14 @@ def syntax_tree(code: str) -> ast.Module:
     return ast.parse(code)
 
 
+def parsed(code: str) -> ast.Module | None:
+    """Return the tree of a piece of Python, which callers must not change; None if it is not valid Python."""
+    try:
+        return syntax_tree(code)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+
+
 @functools.lru_cache(maxsize=16 * _TREES)
 def descendants(node: ast.AST) -> tuple[ast.AST, ...]:
     """Return a node and all those below it in the order of `ast.walk`, without `ctx`, which is no code of its own."""
@@ -32,6 +40,16 @@ def descendants(node: ast.AST) -> tuple[ast.AST, ...]:
             elif kind is not int and kind is not str and isinstance(value, ast.AST) and kind not in _CONTEXTS:
                 nodes.append(value)
     return tuple(nodes)
+
+
+def calls_in(node: ast.AST) -> list[ast.Call]:
+    """Return the calls in a node, those nearest to its root first."""
+    return [item for item in descendants(node) if isinstance(item, ast.Call)]
+
+
+def keywords_of(call: ast.Call) -> dict[str, ast.expr]:
+    """Return the arguments that a call gives by their names."""
+    return {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg}
 
 
 def last_name(expression: ast.AST) -> str:

@@ -6,7 +6,7 @@ notebook does not, so they become comments. Anything else is shown but not run.
 
 from __future__ import annotations
 
-import difflib
+import contextlib
 import functools
 import re
 import shlex
@@ -15,6 +15,8 @@ from dataclasses import dataclass
 from enum import Enum
 
 import click
+
+from groundwork.words import similar
 
 #: The nouns of `ros2` that a package follows, not a verb.
 _STARTING = frozenset({"run", "launch"})
@@ -30,8 +32,11 @@ _BESIDE = frozenset(
     ]
 )
 _SHELL_SYNTAX = re.compile(r"[|;<>`]|&&|\$\(|(?<!\S)&(?!\S)|&$")
-#: Characters with a special meaning to a shell.
+#: Characters with a special meaning to a shell, and text between quotation marks.
 _QUOTING = re.compile(r"[\"'\\]")
+_QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'")
+#: How alike a program or a verb and its misspelling are at least.
+_ALIKE = 0.7
 _ZSH = r"(?:(?:[\w.~/-]+\s)?\S*❯|➜\s+\S+(?:\s+git:\(\S+\))?(?:\s+✗)?)"
 #: `PS C:\ws>` and `C:\ws>` of Windows; `>` and `%`, which only the command after them makes prompts.
 _OTHER = r"|(?:PS\s)?[A-Z]:\\[^>\n]*>|[>%](?=\s+(?:ros2|colcon)\s)"
@@ -79,6 +84,11 @@ class Command:
         words = [word for word in self.words[2:4] if not word.startswith("-")]
         is_run = self.kind is CommandKind.ROS2 and self.words[1:2] == ("run",)
         return (words[0], words[1]) if is_run and len(words) == 2 else None
+
+
+def note(text: str, line: int) -> Command:
+    """Return a comment with this text, which may stand for a command that is not run."""
+    return Command(CommandKind.NOTE, f"# {text}", (), line)
 
 
 @dataclass(frozen=True)
@@ -144,19 +154,16 @@ def _is_to_fill_in(word: str) -> bool:
 def programs_of(code: str) -> list[tuple[str, ...]]:
     """Return the words of each command, whether a notebook runs it or not."""
     commands = []
-    for text, _ in _logical_lines(code):
-        for part in _parts(text):
-            try:
-                commands.append(tuple(shlex.split(part, comments=True)))
-            except ValueError:
-                continue
+    for part in (part for text, _ in _logical_lines(code) for part in _parts(text)):
+        with contextlib.suppress(ValueError):
+            commands.append(tuple(shlex.split(part, comments=True)))
     return [words for words in commands if words]
 
 
 def _noted(command: UnsupportedCommand) -> Command | UnsupportedCommand:
     is_form = command.why == _FORM
     if is_form or (command.text.split(" ")[0] in _BESIDE and not _SHELL_SYNTAX.search(command.text)):
-        return Command(CommandKind.NOTE, f"# {command.text}", (), command.line)
+        return note(command.text, command.line)
     return command
 
 
@@ -168,15 +175,11 @@ def _parts(text: str) -> list[str]:
         words = list(shlex.shlex(text, posix=False, punctuation_chars="&;|<>"))
     except ValueError:
         return [text]
-    marks = [word for word in words if word in {"&&", ";"}]
-    if any(set(word) <= set("&;|<>") and word not in {"&&", ";"} for word in words) or not marks:
+    marks = {word for word in words if set(word) <= set("&;|<>")}
+    is_quoted = any("&&" in quoted or ";" in quoted for quoted in _QUOTED.findall(text))
+    if is_quoted or not marks or marks - {"&&", ";"}:
         return [text]
-    return [part.strip() for part in re.split(r"&&|;", text)] if _unquoted(text) else [text]
-
-
-def _unquoted(text: str) -> bool:
-    """Return whether every `&&` and `;` is outside quotation marks."""
-    return all("&&" not in quoted and ";" not in quoted for quoted in re.findall(r"\"[^\"]*\"|'[^']*'", text))
+    return [part.strip() for part in re.split(r"&&|;", text)]
 
 
 def _logical_lines(code: str) -> Iterator[tuple[str, int]]:
@@ -204,6 +207,7 @@ def _logical_lines(code: str) -> Iterator[tuple[str, int]]:
 
 
 def inside_quotes(text: str) -> bool:
+    """Return whether a text ends between quotation marks, or after a backslash."""
     if not _QUOTING.search(text):
         return False
     try:
@@ -223,18 +227,17 @@ def _read(text: str, line: int) -> Command | UnsupportedCommand:
     except ValueError:
         return UnsupportedCommand(text, line, "a quotation mark is never closed")
     if not words:
-        return Command(CommandKind.NOTE, f"# {text}", (), line)
+        return note(text, line)
     text = _without_comment(text)
-    outside_quotes = re.sub(r"\"[^\"]*\"|'[^']*'", "", text)
     program = words[0]
     if program in MOVING_ABOUT:
-        return Command(CommandKind.NOTE, f"# {text}", (), line)
+        return note(text, line)
     if program not in PROGRAMS:
         why = f"`{program}` is not ros2, colcon, rqt_plot or rqt_graph"
-        return UnsupportedCommand(text, line, why, _meant(program, PROGRAMS))
+        return UnsupportedCommand(text, line, why, similar(program, PROGRAMS, _ALIKE))
     if any(map(_is_to_fill_in, words[1:])):
         return UnsupportedCommand(text, line, _FORM)
-    if _SHELL_SYNTAX.search(outside_quotes):
+    if _SHELL_SYNTAX.search(_QUOTED.sub("", text)):
         return UnsupportedCommand(text, line, "pipes, `;`, `&` and redirections need a real shell")
     if program == "ros2":
         return _ros2(text, words, line)
@@ -254,24 +257,14 @@ def _window(text: str, words: tuple[str, ...], line: int) -> Command | Unsupport
 
 def _without_comment(text: str) -> str:
     """Return a command without the comment after it."""
-    quote = ""
-    for index, letter in enumerate(text):
-        if quote:
-            quote = "" if letter == quote else quote
-        elif letter in "\"'":
-            quote = letter
-        elif letter == "#" and text[index - 1].isspace():
-            return text[:index].rstrip()
-    return text
-
-
-def _meant(word: str, known: Iterable[str]) -> str:
-    return next(iter(difflib.get_close_matches(word, known, n=1, cutoff=0.7)), "")
+    # Text between quotation marks is blanked out, so that a # in it is none.
+    comment = re.search(r"\s#", _QUOTED.sub(lambda quoted: "_" * len(quoted[0]), text))
+    return text[: comment.start()].rstrip() if comment else text
 
 
 def _unknown(text: str, line: int, before: str, word: str, known: Iterable[str]) -> UnsupportedCommand:
     """Return a command whose `word`, after `before`, is not one of those that are known there."""
-    why, close = f"there is no `{before} {word}` here", _meant(word, known)
+    why, close = f"there is no `{before} {word}` here", similar(word, known, _ALIKE)
     if close:
         return UnsupportedCommand(text, line, why, f"{before} {close}", is_unknown=True)
     return UnsupportedCommand(text, line, f"{why}; there are: {', '.join(sorted(known))}", is_unknown=True)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 
 from spinbook.chapter.bindings import attributes_of_self, bindings, is_self
 from spinbook.chapter.interface_fields import PARTS, InterfaceFields, fields_of
-from spinbook.chapter.syntax import descendants, dotted_name, last_name
+from spinbook.chapter.syntax import descendants, dotted_name, keywords_of, last_name
 
 _MODULE = re.compile(r"(\w+)\.(msg|srv|action)")
 #: A package of interfaces, or one of its modules.
@@ -63,6 +63,11 @@ class Function:
         return tuple(nodes)
 
     @property
+    def calls(self) -> list[ast.Call]:
+        """The calls in its body."""
+        return [item for item in self.own_nodes if isinstance(item, ast.Call)]
+
+    @property
     def arguments(self) -> list[str]:
         """The names of its positional parameters, without `self`."""
         assert isinstance(self.node, _FUNCTIONS)
@@ -86,13 +91,15 @@ class ProgramTypes:
 
     def value_of(self, expression: ast.expr, function: Function) -> TypedValue | None:
         """Return the message that an expression is; None if it is something else, or not known."""
-        kind = self._type(expression, function)
-        return kind if kind is not None and kind.role == "value" else None
+        return self._of_role("value", expression, function)
 
     def class_of(self, expression: ast.expr, function: Function) -> TypedValue | None:
         """Return the class that an expression is; None if it is something else, or not known."""
+        return self._of_role("class", expression, function)
+
+    def _of_role(self, role: str, expression: ast.expr, function: Function) -> TypedValue | None:
         kind = self._type(expression, function)
-        return kind if kind is not None and kind.role == "class" else None
+        return kind if kind is not None and kind.role == role else None
 
     def _add(self, node: ast.AST, owner: ast.ClassDef | None) -> Function:
         function = Function(node, owner)
@@ -103,12 +110,9 @@ class ProgramTypes:
                 for method in inner.body:
                     if isinstance(method, _FUNCTIONS):
                         self._add(method, inner)
-            elif isinstance(inner, _FUNCTIONS) and not self._known(inner):
+            elif isinstance(inner, _FUNCTIONS) and self._function_at(inner) is None:
                 self._add(inner, owner)
         return function
-
-    def _known(self, node: ast.AST) -> bool:
-        return any(function.node is node for function in self.functions)
 
     def _type(self, expression: ast.expr, function: Function) -> TypedValue | None:
         if isinstance(expression, ast.Name):
@@ -154,13 +158,13 @@ class ProgramTypes:
             return known
         if is_self(item.value) and function.owner is not None:
             places = self._attributes.get((function.owner.name, item.attr))
-            makers = [(value, self._method_of(node)) for value, node in places or ()]
+            makers = [(value, self._function_at(node)) for value, node in places or ()]
             kinds = {self._type(value, maker) if value and maker else None for value, maker in makers}
             return kinds.pop() if len(kinds) == 1 else None
         base = self._type(item.value, function)
         return _part_of(base, item.attr) if base else None
 
-    def _method_of(self, node: ast.AST) -> Function | None:
+    def _function_at(self, node: ast.AST) -> Function | None:
         return next((function for function in self.functions if function.node is node), None)
 
     def _call(self, call: ast.Call, function: Function) -> TypedValue | None:
@@ -170,8 +174,7 @@ class ProgramTypes:
             return replace(of, role=_CLIENTS[name]) if of else None
         if name in _ANSWERS and isinstance(call.func, ast.Attribute):
             return _answer(self._type(call.func.value, function), name)
-        of = self.class_of(call.func, function)
-        return replace(of, role="value") if of and (of.part or "/msg/" in of.interface) else None
+        return _instance(self.class_of(call.func, function))
 
     # --- callbacks
 
@@ -179,7 +182,7 @@ class ProgramTypes:
         """Give the parameters of functions their annotations' types, or those that rclpy calls them with."""
         types_of: dict[int, list[list[TypedValue | None]]] = {}
         for function in list(self.functions):
-            for call in (item for item in function.own_nodes if isinstance(item, ast.Call)):
+            for call in function.calls:
                 for callback, types in _registered(call, functools.partial(self._type, function=function)):
                     if isinstance(callback, ast.Call) and last_name(callback.func) == "partial" and callback.args:
                         types = [*([None] * (len(callback.args) - 1)), *types]
@@ -194,17 +197,14 @@ class ProgramTypes:
     def _annotate(self, function: Function, calls: list[list[TypedValue | None]]) -> None:
         assert isinstance(function.node, _FUNCTIONS)
         decorated = bool(getattr(function.node, "decorator_list", []))
-        same = len({tuple(types) for types in calls}) == 1 and not decorated and not self._is_called(function)
+        # A program that calls its callback itself may do so with something else.
+        is_called = getattr(function.node, "name", "") in self._called
+        same = len({tuple(types) for types in calls}) == 1 and not decorated and not is_called
         types = dict(zip(function.arguments, calls[0], strict=False)) if same else {}
         for argument in function.node.args.args:
             annotation = argument.annotation
             of = self.class_of(annotation, function) if isinstance(annotation, ast.Name | ast.Attribute) else None
-            annotated = replace(of, role="value") if of and (of.part or "/msg/" in of.interface) else None
-            function.parameters[argument.arg] = annotated or types.get(argument.arg)
-
-    def _is_called(self, function: Function) -> bool:
-        """Return whether the program calls a callback itself: maybe with something else."""
-        return getattr(function.node, "name", "") in self._called
+            function.parameters[argument.arg] = _instance(of) or types.get(argument.arg)
 
     def function_of(self, callback: ast.expr, function: Function) -> Function | None:
         """Return the function that an expression names: `self.on_message`, `on_message`, or a lambda."""
@@ -218,6 +218,11 @@ class ProgramTypes:
             if is_own and item.owner is not None and item.owner is function.owner and name == last_name(callback):
                 return item
         return None
+
+
+def _instance(of: TypedValue | None) -> TypedValue | None:
+    """Return what calling a class makes; None if it is not the class of a message, or of a part."""
+    return replace(of, role="value") if of and (of.part or "/msg/" in of.interface) else None
 
 
 def _is_parameter(name: str, function: Function) -> bool:
@@ -245,15 +250,15 @@ def _registered(
     call: ast.Call, type_of: Callable[[ast.expr], TypedValue | None]
 ) -> Iterator[tuple[ast.expr, list[TypedValue | None]]]:
     """Yield each callback that a call hands over, with the types of its parameters."""
-    named = {keyword.arg: keyword.value for keyword in call.keywords}
-    place = _PLACES.get(last_name(call.func)) if last_name(call.func) not in _CLIENTS else None
-    if last_name(call.func) == "send_goal_async" and isinstance(call.func, ast.Attribute):
+    named, name = keywords_of(call), last_name(call.func)
+    place = _PLACES.get(name) if name not in _CLIENTS else None
+    if name == "send_goal_async" and isinstance(call.func, ast.Attribute):
         client = type_of(call.func.value)
         callback = named.get("feedback_callback", call.args[1] if len(call.args) > 1 else None)
         if client and client.role == "action_client" and callback:
             yield callback, [TypedValue("feedback", client.interface)]
     future = type_of(call.func.value) if isinstance(call.func, ast.Attribute) and call.args else None
-    if last_name(call.func) == "add_done_callback" and future and future.role == "future":
+    if name == "add_done_callback" and future and future.role == "future":
         yield call.args[0], [future]
     interface = interface_argument(call)
     if place is None or interface is None:
@@ -266,19 +271,19 @@ def _registered(
         return
     handle = TypedValue("goal_handle", of.interface)
     types: list[TypedValue | None] = [handle] if place else [replace(of, role="value")]
-    if last_name(call.func) == "create_service":
+    if name == "create_service":
         types = [replace(of, role="value", part=part) for part in ("Request", "Response")]
     if callback is not None:
         yield callback, types
     others = {"goal_callback": replace(of, role="value", part="Goal"), "cancel_callback": handle}
-    for name, kind in {**others, "handle_accepted_callback": handle}.items():
-        if place and name in named:
-            yield named[name], [kind]
+    for key, kind in {**others, "handle_accepted_callback": handle}.items():
+        if place and key in named:
+            yield named[key], [kind]
 
 
 def callback_argument(call: ast.Call) -> ast.expr | None:
     """Return the callback that a call registers for messages, requests or goals; None if it names none."""
-    named = {keyword.arg: keyword.value for keyword in call.keywords}
+    named = keywords_of(call)
     place = _PLACES[last_name(call.func)] + 2
     callback = named.get("callback", named.get("execute_callback"))
     return callback or (call.args[place] if len(call.args) > place else None)

@@ -8,19 +8,18 @@ of callbacks.
 from __future__ import annotations
 
 import ast
-import difflib
 from collections.abc import Iterator, Mapping
 
+from groundwork.words import similar
 from spinbook.chapter.callback_answers import missing_answers
 from spinbook.chapter.interface_fields import FieldType, InterfaceFields, WrongField
-from spinbook.chapter.syntax import descendants, syntax_tree
+from spinbook.chapter.syntax import descendants, parsed
 from spinbook.chapter.variable_types import Function, ProgramTypes, TypedValue
 
 #: What every message has besides its fields.
 _ALWAYS = frozenset(dir(object)) | {"get_fields_and_field_types", "SLOT_TYPES"}
 _IN_WORDS = {bool: "a bool", int: "an integer", float: "a float", str: "a string", bytes: "bytes"}
 _IN_WORDS |= {list: "a list", tuple: "a tuple"}
-_LISTS = frozenset({list, tuple})
 #: No message lists more names than this.
 _MANY = 20
 _WHOLE = ("int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64")
@@ -28,11 +27,8 @@ _WHOLE = ("int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint6
 
 def wrong_fields(program: str) -> list[WrongField]:
     """Return what is wrong with the messages that a program makes, reads and answers; none if it is not Python."""
-    try:
-        tree = syntax_tree(program)
-    except (SyntaxError, ValueError, RecursionError):
-        return []
-    if "_msgs" not in program and "_srvs" not in program and "_interfaces" not in program and ".msg" not in program:
+    tree = parsed(program)
+    if tree is None or not any(mark in program for mark in ("_msgs", "_srvs", "_interfaces", ".msg")):
         return []
     if any(isinstance(i, ast.ExceptHandler) and "AttributeError" in ast.dump(i) for i in descendants(tree)):
         return []
@@ -95,9 +91,10 @@ def missing_field(name: str, known: InterfaceFields, line: int) -> WrongField:
     is_constant = name.isupper() and bool(known.constants)
     kind, there = ("constant", sorted(known.constants)) if is_constant else ("field", list(known.fields))
     names = {each.lower(): each for each in (*known.constants, *known.fields)}
-    close = difflib.get_close_matches(name.lower(), names, n=1, cutoff=0.5) or list(names) * (len(names) == 1)
+    # The only name that there is was meant, however it is spelled.
+    close = similar(name.lower(), names, 0.5) or "".join(list(names) * (len(names) == 1))
     listed = ", ".join(f"`{each}`" for each in there[:_MANY]) + " …" * (len(there) > _MANY) or "none"
-    fix = f"Did you mean `{names[close[0]]}`? " if close else ""
+    fix = f"Did you mean `{names[close]}`? " if close else ""
     return WrongField(line, f"`{known.name}` has no {kind} `{name}`.", f"{fix}Its {kind}s: {listed}.")
 
 
@@ -133,8 +130,7 @@ def wrong_literal(name: str, kind: FieldType, value: object, owner: str, line: i
 
 def _whole(name: str, kind: FieldType, value: object, owner: str, line: int) -> Iterator[WrongField]:
     """Yield that a list or a message field can't hold a value, if so."""
-    is_list = type(value) in _LISTS
-    if kind.is_list and (is_list or type(value) is bytes):
+    if kind.is_list and type(value) in {list, tuple, bytes}:
         return
     class_name = kind.base.rpartition("/")[2]
     what = "a list" if kind.is_list else f"a {class_name}"

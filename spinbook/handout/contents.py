@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
-import shutil
 import subprocess
 import time
 from collections.abc import Iterator
@@ -15,12 +15,12 @@ from pathlib import Path
 import click
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load
 from grader.wheels import middleware_wheel
 from grader.workers.jobs import ListJob
 from grader.workers.pool import HostFault, WorkerPool
-from groundwork.files import write_if_changed
+from groundwork.files import from_here, write_folder, write_if_changed
 from groundwork.problem import Problem
 from interface_compiler.wheel_file import EARLIEST, zipped
 from spinbook import __version__
@@ -105,13 +105,11 @@ def guide_files(
 
 def _pins(distro: str) -> list[str]:
     """Return the versions of ROS 2's wheels that are installed here; none if ROS 2 was sourced."""
-    found = []
+    pins = []
     for name in (pattern.format(distro=distro) for pattern in _PINNED):
-        try:
-            found.append(f"{name}=={metadata.version(name)}")
-        except metadata.PackageNotFoundError:
-            continue
-    return found
+        with contextlib.suppress(metadata.PackageNotFoundError):
+            pins.append(f"{name}=={metadata.version(name)}")
+    return pins
 
 
 @dataclass(frozen=True)
@@ -126,24 +124,21 @@ class Handout:
 def handout(course: Course) -> Handout:
     """Return the course's handout: notebooks, exercises without what is hidden, and the files that install.
 
-    Raises SpinbookError if a chapter or an exercise has an error, or if a secret would be handed out.
+    Raises AuthorError if a chapter or an exercise has an error, or if a secret would be handed out.
     """
     # First: exercises may use the course's own messages.
     compile_course(course)
     notebooks = _notebooks(course)
     files = dict(notebooks)
-    exercises = [_load(course, name) for name in _used(course, notebooks)]
+    exercises = [load(course.root / "exercises" / name) for name in _used(course, notebooks)]
     listings = []
     with WorkerPool() as workers:
         for exercise in exercises:
-            try:
-                copy = exercise_files(exercise, workers)
-                listings.append(_listing(exercise, workers))
-            except ExerciseError as error:
-                raise SpinbookError(error.problem) from None
+            copy = exercise_files(exercise, workers)
+            listings.append(_listing(exercise, workers))
             files |= {f"exercises/{exercise.name}/{name}": content for name, content in copy.items()}
     taught = "\n".join([*_nodes(notebooks), authors_code(files)])
-    every = [_load(course, name) for name in sorted(course.exercises)]
+    every = [load(course.root / "exercises" / name) for name in sorted(course.exercises)]
     known, names = secrets_of_all(every, taught)
     _prove(files, known + names)
     name, content = spinbook_wheel()
@@ -187,13 +182,6 @@ def _used(course: Course, notebooks: dict[str, bytes]) -> list[str]:
     return sorted((name for name, place in places.items() if place >= 0), key=lambda name: places[name])
 
 
-def _load(course: Course, name: str) -> Exercise:
-    try:
-        return load(course.root / "exercises" / name)
-    except ExerciseError as error:
-        raise SpinbookError(error.problem) from None
-
-
 def _listing(exercise: Exercise, workers: WorkerPool) -> Listing:
     checks = workers.do(ListJob(exercise))
     hidden = sum(check.hidden for check in checks)
@@ -207,11 +195,10 @@ def _prove(files: dict[str, bytes], known: list[Secret]) -> None:
         "that they may see belongs before # BEGIN SOLUTION. "
         "Exercises that are in no chapter count, too."
     )
-    folder = Path("build", "handout")
     problems = []
     for leak in located(files, known):
-        place = f" ({leak.at})" if leak.at else ""
-        problems.append(Problem(folder / leak.file, leak.line, f"{leak.what} would be in it{place}.", fix))
+        place, file = f" ({leak.at})" if leak.at else "", Path("build", "handout", leak.file)
+        problems.append(Problem(file, leak.line, f"{leak.what} would be in it{place}.", fix))
     if problems:
         raise SpinbookError(*problems)
 
@@ -231,11 +218,11 @@ def command(start: Path) -> None:
     try:
         made = handout(course)
     except HostFault as error:
-        found = f"a solution could not be run because of a fault of this machine: {error}"
-        raise SpinbookError(Problem(course.root, None, found, "Try again.")) from None
+        problem = f"a solution could not be run because of a fault of this machine: {error}"
+        raise SpinbookError(Problem(course.root, None, problem, "Try again.")) from None
     folder = course.build_folder / "handout" / made.slug
     archive = folder.with_suffix(".zip")
-    _write(folder, made)
+    write_folder(folder, made.files)
     inside = {f"{made.slug}/{name}": content for name, content in made.files.items()}
     write_if_changed(archive, zipped(inside, date=_date(course)))
     for exercise in made.exercises:
@@ -243,7 +230,7 @@ def command(start: Path) -> None:
             f"  {exercise.name}: {exercise.public} checks that students can run, {exercise.hidden} that stay hidden"
         )
     click.echo(f"{len(made.files)} files, no solution and no hidden check among them.")
-    click.echo(f"Folder: {_shown(folder)}/\nZip:    {_shown(archive)} ({archive.stat().st_size / 1e6:.1f} MB)")
+    click.echo(f"Folder: {from_here(folder)}/\nZip:    {from_here(archive)} ({archive.stat().st_size / 1e6:.1f} MB)")
 
 
 def _date(course: Course) -> tuple[int, ...]:
@@ -254,18 +241,3 @@ def _date(course: Course) -> tuple[int, ...]:
     except OSError:
         commit = ""
     return max(time.gmtime(int(commit or 0))[:6], EARLIEST)
-
-
-def _write(folder: Path, made: Handout) -> None:
-    """Make the folder hold these files and no others."""
-    for file in sorted(folder.rglob("*"), reverse=True):
-        if file.is_file() and file.relative_to(folder).as_posix() not in made.files:
-            file.unlink()
-        elif file.is_dir() and not any(file.iterdir()):
-            shutil.rmtree(file)
-    for name, content in made.files.items():
-        write_if_changed(folder / name, content)
-
-
-def _shown(path: Path) -> Path:
-    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path

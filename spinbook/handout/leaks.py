@@ -10,10 +10,9 @@ import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.exercise import Exercise
 from grader.exercise.mistakes import EDITS, mistakes_of
 from grader.exercise.starter import hidden_blocks, starter
-from spinbook.problem import SpinbookError
 
 #: A line with this many characters, without spaces, is no coincidence; neither are this many lines with this many.
 _ONE_LINE = 40
@@ -52,28 +51,26 @@ def secrets(exercise: Exercise, taught: str, others: str = "") -> list[Secret]:
     `public_code`: what appears there, too, reveals nothing about this one.
     """
     public = exercise.folder / "checks.py"
-    message = taught + others + (public.read_text(encoding="utf-8") if public.exists() else "")
-    found = []
+    public_text = taught + others + (public.read_text(encoding="utf-8") if public.exists() else "")
+    secret = []
     elsewhere = bare(others)
     if exercise.solution_file:
         source = exercise.solution_file.read_text(encoding="utf-8")
-        message += starter(source)
+        public_text += starter(source)
         title = f"a part of the solution of {exercise.name}"
         place = f"solutions/{exercise.name}/solution.py"
-        known = bare(message)
+        known = bare(public_text)
         for lines in _solved(source):
-            found += _pieces(title, place, lines, known)
-            windows = [secret for secret in _windows(title, place, lines) if secret.text not in elsewhere]
-            found += [replace(secret, is_solution=True) for secret in windows]
-    known = bare(message)
-    found += [secret for secret in _other_programs(exercise) if secret.text not in known]
+            secret += _pieces(title, place, lines, known)
+            windows = [part for part in _windows(title, place, lines) if part.text not in elsewhere]
+            secret += [replace(part, is_solution=True) for part in windows]
+    known = bare(public_text)
+    secret += [part for part in _other_programs(exercise) if part.text not in known]
     for file in sorted(exercise.folder.glob("*.py")):
         if file != public:
-            place = f"exercises/{exercise.name}/{file.name}"
-            found += _pieces(
-                f"a line of {file.name} of {exercise.name}", place, _lines(file.read_text(encoding="utf-8")), known
-            )
-    return found + [secret for secret in _hidden_titles(exercise) if secret.text not in elsewhere]
+            title, place = f"a line of {file.name} of {exercise.name}", f"exercises/{exercise.name}/{file.name}"
+            secret += _pieces(title, place, _lines(file.read_text(encoding="utf-8")), known)
+    return secret + [part for part in _hidden_titles(exercise) if part.text not in elsewhere]
 
 
 def hidden_names(exercise: Exercise, others: str = "") -> list[Secret]:
@@ -88,15 +85,12 @@ def hidden_names(exercise: Exercise, others: str = "") -> list[Secret]:
 def secrets_of_all(exercises: Sequence[Exercise], taught: str) -> tuple[list[Secret], list[Secret]]:
     """Return what is secret of a course's exercises, and the names of their hidden checks.
 
-    Raises SpinbookError if the mistakes of one can't be read.
+    Raises ExerciseError if the mistakes of one can't be read.
     """
     texts, names = [], []
     for exercise in exercises:
         others = "\n".join(public_code(other) for other in exercises if other is not exercise)
-        try:
-            texts += secrets(exercise, taught, others)
-        except ExerciseError as error:
-            raise SpinbookError(error.problem) from None
+        texts += secrets(exercise, taught, others)
         names += hidden_names(exercise, others)
     return texts, names
 
@@ -206,8 +200,7 @@ class Leak:
 
 def leaks(files: Mapping[str, bytes], known: list[Secret]) -> Iterator[tuple[str, str]]:
     """Yield (file, what it is) for each file and each secret in it: see `located`."""
-    for leak in located(files, known):
-        yield leak.file, leak.what
+    return ((leak.file, leak.what) for leak in located(files, known))
 
 
 def located(files: Mapping[str, bytes], known: list[Secret]) -> Iterator[Leak]:
@@ -215,7 +208,7 @@ def located(files: Mapping[str, bytes], known: list[Secret]) -> Iterator[Leak]:
 
     All of a notebook is searched: cells, outputs, attachments, and metadata of the whole and of each cell.
     """
-    yield from _located(files, _Search(known))
+    return _located(files, _Search(known))
 
 
 class _Search:

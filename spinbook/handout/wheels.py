@@ -8,25 +8,20 @@ import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from grader.gradescope.own_wheel import NoWheel, as_wheel, wheel_contents
+from grader.gradescope.own_wheel import as_wheel, wheel_contents
 from interface_compiler import prefixes, shipped
 from interface_compiler.checks import dependencies
 from interface_compiler.wheel import wheel
 from spinbook.course.course import Course
 from spinbook.interfaces.definitions import FOLDER, collect, compile_course
-from spinbook.problem import SpinbookError
 
 #: The templates of `spinbook new` contain solutions and hidden checks; courses may still use them.
 FOR_AUTHORS = ("spinbook/new/template/", "spinbook/new/kinds/")
 
 
 def spinbook_wheel() -> tuple[str, bytes]:
-    """Return the wheel's file name and content. Raises SpinbookError if it can't be made."""
-    try:
-        files = wheel_contents()
-    except NoWheel as error:
-        raise SpinbookError(error.problem) from None
-    kept = {name: content for name, content in files.items() if not name.startswith(FOR_AUTHORS)}
+    """Return the wheel's file name and content. Raises NoWheel if it can't be made."""
+    kept = {name: content for name, content in wheel_contents().items() if not name.startswith(FOR_AUTHORS)}
     # Without the project's README below its header, which has examples from a course in it.
     described = next(name for name in kept if name.endswith(".dist-info/METADATA"))
     kept[described] = kept[described].partition(b"\n\n")[0] + b"\n"
@@ -48,9 +43,9 @@ def interface_wheels(course: Course, texts: Iterable[bytes], environment: Path =
     """
     own = platform.machine()
     others = (path for path in sorted((course.root / OTHERS).glob("*.whl")) if not path.stem.endswith(f"_{own}"))
-    found = {path.name: path.read_bytes() for path in others}
-    found.update(wheel(package, prefix) for package, prefix in _packages(course, b"".join(texts), environment))
-    return found
+    wheels = {path.name: path.read_bytes() for path in others}
+    wheels.update(wheel(package, prefix) for package, prefix in _packages(course, b"".join(texts), environment))
+    return wheels
 
 
 def package_of(wheel: str) -> str:

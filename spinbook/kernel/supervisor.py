@@ -28,6 +28,11 @@ def _prctl(option: int, value: int) -> None:
     ctypes.CDLL(None, use_errno=True).prctl(option, value, 0, 0, 0)
 
 
+def die_with_parent() -> None:
+    """Let this process be killed when the one that started it ends."""
+    _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
 class ProcessOutput:
     """The output of a process: its first and last bytes, and how many were dropped between them."""
 
@@ -133,8 +138,8 @@ class Supervisor:
             self._stop(*request["stop"])
 
     def _start(self, argv: list[str], env: dict[str, str], cwd: str) -> None:
-        def die_with_supervisor() -> None:
-            _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+        def prepare() -> None:
+            die_with_parent()
             signal.signal(signal.SIGINT, signal.default_int_handler)
 
         try:
@@ -146,7 +151,7 @@ class Supervisor:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
-                preexec_fn=die_with_supervisor,
+                preexec_fn=prepare,
             )
         except OSError as error:
             self._printed.add(f"{argv[0]}: {error.strerror}\n".encode())

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
+from groundwork.files import from_here
 from spinbook.course.course import find_course
 from spinbook.new.kind import ExerciseKind
 from spinbook.new.templates import (
@@ -23,7 +23,6 @@ from spinbook.new.templates import (
     write_exercise,
     write_solution,
 )
-from spinbook.problem import SpinbookError
 
 _COURSE = """\
 Made the course "{title}" in {folder}. It works as it is. Go on with:
@@ -117,23 +116,11 @@ def _new_exercise(exercise: str, kind: ExerciseKind, title: str | None) -> None:
     write_exercise(root, name, title, kind)
     folder = root / "solutions" / name
     right = ", ".join(sorted(file.name for file in (folder / "right").glob("*.py")))
-    path = _shown(folder / "solution.py")
+    path = from_here(folder / "solution.py")
     click.echo(_EXERCISE.format(title=title, kind=kind.name, name=name, right=right, path=path))
 
 
 def _new_solution(name: str) -> None:
     root = find_course(Path.cwd()).root
-    exercise = _exercise(root / "exercises" / name)
-    click.echo(_SOLUTION.format(name=name, path=_shown(write_solution(root, exercise))))
-
-
-def _exercise(folder: Path) -> Exercise:
-    try:
-        return load(folder)
-    except ExerciseError as error:
-        raise SpinbookError(error.problem) from None
-
-
-def _shown(file: Path) -> Path:
-    """Return the path relative to the author's current folder, if the file is below it."""
-    return file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file
+    exercise = load(root / "exercises" / name)
+    click.echo(_SOLUTION.format(name=name, path=from_here(write_solution(root, exercise))))

@@ -8,9 +8,8 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from groundwork.files import write_if_changed
+from groundwork.files import json_object, write_folder, write_if_changed
 from groundwork.problem import Problem
 from spinbook.browser.files import pyodide_folder
 from spinbook.build.digest import code_digest, digest, files_digest, versions
@@ -38,7 +37,7 @@ _CODE = ("site", "browser", "chapter", "build", "chapters.py", "course", "kernel
 
 def unchanged_site(course: Course, *, as_it_ran: bool) -> Site | None:
     """Return the site as it was built before; None if something that it depends on has changed since."""
-    before = _read(_record(course))
+    before = json_object(_record(course))
     folder = course.build_folder / "site"
     if before.get("key") != _key(course, as_it_ran=as_it_ran) or not (folder / f"{names.HOME}.html").exists():
         return None
@@ -48,12 +47,12 @@ def unchanged_site(course: Course, *, as_it_ran: bool) -> Site | None:
 def build_site(course: Course, on_page: Callable[[str], None], *, as_it_ran: bool) -> Site:
     """Build `build/site` from the chapters, the executed notebooks and the exercises; `on_page` gets each page's name.
 
-    `as_it_ran` says that the outputs may be older than the chapters. Raises SpinbookError with what an author has to
+    `as_it_ran` says that the outputs may be older than the chapters. Raises AuthorError with what an author has to
     fix; the site of the last successful build is then unchanged.
     """
     started = time.monotonic()
     record, folder = _record(course), course.build_folder / "site"
-    before, key = _read(record), _key(course, as_it_ran=as_it_ran)
+    before, key = json_object(record), _key(course, as_it_ran=as_it_ran)
     # Sphinx takes a second to import, so an unchanged site does without it.
     from spinbook.site.contents import read_contents
     from spinbook.site.sphinx_build import prove_nothing_leaks, publish, run_sphinx, stage
@@ -75,7 +74,7 @@ def build_site(course: Course, on_page: Callable[[str], None], *, as_it_ran: boo
     html, problems = run_sphinx(contents, source, cache, course, note_page)
     pages = [*(page.name for page in contents.pages), *names.own_pages(course.site)]
     publish(html, pages, contents.files, folder, course.site)
-    _write_branch(contents.branch, course.build_folder / "launch")
+    write_folder(course.build_folder / "launch", contents.branch)
     write_if_changed(record, json.dumps({"key": key, "code": code, "pages": len(pages)}))
     problems = [*contents.problems, *problems]
     return Site(folder, len(pages), tuple(made), tuple(problems), time.monotonic() - started, fresh=True)
@@ -101,21 +100,5 @@ def _key(course: Course, *, as_it_ran: bool) -> str:
 
 def _shown(course: Course) -> list[str]:
     """Return the files that the chapters included or showed when their notebooks were built."""
-    record = _read(course.build_folder / ".cache" / "notebooks.json")
+    record = json_object(course.build_folder / ".cache" / "notebooks.json")
     return sorted({file for entry in record.values() for file in entry.get("uses", [])})
-
-
-def _read(record: Path) -> dict[str, Any]:
-    try:
-        data = json.loads(record.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return data if isinstance(data, dict) else {}
-
-
-def _write_branch(files: dict[str, str], folder: Path) -> None:
-    for path, text in files.items():
-        write_if_changed(folder / path, text)
-    for file in folder.rglob("*"):
-        if file.is_file() and file.relative_to(folder).as_posix() not in files:
-            file.unlink()

@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from grader.exercise.exercise import Exercise
 from spinbook.build.failures import node_errors
 from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.classify import CellKind
@@ -51,20 +52,11 @@ def _anchor(cell: ChapterCell) -> str:
     return f"wrong-{cell.id}"
 
 
-@dataclass(frozen=True)
-class ExerciseCard:
-    """What a chapter's page says about an exercise, whose task is on a page of its own."""
-
-    name: str
-    title: str
-    points: float
-
-
 def chapter_notebook(
     chapter: Chapter,
     ran: ExecutedNotebook,
     prose: Mapping[str, str],
-    exercises: Mapping[str, ExerciseCard],
+    exercises: Mapping[str, Exercise],
     repository: Repository,
     downloads: Mapping[str, str],
     graph: str = "",
@@ -106,7 +98,8 @@ def _prose(cell: ChapterCell, text: str) -> dict[str, Any]:
     return {"cell_type": "markdown", "id": cell.id, "metadata": {"spinbook": {"line": cell.line}}, "source": text}
 
 
-def _card(exercise: ExerciseCard) -> str:
+def _card(exercise: Exercise) -> str:
+    """Return what a chapter's page says about an exercise, whose task is on a page of its own."""
     target = f"../{exercise_page(exercise.name)}.html"
     return (
         f'<div class="exercise-card"><p class="exercise-card-kind">Exercise · {exercise.points:g} points</p>'
@@ -149,8 +142,8 @@ def _code(cell: ChapterCell, ran: ExecutedNotebook, source_link: str, download: 
 
 def _after(cell: ChapterCell) -> str:
     """Return what a node that is shown in pieces runs with, in words."""
-    with_what = [*cell.after] or (["the usual imports"] if cell.before else [])
-    return f"runs with {', '.join(with_what)}" if with_what else ""
+    names = [*cell.after] or (["the usual imports"] if cell.before else [])
+    return f"runs with {', '.join(names)}" if names else ""
 
 
 def _run(cell: ChapterCell) -> dict[str, Any]:
@@ -169,9 +162,7 @@ def _published(output: dict[str, Any]) -> dict[str, Any]:
         return output
     if is_robot(output):
         return {**output, "data": {"text/html": robot_html(output, "../")}, "metadata": {}}
-    data = dict(output["data"])
-    for kind in [kind for kind in data if kind not in _SHOWN]:
-        del data[kind]
+    data = {kind: content for kind, content in output["data"].items() if kind in _SHOWN}
     if "image/svg+xml" in data:
         data.pop("image/png", None)
     if "image/png" in data:
@@ -214,8 +205,7 @@ def alternative(output: Mapping[str, Any], cell: ChapterCell) -> str:
     for about in output.get("metadata", {}).values():
         if isinstance(about, dict) and about.get("alt"):
             return str(about["alt"])
-    plain = output["data"].get("text/plain", "")
-    plain = "".join(plain)
+    plain = "".join(output["data"].get("text/plain", ""))
     if plain and not plain.startswith("<"):
         return plain
     return f"What {cell.source.strip().splitlines()[0]} draws"

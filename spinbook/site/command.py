@@ -17,8 +17,8 @@ from typing import Any
 import click
 from rich.console import Console
 
+from groundwork.problem import AuthorError
 from spinbook.course.course import FILE, Course, find_course
-from spinbook.problem import SpinbookError
 from spinbook.site.build import Site, build_site, unchanged_site
 
 
@@ -55,23 +55,21 @@ def site(start: Path, no_run: bool, strict: bool, serve: bool, port: int) -> Non
     if before is not None:
         _report(console, before)
         return
-    if not _up_to_date(course, console, strict, run=not no_run):
+    # Imported here, as an unchanged site needs no notebooks.
+    from spinbook.site.notebooks import bring_up_to_date
+
+    if not bring_up_to_date(course, console, is_strict=strict, run=not no_run):
         console.print("The site was not built. Fix the errors above first.", style="red")
         sys.exit(1)
     try:
         with console.status("Making the pages …") as status:
             built = build_site(course, lambda page: status.update(f"Making the pages: {page}"), as_it_ran=no_run)
-    except SpinbookError as error:
-        console.print(str(error), markup=False, style="red")
+    except AuthorError as error:
+        for problem in error.problems:
+            console.print(str(problem), markup=False, style="red")
         console.print("The site was not built.")
         sys.exit(1)
     _report(console, built)
-
-
-def _up_to_date(course: Course, console: Console, strict: bool, *, run: bool) -> bool:
-    from spinbook.site.notebooks import bring_up_to_date
-
-    return bring_up_to_date(course, console, is_strict=strict, run=run)
 
 
 def _report(console: Console, built: Site) -> None:

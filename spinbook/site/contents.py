@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,7 @@ from spinbook.course.course import Course
 from spinbook.handout.wheels import interface_wheels, package_of
 from spinbook.problem import SpinbookError
 from spinbook.site import page as names
-from spinbook.site.chapter_page import ExecutedNotebook, ExerciseCard, as_text, chapter_notebook, stills, wrong_cells
+from spinbook.site.chapter_page import ExecutedNotebook, as_text, chapter_notebook, stills, wrong_cells
 from spinbook.site.drawings import DrawingError, Picture, draw, drawing_files, drawing_html
 from spinbook.site.exercise_page import exercise_markdown, public_checks
 from spinbook.site.graph_section import node_graph_excerpt, node_graph_of, node_graph_section
@@ -86,44 +86,12 @@ class _Drawings:
 
 
 def read_contents(course: Course) -> SiteContents:
-    """Read everything that the site shows. Raises SpinbookError if a chapter or an exercise can't be shown."""
+    """Read everything that the site shows. Raises AuthorError if a chapter or an exercise can't be shown."""
     chapters = _chapters(course)
     exercises = _exercises(course, chapters)
     repository = repository_of(course.root, course.repository)
-    contents = SiteContents()
     links = Links(_pages_of_files(course, exercises), repository, anchors=_anchors(course))
-    drawings = _drawn(course, chapters, exercises, links, contents)
-    _glossary(course, contents)
-    first = chapters[0].name
-    contents.pages.append(_home(course, chapters, exercises, repository, drawings, contents))
-    for chapter in chapters:
-        contents.pages.append(_chapter(course, chapter, exercises, links, drawings, contents))
-        for cell in chapter.cells:
-            if cell.kind is CellKind.EXERCISE and names.exercise_page(cell.name or "") not in contents.origins:
-                page = _exercise(exercises[cell.name or ""], chapter, links, drawings, contents)
-                contents.pages.append(page)
-    contents.pages += _closing_pages(course, repository, first, contents)
-    copies = _copies(exercises)
-    contents.copies |= {name: content for files in copies.values() for name, content in files.items()}
-    _notebooks(course, chapters, copies, repository, contents)
-    for code, picture in drawings.pictures.items():
-        if picture is not None:
-            contents.files |= drawing_files(code, picture)
-    contents.pictures |= links.pictures
-    contents.files |= links.pictures
-    contents.files[SCRIPT] = script()
-    if can_run():
-        contents.files |= run_files(contents.copies)
-    contents.files |= address_files(course.site, course.title, contents.pages)
-    return contents
-
-
-def _copies(exercises: Mapping[str, Exercise]) -> dict[str, dict[str, bytes]]:
-    """Return the files that a check needs, by exercise and path."""
-    try:
-        return {name: public_parts([exercise]) for name, exercise in exercises.items()}
-    except ExerciseError as error:
-        raise SpinbookError(error.problem) from None
+    return _Collector(course, chapters, exercises, repository, links).collected()
 
 
 def _chapters(course: Course) -> list[Chapter]:
@@ -136,14 +104,13 @@ def _chapters(course: Course) -> list[Chapter]:
 
 def _exercises(course: Course, chapters: list[Chapter]) -> dict[str, Exercise]:
     exercises: dict[str, Exercise] = {}
-    for chapter in chapters:
-        for cell in chapter.cells:
-            if cell.kind is CellKind.EXERCISE and cell.name:
-                try:
-                    exercises[cell.name] = load(course.root / "exercises" / cell.name)
-                except ExerciseError as error:
-                    fix = "Fix the exercise, or remove it from the chapter."
-                    raise SpinbookError(Problem(chapter.file, cell.line, str(error), fix)) from None
+    for file, cell in ((chapter.file, cell) for chapter in chapters for cell in chapter.exercises):
+        name = cell.name or ""
+        try:
+            exercises[name] = load(course.root / "exercises" / name)
+        except ExerciseError as error:
+            fix = "Fix the exercise, or remove it from the chapter."
+            raise SpinbookError(Problem(file, cell.line, str(error), fix)) from None
     return exercises
 
 
@@ -162,205 +129,198 @@ def _anchors(course: Course) -> dict[tuple[str, str], str]:
     return {(file.as_posix(), heading.anchor): heading.slug for file, heading in headings}
 
 
-def _drawn(
-    course: Course,
-    chapters: list[Chapter],
-    exercises: Mapping[str, Exercise],
-    links: Links,
-    contents: SiteContents,
-) -> _Drawings:
-    drawings = _Drawings()
-    for text in [cell.source for c in chapters for cell in c.cells] + [e.task for e in exercises.values()]:
-        rich(text, links, "", "", drawings.note)
+def _ran(course: Course, chapter: Chapter) -> ExecutedNotebook:
     try:
-        drawings.pictures = draw(list(drawings.codes), course.build_folder / ".cache" / "drawings")
-    except DrawingError as error:
-        found = f"mermaid drawings are shown as text, because {error}."
-        fix = "Everything else is built. Fix this, then build the site again."
-        contents.problems.append(Problem(course.chapters[0], None, found, fix, Severity.WARNING))
-    return drawings
+        return ExecutedNotebook.read(course.build_folder / "executed" / f"{chapter.name}.ipynb")
+    except (OSError, ValueError, KeyError):
+        if not course.is_run(chapter.file):
+            return ExecutedNotebook({})
+        problem = "it has not run yet, so there are no outputs to show."
+        raise SpinbookError(Problem(chapter.file, None, problem, "Run it: spinbook build --execute")) from None
 
 
-def _chapter(
-    course: Course,
-    chapter: Chapter,
-    exercises: Mapping[str, Exercise],
-    links: Links,
-    drawings: _Drawings,
-    contents: SiteContents,
-) -> Page:
-    name = names.chapter_page(chapter.name)
-    ran = _ran(course, chapter)
-    folder = chapter.file.parent.as_posix()
-    prose = {
-        cell.id: rich(cell.source, links, folder, "chapters", drawings.html, chapter.references)
-        for cell in chapter.cells
-        if cell.kind is CellKind.PROSE
-    }
-    cards = {name: ExerciseCard(name, exercise.title, exercise.points) for name, exercise in exercises.items()}
-    downloads = _downloads(chapter, contents)
-    notebook = chapter_notebook(chapter, ran, prose, cards, links.repository, downloads, _graph(course, chapter))
-    contents.files |= stills(chapter, ran)
-    opening = chapter_opening(chapter, ran)
-    contents.files |= opening.files if opening else {}
-    contents.origins[name] = chapter.file
-    contents.lines[name] = [cell["metadata"]["spinbook"]["line"] for cell in notebook["cells"]]
-    contents.taught += [cell.source for cell in chapter.nodes]
-    source = links.repository.link(chapter.file, 1)
-    text = as_text(notebook)
-    runs = can_run()
-    return Page(
-        name,
-        chapter.title,
-        "chapter",
-        ".ipynb",
-        text,
-        source,
-        chapter.name,
-        summary=chapter.summary,
-        about={
+@dataclass
+class _Collector:
+    """Collects the pages and files of a site, in the order of the chapters."""
+
+    course: Course
+    chapters: list[Chapter]
+    exercises: Mapping[str, Exercise]
+    repository: Repository
+    links: Links
+    contents: SiteContents = field(default_factory=SiteContents)
+    drawings: _Drawings = field(default_factory=_Drawings)
+
+    def collected(self) -> SiteContents:
+        """Return the whole site."""
+        contents = self.contents
+        self._draw()
+        self._read_terms()
+        contents.pages.append(self._home())
+        for chapter in self.chapters:
+            contents.pages.append(self._chapter(chapter))
+            for cell in chapter.exercises:
+                if names.exercise_page(cell.name or "") not in contents.origins:
+                    contents.pages.append(self._exercise(self.exercises[cell.name or ""], chapter))
+        contents.pages += self._closing_pages()
+        copies = {name: public_parts([exercise]) for name, exercise in self.exercises.items()}
+        contents.copies |= {name: content for files in copies.values() for name, content in files.items()}
+        self._add_notebooks(copies)
+        for code, picture in self.drawings.pictures.items():
+            contents.files |= drawing_files(code, picture) if picture else {}
+        contents.pictures |= self.links.pictures
+        contents.files |= self.links.pictures
+        contents.files[SCRIPT] = script()
+        if can_run():
+            contents.files |= run_files(contents.copies)
+        contents.files |= address_files(self.course.site, self.course.title, contents.pages)
+        return contents
+
+    def _draw(self) -> None:
+        texts = [cell.source for chapter in self.chapters for cell in chapter.cells]
+        for text in [*texts, *(exercise.task for exercise in self.exercises.values())]:
+            rich(text, self.links, "", "", self.drawings.note)
+        try:
+            cache = self.course.build_folder / ".cache" / "drawings"
+            self.drawings.pictures = draw(list(self.drawings.codes), cache)
+        except DrawingError as error:
+            problem = f"mermaid drawings are shown as text, because {error}."
+            fix = "Everything else is built. Fix this, then build the site again."
+            self.contents.problems.append(Problem(self.course.chapters[0], None, problem, fix, Severity.WARNING))
+
+    def _chapter(self, chapter: Chapter) -> Page:
+        name, contents = names.chapter_page(chapter.name), self.contents
+        ran, graph = _ran(self.course, chapter), node_graph_of(self.course, chapter)
+        folder = chapter.file.parent.as_posix()
+        prose = {
+            cell.id: rich(cell.source, self.links, folder, "chapters", self.drawings.html, chapter.references)
+            for cell in chapter.cells
+            if cell.kind is CellKind.PROSE
+        }
+        notebook = chapter_notebook(
+            chapter,
+            ran,
+            prose,
+            self.exercises,
+            self.repository,
+            self._downloads(chapter),
+            node_graph_section(graph) if graph else "",
+        )
+        contents.files |= stills(chapter, ran)
+        opening = chapter_opening(chapter, ran)
+        contents.files |= opening.files if opening else {}
+        contents.origins[name] = chapter.file
+        contents.lines[name] = [cell["metadata"]["spinbook"]["line"] for cell in notebook["cells"]]
+        contents.taught += [cell.source for cell in chapter.nodes]
+        about = {
             "facts": chapter_facts(chapter),
             "opening": opening.about if opening else {},
             "week": chapter.week,
             "minutes": section_minutes(chapter),
             "errors": wrong_cells(chapter, ran),
-        },
-        runs=runs,
-    )
+        }
+        text, source = as_text(notebook), self.repository.link(chapter.file, 1)
+        summary = chapter.summary
+        return Page(name, chapter.title, "chapter", ".ipynb", text, source, chapter.name, summary, about, can_run())
 
+    def _downloads(self, chapter: Chapter) -> dict[str, str]:
+        """Add the programs of a chapter's nodes to the site; return cell -> file. Programs may share a file name."""
+        paths: dict[str, str] = {}
+        for cell in (cell for cell in chapter.cells if cell.kind is CellKind.NODE):
+            code = cell.whole.rstrip("\n") + "\n"
+            path = f"{DOWNLOADS}/{cell.module}"
+            if self.contents.files.get(path, code) != code:
+                path = f"{DOWNLOADS}/{chapter.name}/{cell.id}/{cell.module}"
+            self.contents.files[path] = code
+            paths[cell.id] = path
+        return paths
 
-def _downloads(chapter: Chapter, contents: SiteContents) -> dict[str, str]:
-    """Add the programs of a chapter's nodes to the site; return cell -> file. Programs may share a file name."""
-    paths: dict[str, str] = {}
-    for cell in (cell for cell in chapter.cells if cell.kind is CellKind.NODE):
-        code = cell.whole.rstrip("\n") + "\n"
-        path = f"{DOWNLOADS}/{cell.module}"
-        if contents.files.get(path, code) != code:
-            path = f"{DOWNLOADS}/{chapter.name}/{cell.id}/{cell.module}"
-        contents.files[path] = code
-        paths[cell.id] = path
-    return paths
+    def _exercise(self, exercise: Exercise, chapter: Chapter) -> Page:
+        name = names.exercise_page(exercise.name)
+        folder = f"exercises/{exercise.name}"
+        task = rich(exercise.task, self.links, folder, "exercises", self.drawings.html)
+        begin = starter(exercise.solution_file.read_text(encoding="utf-8")) if exercise.solution_file else ""
+        checks = public_checks(exercise.folder / "checks.py")
+        if begin:
+            self.contents.files[f"{DOWNLOADS}/{exercise.file_name}"] = begin
+        self.contents.origins[name] = Path(folder, "task.md")
+        text = exercise_markdown(exercise, task, begin, checks, f"../{DOWNLOADS}/{exercise.file_name}")
+        about = {
+            "points": f"{exercise.points:g}",
+            "file": exercise.file_name,
+            "chapter": {"title": chapter.title, "page": names.chapter_page(chapter.name)},
+        }
+        notebook = names.exercise_notebook(exercise.name)
+        source = self.repository.link(Path(folder, "task.md"), 1)
+        summary = f"An exercise of the chapter {chapter.title}, worth {exercise.points:g} points."
+        return Page(name, exercise.title, "exercise", ".md", text, source, notebook, summary, about, can_run())
 
+    def _read_terms(self) -> None:
+        glossary = self.course.glossary
+        if glossary is None:
+            return
+        try:
+            self.contents.terms = terms_of((self.course.root / glossary).read_text(encoding="utf-8"))
+        except (OSError, UnicodeDecodeError) as error:
+            problem = f"the glossary can't be read: {error}."
+            raise SpinbookError(Problem(glossary, None, problem, "See `glossary` in course.toml.")) from None
+        self.contents.origins[names.GLOSSARY] = glossary
 
-def _ran(course: Course, chapter: Chapter) -> ExecutedNotebook:
-    file = course.build_folder / "executed" / f"{chapter.name}.ipynb"
-    try:
-        return ExecutedNotebook.read(file)
-    except (OSError, ValueError, KeyError):
-        if not course.is_run(chapter.file):
-            return ExecutedNotebook({})
-        found = "it has not run yet, so there are no outputs to show."
-        raise SpinbookError(Problem(chapter.file, None, found, "Run it: spinbook build --execute")) from None
+    def _closing_pages(self) -> Iterator[Page]:
+        course, first = self.course, self.chapters[0].name
+        if course.glossary is not None:
+            text = (course.root / course.glossary).read_text(encoding="utf-8")
+            links = Links(_pages_of_files(course, {}), self.repository, self.contents.pictures)
+            text = rich(text, links, course.glossary.parent.as_posix(), "", lambda code: "")
+            source = self.repository.link(course.glossary, 1)
+            summary = "The words of the course, each explained in a sentence or two."
+            yield Page(names.GLOSSARY, "Glossary", "glossary", ".md", text, source, first, summary)
+        middleware = os.environ.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp")
+        text = about_markdown(course, self.repository, middleware)
+        source = self.repository.link(Path("course.toml"))
+        summary = "What the course was built with, and how to run it yourself."
+        yield Page(names.ABOUT, "About this course", "about", ".md", text, source, first, summary)
 
+    def _home(self) -> Page:
+        runs = [(chapter, _ran(self.course, chapter)) for chapter in self.chapters]
+        graphs = [node_graph_of(self.course, chapter) for chapter in self.chapters]
+        pictures = home_pictures(runs)
+        self.contents.files |= {path: data for picture in pictures for path, data in picture.files.items()}
+        about = {
+            "chapters": home_chapters(runs, self.exercises),
+            "robot": home_robot(runs),
+            "graph": next((node_graph_excerpt(graph) for graph in graphs if graph), ""),
+            "drawing": home_drawing(self.drawings.pictures),
+            "pictures": [picture.about for picture in pictures],
+        }
+        title, first = self.course.title, self.chapters[0].name
+        source = self.repository.link(Path("course.toml"))
+        return Page(names.HOME, title, "home", ".md", f"# {title}\n", source, first, title, about)
 
-def _graph(course: Course, chapter: Chapter) -> str:
-    """Return the section with the picture of the nodes that ran with the chapter; "" if there were none."""
-    graph = node_graph_of(course, chapter)
-    return node_graph_section(graph) if graph else ""
+    def _add_notebooks(self, copies: Mapping[str, Mapping[str, bytes]]) -> None:
+        """Add the notebooks to download and to open elsewhere: they install what they need, and hold their exercises.
 
+        `copies` are the files that a check needs, by exercise and path.
+        """
+        spinbook = requirement(self.repository)
+        wheels = interface_wheels(self.course, self.contents.copies.values())
+        written: list[str] = []
 
-def _exercise(exercise: Exercise, chapter: Chapter, links: Links, drawings: _Drawings, contents: SiteContents) -> Page:
-    name = names.exercise_page(exercise.name)
-    folder = f"exercises/{exercise.name}"
-    task = rich(exercise.task, links, folder, "exercises", drawings.html)
-    begin = _starter_of(exercise)
-    checks = public_checks(exercise.folder / "checks.py")
-    if begin:
-        contents.files[f"{DOWNLOADS}/{exercise.file_name}"] = begin
-    contents.origins[name] = Path(folder, "task.md")
-    text = exercise_markdown(exercise, task, begin, checks, f"../{DOWNLOADS}/{exercise.file_name}")
-    about = {
-        "points": f"{exercise.points:g}",
-        "file": exercise.file_name,
-        "chapter": {"title": chapter.title, "page": names.chapter_page(chapter.name)},
-    }
-    notebook = names.exercise_notebook(exercise.name)
-    source = links.repository.link(Path(folder, "task.md"), 1)
-    summary = f"An exercise of the chapter {chapter.title}, worth {exercise.points:g} points."
-    return Page(name, exercise.title, "exercise", ".md", text, source, notebook, summary, about, can_run())
-
-
-def _starter_of(exercise: Exercise) -> str:
-    return starter(exercise.solution_file.read_text(encoding="utf-8")) if exercise.solution_file else ""
-
-
-def _glossary(course: Course, contents: SiteContents) -> None:
-    if course.glossary is None:
-        return
-    try:
-        text = (course.root / course.glossary).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        found = f"the glossary can't be read: {error}."
-        raise SpinbookError(Problem(course.glossary, None, found, "See `glossary` in course.toml.")) from None
-    contents.terms = terms_of(text)
-    contents.origins[names.GLOSSARY] = course.glossary
-
-
-def _closing_pages(course: Course, repository: Repository, first: str, contents: SiteContents) -> Iterator[Page]:
-    if course.glossary is not None:
-        text = (course.root / course.glossary).read_text(encoding="utf-8")
-        links = Links(_pages_of_files(course, {}), repository, contents.pictures)
-        text = rich(text, links, course.glossary.parent.as_posix(), "", lambda code: "")
-        source = repository.link(course.glossary, 1)
-        summary = "The words of the course, each explained in a sentence or two."
-        yield Page(names.GLOSSARY, "Glossary", "glossary", ".md", text, source, first, summary)
-    middleware = os.environ.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp")
-    text = about_markdown(course, repository, middleware)
-    source = repository.link(Path("course.toml"))
-    summary = "What the course was built with, and how to run it yourself."
-    yield Page(names.ABOUT, "About this course", "about", ".md", text, source, first, summary)
-
-
-def _home(
-    course: Course,
-    chapters: list[Chapter],
-    exercises: Mapping[str, Exercise],
-    repository: Repository,
-    drawings: _Drawings,
-    contents: SiteContents,
-) -> Page:
-    runs = [(chapter, _ran(course, chapter)) for chapter in chapters]
-    graphs = [node_graph_of(course, chapter) for chapter in chapters]
-    pictures = home_pictures(runs)
-    contents.files |= {path: data for picture in pictures for path, data in picture.files.items()}
-    about = {
-        "chapters": home_chapters(runs, exercises),
-        "robot": home_robot(runs),
-        "graph": next((node_graph_excerpt(graph) for graph in graphs if graph), ""),
-        "drawing": home_drawing(drawings.pictures),
-        "pictures": [picture.about for picture in pictures],
-    }
-    source = repository.link(Path("course.toml"))
-    text = f"# {course.title}\n"
-    return Page(names.HOME, course.title, "home", ".md", text, source, chapters[0].name, course.title, about)
-
-
-def _notebooks(
-    course: Course,
-    chapters: list[Chapter],
-    copies: Mapping[str, Mapping[str, bytes]],
-    repository: Repository,
-    contents: SiteContents,
-) -> None:
-    """Add the notebooks to download and to open elsewhere. They install what they need and contain their exercises."""
-    spinbook = requirement(repository)
-    wheels = interface_wheels(course, contents.copies.values())
-    written: list[str] = []
-    for chapter in chapters:
-        file = course.build_folder / "notebooks" / f"{chapter.name}.ipynb"
-        notebook = json.loads(file.read_text(encoding="utf-8"))
-        held = [cell for cell in chapter.cells if cell.kind is CellKind.EXERCISE and cell.name]
-        brought = {path: data for cell in held for path, data in copies[cell.name or ""].items()}
-        _add_notebook(chapter.name, notebook, spinbook, _with_wheels(brought, notebook, wheels), contents)
-        written.append(chapter.name)
-        for cell in held:
-            name = names.exercise_notebook(cell.name or "")
-            alone = _only_exercise(notebook, cell.id)
-            _add_notebook(name, alone, spinbook, _with_wheels(copies[cell.name or ""], alone, wheels), contents)
+        def add(name: str, notebook: Mapping[str, Any], files: Mapping[str, bytes]) -> None:
+            _add_notebook(name, notebook, spinbook, _with_wheels(files, notebook, wheels), self.contents)
             written.append(name)
-    contents.branch |= branch_files(written, spinbook, course.title)
-    for name in written:
-        contents.openers[name] = [{"name": o.name, "url": o.url} for o in openers(repository, name)]
+
+        for chapter in self.chapters:
+            file = self.course.build_folder / "notebooks" / f"{chapter.name}.ipynb"
+            notebook = json.loads(file.read_text(encoding="utf-8"))
+            held = [(cell, cell.name or "") for cell in chapter.exercises]
+            add(chapter.name, notebook, {path: data for _, name in held for path, data in copies[name].items()})
+            for cell, name in held:
+                add(names.exercise_notebook(name), _only_exercise(notebook, cell.id), copies[name])
+        self.contents.branch |= branch_files(written, spinbook, self.course.title)
+        for name in written:
+            services = openers(self.repository, name)
+            self.contents.openers[name] = [asdict(service) for service in services]
 
 
 def _with_wheels(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import contextlib
 import datetime
 import io
 import os
@@ -19,7 +20,6 @@ from PIL import Image
 from grader.exercise.exercise import Exercise
 from spinbook.build.digest import digest
 from spinbook.chapter.chapter import Chapter, ChapterCell
-from spinbook.chapter.classify import CellKind
 from spinbook.course.course import Course
 from spinbook.site.chapter_page import ExecutedNotebook, alternative, is_picture, wrong_cells
 from spinbook.site.drawings import PICTURE_FOLDER, Picture, drawing_html, smaller, still_of
@@ -54,13 +54,8 @@ def home_chapters(
             "facts": chapter_facts(chapter),
             "errors": len(wrong_cells(chapter, ran)),
             "exercises": [
-                {
-                    "title": exercises[cell.name].title,
-                    "page": exercise_page(cell.name),
-                    "points": f"{exercises[cell.name].points:g}",
-                }
-                for cell in chapter.cells
-                if cell.kind is CellKind.EXERCISE and cell.name
+                {"title": exercise.title, "page": exercise_page(exercise.name), "points": f"{exercise.points:g}"}
+                for exercise in (exercises[cell.name or ""] for cell in chapter.exercises)
             ],
         }
         for chapter, ran in runs
@@ -74,40 +69,33 @@ def home_drawing(drawings: Mapping[str, Picture | None]) -> str:
 
 def home_pictures(runs: list[tuple[Chapter, ExecutedNotebook]]) -> list[HomePicture]:
     """Return the plot of the most curves that move and the last trail of a turtle, if the chapters have them."""
-    pictures = [(chapter, cell, output) for chapter, ran in runs for cell, output in _pictures(chapter, ran)]
-    plots = [drawn for drawn in pictures if "samples" in alternative(drawn[2], drawn[1])]
-    turtles = [drawn for drawn in pictures if "turtlesim" in alternative(drawn[2], drawn[1]).lower()]
+    drawings = [(chapter, cell, output) for chapter, ran in runs for cell, output in _pictures(chapter, ran)]
+    described = [(alternative(drawn[2], drawn[1]), drawn) for drawn in drawings]
+    plots = [(_moving_curves(words), drawn) for words, drawn in described if "samples" in words]
+    turtles = [drawn for words, drawn in described if "turtlesim" in words.lower()]
     # A turtle that has moved has a moving picture: prefer that.
     turtles = [drawn for drawn in turtles if "image/svg+xml" in drawn[2]["data"]] or turtles
-    chosen = []
-    if plots:
-        chosen.append(
-            (
-                max(plots, key=lambda drawn: _moving_curves(alternative(drawn[2], drawn[1]))),
-                "What a topic carried, as it arrived",
-            )
-        )
-    if turtles:
-        chosen.append((turtles[-1], "A turtle, driven by a node"))
-    return [_shown(*drawn, caption) for drawn, caption in chosen]
+    best = [max(plots, key=lambda plot: plot[0])[1]] if plots else []
+    return [
+        *(_shown(*drawn, "What a topic carried, as it arrived") for drawn in best),
+        *(_shown(*drawn, "A turtle, driven by a node") for drawn in turtles[-1:]),
+    ]
 
 
 def home_robot(runs: list[tuple[Chapter, ExecutedNotebook]]) -> str:
     """Return the first robot that moves in a chapter, as HTML; "" if there is none."""
     for chapter, ran in runs:
-        for cell in chapter.cells:
-            for output in filter(is_robot, ran.outputs(cell.id)):
-                page = f'<a href="{chapter_page(chapter.name)}.html">{escape(chapter.title)}</a>'
-                return robot_html(output, "", f"A robot, moved by a node. From {page}.")
+        for robot in _robots(chapter, ran):
+            page = f'<a href="{chapter_page(chapter.name)}.html">{escape(chapter.title)}</a>'
+            return robot_html(robot, "", f"A robot, moved by a node. From {page}.")
     return ""
 
 
 def chapter_opening(chapter: Chapter, ran: ExecutedNotebook) -> HomePicture | None:
     """Return what moves at the top of a chapter's page: its first robot, otherwise its last moving picture that is not
     wide, such as a timeline."""
-    for cell in chapter.cells:
-        for output in filter(is_robot, ran.outputs(cell.id)):
-            return HomePicture({}, {"robot": robot_html(output, "../", "A robot, moved by a node of this chapter.")})
+    for robot in _robots(chapter, ran):
+        return HomePicture({}, {"robot": robot_html(robot, "../", "A robot, moved by a node of this chapter.")})
     moving = [drawn for drawn in _pictures(chapter, ran) if still_of(drawn[1])]
     shown = [_shown(chapter, *drawn, "From this chapter, as it was recorded") for drawn in moving]
     narrow = [picture for picture in shown if picture.about.get("width", 0) <= _WIDEST]
@@ -118,11 +106,12 @@ def _moving_curves(words: str) -> int:
     return sum(low != high for low, high in _RANGE.findall(words))
 
 
+def _robots(chapter: Chapter, ran: ExecutedNotebook) -> Iterator[dict[str, Any]]:
+    return (output for cell in chapter.cells for output in filter(is_robot, ran.outputs(cell.id)))
+
+
 def _pictures(chapter: Chapter, ran: ExecutedNotebook) -> Iterator[tuple[ChapterCell, dict[str, Any]]]:
-    for cell in chapter.cells:
-        for output in ran.outputs(cell.id):
-            if is_picture(output):
-                yield cell, output
+    return ((cell, output) for cell in chapter.cells for output in filter(is_picture, ran.outputs(cell.id)))
 
 
 def _shown(chapter: Chapter, cell: ChapterCell, output: Mapping[str, Any], caption: str) -> HomePicture:
@@ -212,8 +201,6 @@ def _commit(repository: Repository) -> str:
 
 def _version(*distributions: str) -> str:
     for name in distributions:
-        try:
+        with contextlib.suppress(PackageNotFoundError):
             return version(name)
-        except PackageNotFoundError:
-            continue
     return "of a ROS installation"

@@ -25,8 +25,7 @@ def section_minutes(chapter: Chapter) -> dict[str, int]:
 def chapter_facts(chapter: Chapter) -> list[str]:
     """Return what a reader wants to know first, such as: Week 3, 3 hours, 13 nodes, 3 exercises."""
     week = [f"Week {chapter.week}"] if chapter.week else []
-    exercises = [cell for cell in chapter.cells if cell.kind is CellKind.EXERCISE]
-    numbers = ((len(list(chapter.nodes)), "node"), (len(exercises), "exercise"))
+    numbers = ((len(list(chapter.nodes)), "node"), (len(list(chapter.exercises)), "exercise"))
     return [*week, _duration(chapter), *(counted(number, name) for number, name in numbers if number)]
 
 

@@ -15,9 +15,8 @@ from typing import Any
 from sphinx.application import Sphinx
 from sphinx.errors import SphinxError
 
-from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import load
-from groundwork.files import write_if_changed
+from groundwork.files import write_folder
 from groundwork.problem import Problem, Severity
 from spinbook.browser.files import FOLDER, pyodide_files, pyodide_folder, run_version
 from spinbook.build.digest import digest
@@ -43,25 +42,22 @@ def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], 
     # The search data changes with every sentence: it is no reason to load the rest again.
     own = [data for path, data in files.items() if Path(path).parent.name == "_static"]
     version = digest(run_version(files), *own, *(data for name, data in scripts.items() if name != _SEARCH_DATA))[:16]
-    published = {Path(f"{page}.html"): _stamped((html / f"{page}.html").read_bytes(), version) for page in pages}
-    if (lost := Path(f"{NOT_FOUND}.html")) in published:
+    published = {f"{page}.html": _stamped((html / f"{page}.html").read_bytes(), version) for page in pages}
+    if (lost := f"{NOT_FOUND}.html") in published:
         # Servers show this page at any address.
         published[lost] = _RELATIVE.sub(rb'\1="' + address.encode() + rb'\2"', published[lost])
     used = b"\n".join(published.values())
     for file in chain.from_iterable(map(html.glob, _COPIED)):
         # Sphinx keeps files of earlier builds: skip those that no page uses.
-        if file.relative_to(html).as_posix().encode() in used:
-            published[file.relative_to(html)] = file.read_bytes()
-    published |= {Path("_static", name): data for name, data in scripts.items()}
-    for path, content in files.items():
-        published[Path(path)] = content.encode("utf-8") if isinstance(content, str) else content
-    published[Path(_VERSION)] = version.encode()
-    published[Path(_OFFLINE)] = _for_offline(published)
+        if (path := file.relative_to(html).as_posix()).encode() in used:
+            published[path] = file.read_bytes()
+    published |= {f"_static/{name}": data for name, data in scripts.items()}
+    published |= {path: data.encode() if isinstance(data, str) else data for path, data in files.items()}
+    published[_VERSION] = version.encode()
+    published[_OFFLINE] = _for_offline(published)
     # Without this file, GitHub Pages leaves out folders that begin with an underscore.
-    published[Path(".nojekyll")] = b""
-    for relative, data in published.items():
-        write_if_changed(site / relative, _bare(relative, data))
-    _remove_others(site, set(published))
+    published[".nojekyll"] = b""
+    write_folder(site, {path: _bare(Path(path), data) for path, data in published.items()})
     return len(published)
 
 
@@ -90,36 +86,20 @@ def _bare(file: Path, code: bytes) -> bytes:
     return _CSS_SPARE.sub(rb"\1", code) if file.suffix == ".css" else code
 
 
-def _for_offline(published: Mapping[Path, bytes]) -> bytes:
+def _for_offline(published: Mapping[str, bytes]) -> bytes:
     """Return the pages, pictures and downloads of a site, each with a digest of its content."""
-    read = {path: data for path, data in published.items() if path.parts[0] != FOLDER}
-    listed = {
-        path.as_posix(): digest(data)[:16]
-        for path, data in sorted(read.items())
-        if path.suffix == ".html" or len(path.parts) > 1
-    }
-    return json.dumps(listed).encode()
-
-
-def _remove_others(site: Path, published: set[Path]) -> None:
-    for file in sorted(site.rglob("*"), reverse=True):
-        if file.is_file() and file.relative_to(site) not in published:
-            file.unlink()
-        elif file.is_dir() and not any(file.iterdir()):
-            file.rmdir()
+    read = sorted((Path(path), data) for path, data in published.items() if not path.startswith(f"{FOLDER}/"))
+    kept = ((path, data) for path, data in read if path.suffix == ".html" or len(path.parts) > 1)
+    return json.dumps({path.as_posix(): digest(data)[:16] for path, data in kept}).encode()
 
 
 def stage(contents: SiteContents, folder: Path) -> None:
     """Make `folder` consist of the pages. Unchanged files are not written, so that Sphinx skips them."""
-    staged: dict[Path, str | bytes] = {folder / path: data for path, data in contents.pictures.items()}
+    staged: dict[str, str | bytes] = {**contents.pictures}
     for page in contents.pages:
-        staged[folder / f"{page.name}{page.suffix}"] = page.text + (_table_of(contents) if page.name == HOME else "")
-        staged[folder / f"{page.name}{FRAME_SUFFIX}"] = page.frame(contents.openers)
-    for file, content in staged.items():
-        write_if_changed(file, content)
-    for file in folder.rglob("*"):
-        if file.is_file() and file not in staged:
-            file.unlink()
+        staged[f"{page.name}{page.suffix}"] = page.text + (_table_of(contents) if page.name == HOME else "")
+        staged[f"{page.name}{FRAME_SUFFIX}"] = page.frame(contents.openers)
+    write_folder(folder, staged)
 
 
 def _table_of(contents: SiteContents) -> str:
@@ -139,7 +119,7 @@ def prove_nothing_leaks(course: Course, contents: SiteContents) -> None:
 
     This searches the sources of the pages, because HTML has markup in every line of code.
     """
-    exercises = [_load(course, name) for name in sorted(course.exercises)]
+    exercises = [load(course.root / "exercises" / name) for name in sorted(course.exercises)]
     taught = "\n".join([*contents.taught, authors_code(contents.copies)])
     known, names = secrets_of_all(exercises, taught)
     leaked: dict[Path, str] = {}
@@ -149,13 +129,6 @@ def prove_nothing_leaks(course: Course, contents: SiteContents) -> None:
     if leaked:
         problems = (Problem(file, None, f"{secret} would be published.", _FIX) for file, secret in leaked.items())
         raise SpinbookError(*problems)
-
-
-def _load(course: Course, name: str) -> Exercise:
-    try:
-        return load(course.root / "exercises" / name)
-    except ExerciseError as error:
-        raise SpinbookError(error.problem) from None
 
 
 def _published(contents: SiteContents) -> dict[str, bytes]:
@@ -211,13 +184,12 @@ def run_sphinx(
         # The cache may be what is broken: the next build starts without it.
         shutil.rmtree(cache / "doctrees", ignore_errors=True)
         words = str(error).strip().splitlines()
-        found = f"the pages could not be made: {words[-1] if words else type(error).__name__}"
-        fix = (
-            "Check your last changes."
-            if isinstance(error, SphinxError)
-            else "This is a bug in Spinbook: please report it."
-        )
-        raise SpinbookError(*_problems(text.getvalue(), contents, source), Problem(source, None, found, fix)) from None
+        problem = f"the pages could not be made: {words[-1] if words else type(error).__name__}"
+        is_authors = isinstance(error, SphinxError)
+        fix = "Check your last changes." if is_authors else "This is a bug in Spinbook: please report it."
+        raise SpinbookError(
+            *_problems(text.getvalue(), contents, source), Problem(source, None, problem, fix)
+        ) from None
     finally:
         _close_handlers()
     return output, list(_problems(text.getvalue(), contents, source))
@@ -270,8 +242,8 @@ def _problems(text: str, contents: SiteContents, source: Path) -> Iterator[Probl
             continue
         seen.add(line)
         file, number = _place(match.group("file"), match.group("line"), contents, source)
-        found = re.sub(r"\s*\[[\w.-]+\]$", "", match.group("what"))
-        yield Problem(file, number, found, "The page shows it as well as possible.", Severity.WARNING)
+        problem = re.sub(r"\s*\[[\w.-]+\]$", "", match.group("what"))
+        yield Problem(file, number, problem, "The page shows it as well as possible.", Severity.WARNING)
 
 
 def _place(file: str, line: str | None, contents: SiteContents, source: Path) -> tuple[Path, int | None]:

@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.exercise import Exercise
 from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
 from grader.report import hint_steps
@@ -19,6 +19,7 @@ from grader.report.terminal import show
 from grader.sandbox.program import SandboxUnavailable
 from grader.submission.submission import Submission
 from grader.workers.pool import HostFault
+from groundwork.files import from_here
 from groundwork.problem import Problem
 from spinbook.problem import SpinbookError
 from spinbook.submit import hand_in as names
@@ -28,7 +29,6 @@ from spinbook.submit.hand_in import (
     SelfCheck,
     candidate_in,
     choose_candidate,
-    default_target,
     exercise_named,
     is_starter,
     self_check,
@@ -65,18 +65,21 @@ def submit(
     """
     folder = Path.cwd()
     loaded = exercise_named(exercise)
-    chosen = _ran(code, file, loaded) if code else candidate_in(file, loaded) if file else _found(loaded, folder)
+    if code:
+        # What a notebook's kernel ran last: it may not be saved yet.
+        chosen = replace(candidate_in(code, loaded), file=file, origin="the cell as you ran it last")
+    else:
+        chosen = _chosen(loaded, file, "spinbook submit", "Which one do you hand in?")
     name = _student(student, folder)
     checked = SelfCheck(None, "It was left out.") if no_check else self_check(loaded, chosen.submission)
     console = Console(soft_wrap=False, highlight=False)
     print_result(checked, loaded, console)
-    target = output or default_target(loaded, folder)
+    target = output or folder / f"{loaded.name}-submission.zip"
     try:
         write_upload(HandIn(loaded, chosen, name, checked), target)
     except OSError as error:
-        raise SpinbookError(
-            Problem(target, None, f"it can't be written: {error.strerror}.", "Name another place: --output FILE")
-        ) from None
+        problem = f"it can't be written: {error.strerror}."
+        raise SpinbookError(Problem(target, None, problem, "Name another place: --output FILE")) from None
     console.print(f"Your code is from {chosen.origin}.", markup=False)
     for note in () if checked.grade else chosen.submission.notes:
         console.print(note, style="bold yellow", markup=False, soft_wrap=True)
@@ -84,7 +87,7 @@ def submit(
         console.print("It is still the starter, as it was handed out. Was your work saved?", style="bold yellow")
     if not name:
         console.print("Your name is not in the file. If your course requires it: --student NAME", markup=False)
-    console.print(f"Upload this file: {_shown(target)}", style="bold", markup=False, soft_wrap=True)
+    console.print(f"Upload this file: {from_here(target)}", style="bold", markup=False, soft_wrap=True)
 
 
 def print_result(checked: SelfCheck, exercise: Exercise, console: Console) -> None:
@@ -95,13 +98,9 @@ def print_result(checked: SelfCheck, exercise: Exercise, console: Console) -> No
         console.print(f"No self-check: {checked.why} You can still hand in.", markup=False, soft_wrap=True)
 
 
-def _ran(code: Path, notebook: Path | None, exercise: Exercise) -> HandInCandidate:
-    """Return the code that a notebook's kernel ran last and that may not be saved yet."""
-    return replace(candidate_in(code, exercise), file=notebook, origin="the cell as you ran it last")
-
-
-def _found(exercise: Exercise, folder: Path) -> HandInCandidate:
-    return choose_candidate(exercise, folder, "spinbook submit", "Which one do you hand in?")
+def _chosen(exercise: Exercise, file: Path | None, command: str, question: str) -> HandInCandidate:
+    """Return the code in the file that the student named, otherwise in the one of this folder that has it."""
+    return candidate_in(file, exercise) if file else choose_candidate(exercise, Path.cwd(), command, question)
 
 
 def _student(given: str | None, folder: Path) -> str:
@@ -112,10 +111,6 @@ def _student(given: str | None, folder: Path) -> str:
         asked = click.prompt("Your name or number (leave empty to hand in without)", default="", show_default=False)
         return names.remember_student(asked, folder)
     return known or ""
-
-
-def _shown(path: Path) -> str:
-    return str(path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path)
 
 
 #: Exit codes, in addition to click's 2 for wrong usage.
@@ -139,8 +134,7 @@ def check(exercise: str, file: Path | None, verbose: bool) -> None:
     Exit codes: 0 every public check passes, 1 not, 2 wrong usage, 3 the exercise or this machine is at fault.
     """
     loaded = exercise_named(exercise)
-    command, question = "spinbook check", "Which one do you want to check?"
-    chosen = candidate_in(file, loaded) if file else choose_candidate(loaded, Path.cwd(), command, question)
+    chosen = _chosen(loaded, file, "spinbook check", "Which one do you want to check?")
     click.echo(f"Checking {chosen.origin}.")
     grade = _grade(loaded, chosen.submission)
     console = Console(soft_wrap=False, highlight=False)
@@ -166,8 +160,6 @@ def hint(exercise: str) -> None:
 def _grade(exercise: Exercise, submission: Submission) -> Grade:
     try:
         return grade_submission(exercise.public(), submission)
-    except ExerciseError as error:
-        raise SpinbookError(error.problem) from None
     except (HostFault, SandboxUnavailable) as error:
         click.echo(f"The machine or the grader is at fault, not your code: {error}", err=True)
         sys.exit(HOST_FAULT)

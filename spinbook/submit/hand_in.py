@@ -54,12 +54,14 @@ def candidates(exercise: Exercise, folder: Path) -> list[HandInCandidate]:
     """
     files = [folder / exercise.file_name, *sorted(folder.glob("*.ipynb")), *_packages(folder)]
     if exercise.nodes:
-        files += [one for one in sorted(folder.glob("*launch.[xy]*ml")) if is_called(one.name, exercise)]
+        files += [file for file in sorted(folder.glob("*launch.[xy]*ml")) if is_called(file.name, exercise)]
     files.append(exercise.folder / exercise.file_name)
+    submissions = {file: read(str(file), exercise) for file in files if file.exists()}
     candidates = [
-        HandInCandidate(file, read(str(file), exercise), _name(file, folder)) for file in files if file.exists()
+        HandInCandidate(file, submission, _name(file, folder))
+        for file, submission in submissions.items()
+        if submission.program or submission.question
     ]
-    candidates = [one for one in candidates if one.submission.program or one.submission.question]
     begun = [candidate for candidate in candidates if not is_starter(candidate, exercise)]
     by_code = {_bare(candidate.submission.source): candidate for candidate in reversed(begun or candidates)}
     return [candidate for candidate in candidates if candidate in by_code.values()]
@@ -169,11 +171,6 @@ def write_upload(hand_in: HandIn, target: Path) -> None:
     write_if_changed(target, pack(record, files))
 
 
-def default_target(exercise: Exercise, folder: Path) -> Path:
-    """Return the default path of the upload."""
-    return folder / f"{exercise.name}-submission.zip"
-
-
 def _now() -> datetime:
     """Return the time, to the second; SOURCE_DATE_EPOCH (s) replaces the clock if uploads have to be reproducible."""
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
@@ -206,13 +203,11 @@ def remember_student(name: str, folder: Path) -> str:
 
 
 def exercise_named(name: str) -> Exercise:
-    """Return the exercise `name` of the course in this folder. Raises `UsageError` and `SpinbookError`."""
+    """Return the exercise `name` of the course in this folder. Raises `UsageError` and `ExerciseError`."""
     try:
         return load(find(name, Path.cwd()))
     except NoExercise as error:
         raise click.UsageError(str(error)) from None
-    except ExerciseError as error:
-        raise SpinbookError(error.problem) from None
 
 
 def candidate_in(file: Path, exercise: Exercise) -> HandInCandidate:
@@ -242,14 +237,9 @@ def choose_candidate(exercise: Exercise, folder: Path, command: str, question: s
     """
     there = candidates(exercise, folder)
     if not there:
-        raise SpinbookError(
-            Problem(
-                folder,
-                None,
-                f"nothing here holds {exercise.name}: no {exercise.file_name}, and no notebook with its cell.",
-                f"Go to the folder of your notebook, or name the file: {command} {exercise.name} FILE",
-            )
-        )
+        problem = f"nothing here holds {exercise.name}: no {exercise.file_name}, and no notebook with its cell."
+        fix = f"Go to the folder of your notebook, or name the file: {command} {exercise.name} FILE"
+        raise SpinbookError(Problem(folder, None, problem, fix))
     if len(there) == 1:
         if there[0].submission.program is None:
             raise SpinbookError(_no_program(there[0].file or folder, there[0].submission))

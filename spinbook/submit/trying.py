@@ -7,14 +7,13 @@ from pathlib import Path
 
 import click
 
-from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.exercise import Exercise
 from grader.grading.public import playable
 from grader.recording.recording import Recording, to_json
 from grader.runner.program import CannotContinue
 from grader.scenario.scenario import Scenario
 from groundwork.files import write_if_changed
 from spinbook.kernel.surroundings import SEVERAL, play
-from spinbook.problem import SpinbookError
 from spinbook.submit.hand_in import exercise_named
 
 
@@ -39,8 +38,6 @@ def try_out(exercise: str, scenario: str, record: Path | None) -> None:
     try:
         chosen = scenario_named(loaded, scenario)
         play(loaded, chosen, click.echo, lambda recording: _keep(record, recording))
-    except ExerciseError as error:
-        raise SpinbookError(error.problem) from None
     except CannotContinue as stopped:
         click.echo(stopped.message)
     except KeyboardInterrupt:
@@ -49,7 +46,7 @@ def try_out(exercise: str, scenario: str, record: Path | None) -> None:
 
 def scenario_named(exercise: Exercise, name: str) -> Scenario:
     """Return this scenario, or the first one. Raises `UsageError` and `ExerciseError`."""
-    scenarios = {one.name: one for one in playable(exercise, seed=1)}
+    scenarios = {scenario.name: scenario for scenario in playable(exercise, seed=1)}
     chosen = scenarios.get(name) if name else next(iter(scenarios.values()))
     if chosen is None:
         raise click.UsageError(f"{exercise.name} has no scenario {name!r}. There are: {', '.join(scenarios)}.")

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import fcntl
+import json
 import os
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 # To read the umask is to change it for a moment, in which no other thread may create a file: so it is read once.
 _UMASK = os.umask(0o077)
@@ -49,6 +51,31 @@ def write_if_changed(file: Path, content: str | bytes, *, durable: bool = False)
         os.unlink(temporary)  # noqa: PTH108
         raise
     return True
+
+
+def write_folder(folder: Path, files: Mapping[str, str | bytes]) -> None:
+    """Make `folder` hold these files, by their paths in it, and no others. Unchanged files are not written."""
+    for entry in sorted(folder.rglob("*"), reverse=True):
+        if entry.is_file() and entry.relative_to(folder).as_posix() not in files:
+            entry.unlink()
+        elif entry.is_dir() and not any(entry.iterdir()):
+            entry.rmdir()
+    for path, content in files.items():
+        write_if_changed(folder / path, content)
+
+
+def json_object(file: Path) -> dict[str, Any]:
+    """Return the JSON object in a file; {} if there is no such file, or no object in it."""
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return content if isinstance(content, dict) else {}
+
+
+def from_here(path: Path) -> Path:
+    """Return a path as seen from the current folder, if it is below that."""
+    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
 
 
 def remove_parts(folder: Path) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from enum import Enum
 from pathlib import Path
+from typing import Any
 
 
 class Severity(str, Enum):
@@ -42,5 +44,23 @@ class Problem:
         """The file, with the line if there is one."""
         return f"{self.file}:{self.line}" if self.line is not None else f"{self.file}"
 
+    @property
+    def plain(self) -> dict[str, Any]:
+        """The problem as plain data, for JSON; `from_plain` is the inverse."""
+        return {**asdict(self), "file": self.file.as_posix(), "severity": self.severity.value}
+
+    @classmethod
+    def from_plain(cls, plain: Mapping[str, Any]) -> Problem:
+        """Return the problem that `plain` is of."""
+        return cls(**{**plain, "file": Path(plain["file"]), "severity": Severity(plain["severity"])})
+
     def __str__(self) -> str:
         return f"{self.place}: {self.severity.value}: {self.problem}\n    {self.fix}"
+
+
+class AuthorError(Exception):
+    """Raised if an author's files keep the work from going on, with every problem that has to be fixed first."""
+
+    def __init__(self, *problems: Problem) -> None:
+        super().__init__("\n".join(map(str, problems)))
+        self.problems = problems

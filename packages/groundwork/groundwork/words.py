@@ -15,7 +15,15 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}s"
 
 
-def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
-    """Return the question whether the most similar of the `known` names was meant; `otherwise` if none is similar."""
-    near = difflib.get_close_matches(name, list(known), n=1)
-    return f"Did you mean {near[0]}?" if near else otherwise
+def similar(name: str, known: Iterable[str], cutoff: float = 0.6) -> str:
+    """Return the most similar of the `known` names; "" if none is as alike as `cutoff` (0 to 1)."""
+    return next(iter(difflib.get_close_matches(name, list(known), n=1, cutoff=cutoff)), "")
+
+
+def did_you_mean(name: str, known: Iterable[str], otherwise: str, shown: str = "{}", cutoff: float = 0.6) -> str:
+    """Return the question whether the most similar of the `known` names was meant; `otherwise` if none is similar.
+
+    `shown` is how the name is written, such as "`{}`".
+    """
+    near = similar(name, known, cutoff)
+    return f"Did you mean {shown.format(near)}?" if near else otherwise

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundwork.words import counted, did_you_mean
+from groundwork.words import counted, did_you_mean, similar
 
 
 def test_a_number_has_its_noun_in_the_right_form() -> None:
@@ -15,3 +15,5 @@ def test_the_most_similar_name_is_suggested_and_otherwise_something_else() -> No
     assert did_you_mean("/talk", {"/tolk": 1, "/walks": 2}, "There are two.") == "Did you mean /tolk?"
     assert did_you_mean("/talk", ["/odometry"], "There is one.") == "There is one."
     assert did_you_mean("/talk", (), "") == ""
+    assert did_you_mean("talkr", ["talker"], "", "`{}`") == "Did you mean `talker`?"
+    assert similar("talkr", ["talker"], 0.99) == ""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from groundwork.files import cached
+from groundwork.files import cached, json_object, write_folder
 
 
 @pytest.mark.parametrize("mask", [0o077, 0o022, 0o027, 0o002])
@@ -25,3 +25,22 @@ def test_a_user_without_a_home_folder_has_a_cache_as_in_a_container(monkeypatch:
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(os, "getuid", lambda: 54321)
     assert cached("sandbox") == Path("/.cache/spinbook/sandbox")
+
+
+def test_a_folder_holds_exactly_the_files_that_it_is_given(tmp_path: Path) -> None:
+    write_folder(tmp_path, {"old/notes.md": "old", "same.txt": "same"})
+    before = (tmp_path / "same.txt").stat().st_mtime_ns
+    write_folder(tmp_path, {"old": b"a file in place of the folder", "same.txt": "same"})
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["old", "same.txt"]
+    assert (tmp_path / "old").read_text() == "a file in place of the folder"
+    assert (tmp_path / "same.txt").stat().st_mtime_ns == before
+
+
+@pytest.mark.parametrize("content", ["", "[1, 2]", "{", "\udcff"])
+def test_a_file_without_a_json_object_is_an_empty_one(tmp_path: Path, content: str) -> None:
+    file = tmp_path / "record.json"
+    assert json_object(file) == {}
+    file.write_text(content, encoding="utf-8", errors="surrogateescape")
+    assert json_object(file) == {}
+    file.write_text('{"key": 1}')
+    assert json_object(file) == {"key": 1}

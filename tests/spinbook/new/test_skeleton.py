@@ -13,7 +13,7 @@ from rclpy.action import ActionClient, ActionServer
 from rclpy.node import Node
 
 from grader.exercise import Exercise, load, starter
-from grader.exercise.exercise import Topic
+from grader.exercise.exercise import ExerciseError, Topic
 from grader.scenario.scenario import START, Message, Scenario
 from spinbook.new.command import new
 from spinbook.new.kind import ExerciseKind
@@ -123,5 +123,5 @@ def test_the_command_writes_a_solution_and_never_overwrites_one(
     assert f"Made {solution}" in done.output
     assert 'self.create_subscription(Float64, "/wanted_speed", self.on_wanted_speed, 10)' in solution.read_text()
     missing = made("--solution", "no_such_exercise").exception
-    assert isinstance(missing, SpinbookError)
+    assert isinstance(missing, ExerciseError)
     assert "there is no such file" in str(missing)
