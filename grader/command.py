@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.loading import NoExercise, find, load
+from grader.exercise.loading import find, load
 from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.submission.file_kinds import kind_of
-from grader.submission.reader import NoSubmission, is_one, of_source, read
+from grader.submission.reader import is_one, of_source, read
 from grader.submission.submission import Submission
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 
@@ -132,7 +132,7 @@ def grade(
         "pace": 1.0 if real_time else None,
     }
     try:
-        loaded = load(_folder(exercise))
+        loaded = load(find(exercise, Path.cwd()))
         if out and not mistake:
             _refuse_a_single_program(submission)
             _refuse_results_among_submissions(Path(submission), out)
@@ -144,8 +144,6 @@ def grade(
         with WorkerPool() as workers:
             result = _graded(loaded, handed_in, options, workers)
             _show(result, loaded, json_, verbose)
-    except NoSubmission as error:
-        raise click.UsageError(str(error)) from None
     except ExerciseError as error:
         _stop(f"The exercise is at fault, not the submission.\n{error}")
     except SandboxUnavailable as error:
@@ -173,12 +171,9 @@ def _refuse_results_among_submissions(submissions: Path, out: Path) -> None:
 
 def _mistake(name: str, exercise: Exercise) -> Submission:
     """Return one of the exercise's usual mistakes as a submission."""
-    from grader.exercise.mistakes import NoMistake, mistake_of
+    from grader.exercise.mistakes import mistake_of
 
-    try:
-        return of_source(f"{name}.py", mistake_of(exercise, name).source.encode(), exercise)
-    except NoMistake as error:
-        raise click.UsageError(str(error)) from None
+    return of_source(f"{name}.py", mistake_of(exercise, name).source.encode(), exercise)
 
 
 def _options(options: dict[str, Any]) -> Options:
@@ -247,13 +242,6 @@ def _write(result: Grade, exercise: Exercise, plot: Path | None, bag: Path | Non
         _stop(f"{error.filename}: {error.strerror}")
     except ValueError as error:
         _stop(str(error))
-
-
-def _folder(exercise: str) -> Path:
-    try:
-        return find(exercise, Path.cwd())
-    except NoExercise as error:
-        raise click.UsageError(str(error)) from None
 
 
 def _stop(message: str) -> NoReturn:

@@ -14,8 +14,8 @@ from rich.console import Console
 from grader.audit.report import on, show, write_json, write_markdown
 from grader.audit.result import Audit, AuditProblem
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.loading import COURSE, NoExercise, find, load
-from grader.exercise.mistakes import NoMistake, mistake_of
+from grader.exercise.loading import COURSE, find, load
+from grader.exercise.mistakes import mistake_of
 from grader.grading.grade import Options
 from grader.sandbox.program import SandboxUnavailable
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
@@ -93,7 +93,7 @@ def audit(
         use_near(Path.cwd(), COURSE)
         with WorkerPool() as workers:
             audits = _Audits(options, workers, quick, 0 if solutions else mutants, 1 if solutions else seeds)
-            audits.run([_folder(name) for name in exercises] or _all_here())
+            audits.run([find(name, Path.cwd()) for name in exercises] or _all_here())
         audits.write(json_, html)
         if markdown:
             write_markdown(audits.results, markdown)
@@ -178,21 +178,14 @@ def _show_mistake(exercises: tuple[str, ...], name: str) -> None:
     if len(exercises) != 1:
         raise click.UsageError("--show needs one EXERCISE.")
     try:
-        click.echo(mistake_of(load(_folder(exercises[0])), name).source, nl=False)
-    except (NoMistake, ExerciseError) as error:
+        click.echo(mistake_of(load(find(exercises[0], Path.cwd())), name).source, nl=False)
+    except ExerciseError as error:
         raise click.UsageError(str(error)) from None
 
 
 def _problem(error: ExerciseError) -> AuditProblem:
     problem = error.problem
     return AuditProblem(problem.file, problem.line, problem.problem, problem.fix, about=problem.file.parent.name)
-
-
-def _folder(exercise: str) -> Path:
-    try:
-        return find(exercise, Path.cwd())
-    except NoExercise as error:
-        raise click.UsageError(str(error)) from None
 
 
 def _all_here() -> list[Path]:

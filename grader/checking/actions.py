@@ -12,7 +12,7 @@ from typing import Any
 
 from grader.checking.cause import UNKNOWN, Cause
 from grader.checking.comparator import TOLERANCE, shown
-from grader.checking.graph import lacking
+from grader.checking.graph import lacking, shown_names, topics
 from grader.checking.hint_texts import hints
 from grader.checking.partial import each
 from grader.checking.recorded_run import RecordedRun
@@ -207,14 +207,10 @@ def must_match_goals(
     name = action or run.only("action_client")
     got, expected = len(goals(run, name, by="node")), len(_reference_goals(run, name, "node"))
     if got != expected:
-        clients = sorted({end.topic for end in run.recording.end_points if end.kind == "action client"})
-        never = (
-            UNKNOWN
-            if got or name in clients
-            else replace(lacking("action client"), seen=f"Your node has no action client for {name}.")
-        )
+        lacks = not got and name not in topics(run, "action client")
+        never = replace(lacking("action client"), seen=f"Your node has no action client for {name}.")
         text = f"expected {expected} goals for {name}, got {got}."
-        run.wrong_at(None, text, "", f"{expected} goals", got, never or run.waits())
+        run.wrong_at(None, text, "", f"{expected} goals", got, never if lacks else run.waits())
 
     def sent(goal: Goal) -> dict[str, Any] | None:
         return goal.goal
@@ -263,9 +259,8 @@ def _match(
 def _must_answer(run: RecordedRun, goal: Goal, accepted: bool) -> None:
     expected = "accepted" if accepted else "rejected"
     if goal.accepted is None:
-        servers = sorted({end.topic for end in run.recording.end_points if end.kind == "action server"})
-        if goal.action not in servers:
-            names = ", ".join(servers) or "none"
+        if goal.action not in topics(run, "action server"):
+            names = shown_names(run, "action server")
             text = f"your node has no action {goal.action}. Its actions are: {names}."
             run.wrong_at(goal.at, text, "", goal.action, names, lacking("action server"))
         text = "your node never said whether it accepts the goal. Does a callback block it?"

@@ -231,9 +231,14 @@ def _has_no_others(run: RecordedRun, declared: list[tuple[Kind, str]]) -> None:
             _wrong(f"your node has {count} {kind}s on {name}. Expected 1.", "1", str(count))
 
 
+def shown_names(run: RecordedRun, kind: Kind) -> str:
+    """Return the names of the endpoints of a kind that the student's nodes create, for a sentence."""
+    return ", ".join(name for name in topics(run, kind) if name not in OF_EVERY_NODE) or "none"
+
+
 def _lacks(run: RecordedRun, kind: Kind, name: str) -> NoReturn:
     does, others = _WORDS[kind]
-    names = ", ".join(sorted({end.topic for end in end_points(run, kind)} - {*OF_EVERY_NODE})) or "none"
+    names = shown_names(run, kind)
     text = f"your node does not {does} {name}. {others}: {names}."
     other = _OTHER_SIDE[kind]
     if end_points(run, other, name):

@@ -8,7 +8,7 @@ from typing import Any
 
 from grader.checking.cause import UNKNOWN, Cause
 from grader.checking.comparator import TOLERANCE, equal, shown
-from grader.checking.graph import lacking
+from grader.checking.graph import lacking, publishers, shown_names
 from grader.checking.hint_texts import hints
 from grader.checking.partial import each
 from grader.checking.patterns import COMPUTER_CLOCK, shift
@@ -167,10 +167,9 @@ def _values(messages: Sequence[ReceivedMessage], field: str) -> list[Any]:
 
 
 def _never(run: RecordedRun, topic: str, expected: str, subscriber: str = "") -> None:
-    ends = [end for end in run.recording.end_points if end.kind == "publisher"]
-    mine = [end for end in ends if end.topic == topic]
+    mine = publishers(run, topic)
     if not mine:
-        names = ", ".join(sorted({end.topic for end in ends} - {"/rosout", "/parameter_events"})) or "none"
+        names = shown_names(run, "publisher")
         text = f"your node does not publish on {topic}. It publishes on: {names}."
         run.wrong_at(None, text, "", expected, "none", _IN_INIT if names == "none" else lacking("publisher"))
     if subscriber and run.published_on(topic):

@@ -7,7 +7,7 @@ from typing import Any, NoReturn
 
 from grader.checking.cause import Cause
 from grader.checking.comparator import TOLERANCE, shown
-from grader.checking.graph import lacking
+from grader.checking.graph import lacking, shown_names, topics
 from grader.checking.hint_texts import hints
 from grader.checking.partial import each
 from grader.checking.recorded_run import RecordedRun
@@ -79,9 +79,9 @@ def must_call(run: RecordedRun, service: str = "", count: int | None = None) -> 
     if len(got) == expected:
         return
     text = f"expected {expected} requests to {name}, got {len(got)}."
-    clients = sorted({end.topic for end in run.recording.end_points if end.kind == "client"})
-    never = f"Your node has no client for {name}. Its clients are for: {', '.join(clients) or 'none'}."
-    cause = run.waits() if got or name in clients else replace(lacking("client"), seen=never)
+    never = f"Your node has no client for {name}. Its clients are for: {shown_names(run, 'client')}."
+    lacks = not got and name not in topics(run, "client")
+    cause = replace(lacking("client"), seen=never) if lacks else run.waits()
     run.wrong_at(None, text, "", f"{expected} requests", len(got), cause)
 
 
@@ -118,11 +118,10 @@ def _reference_calls(run: RecordedRun, service: str, by: By) -> tuple[Call, ...]
 
 
 def _no_response(run: RecordedRun, number: int, call: Call) -> NoReturn:
-    servers = sorted({end.topic for end in run.recording.end_points if end.kind == "server"})
     every = calls(run, call.service)
     answered = sum(other.answered is not None for other in every)
-    if not call.served or call.service not in servers:
-        names = ", ".join(servers) or "none"
+    if not call.served or call.service not in topics(run, "server"):
+        names = shown_names(run, "server")
         text = f"your node has no service {call.service}. Its services are: {names}."
         run.wrong_at(call.at, text, "", call.service, names, lacking("server"))
     some = f"Your node responds to {answered} of {len(every)} requests. Does its callback wait or sleep?"

@@ -26,17 +26,16 @@ from grader.classroom.local import LocalBackend, at_once
 from grader.classroom.misconceptions import Signature, failures_of, grouped
 from grader.classroom.overview import overview_page
 from grader.classroom.rejudge import difference, rejudge
-from grader.classroom.request import Backend, ClassRequest, ClusterLost, NoCluster, host_error, no_grade
+from grader.classroom.request import Backend, ClassRequest, ClusterLost, NoCluster, no_grade
 from grader.classroom.results import ClassGrading, ClassPlan, NotWritable, Results, Tries, not_written
 from grader.classroom.roster import read_roster
 from grader.classroom.signatures import signatures
 from grader.classroom.student_zips import publish
 from grader.classroom.submissions import StudentSubmission, Submissions, SubmissionsError
 from grader.exercise.exercise import Exercise
-from grader.grading.grade import Entry, Grade
+from grader.grading.grade import Entry
 from grader.grading.grading import Grading, grading_of
 from grader.submission.reader import read
-from grader.submission.submission import Submission
 from grader.workers.pool import WorkerPool
 from groundwork.files import write_if_changed
 
@@ -72,9 +71,8 @@ def grade_class(exercise: Exercise, class_request: ClassRequest, console: Consol
             with _backend(grading, class_request, partial(say, console)) as backend:
                 class_grading = ClassGrading(exercise, backend, results, adjuster, grading)
                 for one, error in unreadable:
-                    class_grading.give_up(
-                        Entry(one.student, one.file.name, _unread(grading, one)), f"reading it: {error}"
-                    )
+                    grade = replace(no_grade(grading.runner, "host-error", ""), submission=one.file.name)
+                    class_grading.give_up(Entry(one.student, one.file.name, grade), f"reading it: {error}")
                 code = _graded(class_grading, grading, collected, submissions, class_request, console)
                 return code or (QUESTIONS if to_decide else DONE)
 
@@ -205,11 +203,6 @@ def _read(collected: Submissions, exercise: Exercise) -> tuple[dict[str, Tries],
         except Exception as error:
             unreadable.append((one, f"{type(error).__name__}: {error}"))
     return submissions, unreadable
-
-
-def _unread(grading: Grading, one: StudentSubmission) -> Grade:
-    nothing = Submission(one.file.name, "", grading.runner.exercise.file_name, "", None)
-    return host_error(grading.runner, nothing, "it could not be read")
 
 
 def _writable(entry: Entry, class_grading: ClassGrading, due: datetime | None) -> Entry:

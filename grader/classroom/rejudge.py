@@ -77,15 +77,10 @@ def _report(console: Console, found: list[NewGrade], missing: list[str]) -> None
 
 def difference(before: Grade, after: Grade) -> str:
     """Return the difference in words: the two scores, then the checks that went up or down. Empty if there is none."""
-    old = {verdict.name: verdict for verdict in before.verdicts}
-    new = {verdict.name: verdict for verdict in after.verdicts}
-    up, down = [], []
-    for name in [*new, *(name for name in old if name not in new)]:
-        earned = [found.earned if found else 0.0 for found in (old.get(name), new.get(name))]
-        if earned[1] > earned[0]:
-            up.append(f"{name} (+{earned[1] - earned[0]:g})")
-        elif earned[1] < earned[0]:
-            down.append(f"{name} (-{earned[0] - earned[1]:g})")
+    old, new = ({verdict.name: verdict.earned for verdict in grade.verdicts} for grade in (before, after))
+    changes = {name: new.get(name, 0.0) - old.get(name, 0.0) for name in {**new, **old}}
+    up = [f"{name} ({change:+g})" for name, change in changes.items() if change > 0]
+    down = [f"{name} ({change:+g})" for name, change in changes.items() if change < 0]
     text = [f"up: {', '.join(up)}"] if up else []
     text += [f"down: {', '.join(down)}"] if down else []
     if before.outcome != after.outcome:

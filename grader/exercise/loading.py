@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import click
+
 from grader.exercise.exercise import OWN_FILES, REFERENCE_NODE, Exercise, ExerciseError, ProgramFile
 from grader.exercise.exercise_toml import TomlTable, endpoints, nodes, packages, parameters, programs, read_toml, topics
 from interface_compiler.near import use_near
@@ -103,8 +105,8 @@ def _points(top: TomlTable) -> float:
     return float(value)
 
 
-class NoExercise(Exception):
-    """Raised when there is no exercise of this name; lists those that exist."""
+class NoExercise(click.UsageError):
+    """Raised when there is no exercise of the name that was given; lists those that exist."""
 
 
 def find(name: str, start: Path) -> Path:

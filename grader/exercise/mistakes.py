@@ -21,6 +21,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import click
+
 from grader.exercise.edits import Edit, read_edits
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.imported_files import tree_of
@@ -48,7 +50,7 @@ class Mistake:
     costs_more: str = ""
 
 
-class NoMistake(LookupError):
+class NoMistake(click.UsageError):
     """Raised when an exercise has no mistake with the requested name. The text lists its mistakes."""
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import click
 
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.loading import COURSE, NoExercise, find, load
+from grader.exercise.loading import COURSE, find, load
 from grader.gradescope.own_wheel import SOURCE, NoWheel, as_wheel, is_checkout, wheel_contents
 from grader.gradescope.pins import LOCKS, PLOTS, PLOTS_PINS, hashed_pins, needed, pins
 from grader.grading.reference import solution_file
@@ -96,7 +96,7 @@ def author_errors() -> Iterator[None]:
     """End the command with the right exit code if an exercise can't be bundled: 2 wrong usage, 3 the exercise."""
     try:
         yield
-    except (NoExercise, NoWheel, MiddlewareUnavailable) as error:
+    except (NoWheel, MiddlewareUnavailable) as error:
         raise click.UsageError(str(error)) from None
     except ExerciseError as error:
         click.echo(str(error), err=True)

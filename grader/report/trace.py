@@ -12,8 +12,8 @@ import click
 from rich.console import Console
 
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.loading import NoExercise, find, load
-from grader.exercise.mistakes import NoMistake, mistake_of
+from grader.exercise.loading import find, load
+from grader.exercise.mistakes import mistake_of
 from grader.grading.grade import Grade, Options
 from grader.grading.grading import Grading
 from grader.grading.reference import solution_file
@@ -24,7 +24,7 @@ from grader.report.timeline import lines_of
 from grader.sandbox.isolation import choose
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Step
-from grader.submission.reader import NoSubmission, of_source, read
+from grader.submission.reader import of_source, read
 from grader.submission.submission import Submission
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 
@@ -76,10 +76,7 @@ def trace(exercise: str, watch: bool, **options: object) -> None:
     Exit codes: 0 it ran, 1 the program ended with an error, 2 wrong usage, 3 a fault of the exercise or the machine.
     """
     leave_cpus_to_workers()
-    try:
-        asked = Trace(exercise=find(exercise, Path.cwd()), **options)  # type: ignore[arg-type]
-    except NoExercise as error:
-        raise click.UsageError(str(error)) from None
+    asked = Trace(exercise=find(exercise, Path.cwd()), **options)  # type: ignore[arg-type]
     with WorkerPool() as workers:
         code = _traced(asked, workers)
         for name in _saved(asked) if watch else ():
@@ -93,8 +90,6 @@ def _traced(asked: Trace, workers: WorkerPool) -> int:
     try:
         exercise = load(asked.exercise)
         grade, steps = _run(asked, exercise, workers)
-    except (NoSubmission, NoMistake) as error:
-        raise click.UsageError(str(error)) from None
     except (ExerciseError, HostFault) as error:
         click.echo(str(error), err=True)
         return 3

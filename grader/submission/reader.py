@@ -7,6 +7,8 @@ import os
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import click
+
 from grader.exercise.exercise import Exercise
 from grader.sandbox.program import ProgramSpec
 from grader.submission.archive import Contents, content_of, folder_contents
@@ -66,7 +68,7 @@ def _described(prefix: Path, script: Path) -> Executable:
 MOST_BYTES = {suffix: MOST_BYTES_OF[kind_of(suffix)] for suffix in (".py", ".ipynb", ".zip")}
 
 
-class NoSubmission(Exception):
+class NoSubmission(click.UsageError):
     """Raised if there is nothing to grade under a name, because the command was used wrongly."""
 
 
