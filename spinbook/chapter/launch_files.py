@@ -13,7 +13,7 @@ import shlex
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from ros_in_python.launch.api import ALL_NAMES
+from ros_in_python.launch.api import ALL_NAMES, COMPOSABLE
 from spinbook.chapter.syntax import descendants, last_name, syntax_tree
 from spinbook.chapter.terminal import Command, CommandKind
 
@@ -207,16 +207,17 @@ def is_package_file(title: str) -> bool:
 
 
 def unsupported_in_launch_file(code: str) -> str:
-    """Return what a Python launch file imports from ROS 2's launch that is not supported here; "" if all of it is.
+    """Return what a Python launch file imports from ROS 2's launch that can't run here; "" if all of it can.
 
     Raises SyntaxError.
     """
     for item in descendants(syntax_tree(code)):
         if isinstance(item, ast.ImportFrom) and item.module and item.module.split(".")[0] in {"launch", "launch_ros"}:
             there = ALL_NAMES.get(item.module, ())
-            missing = [name.name for name in item.names if name.name not in there]
-            if missing and not all(f"{item.module}.{name}" in ALL_NAMES for name in missing):
-                return f"{item.module}.{missing[0]}"
+            names = [name.name for name in item.names]
+            missing = [name for name in names if name not in there and f"{item.module}.{name}" not in ALL_NAMES]
+            if never_run := [*missing, *(name for name in names if name in COMPOSABLE)]:
+                return f"{item.module}.{never_run[0]}"
         elif isinstance(item, ast.Import):
             for name in item.names:
                 if name.name.split(".")[0] in {"launch", "launch_ros"} and name.name not in ALL_NAMES:

@@ -2,15 +2,43 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from ros_in_python.launch.conditions import IfCondition
-from ros_in_python.launch.substitutions import Context, Text
+from ros_in_python.launch.conditions import Condition
+from ros_in_python.launch.substitutions import Context, LaunchConfiguration, Text
 from ros_in_python.ros2.cli import CommandError
+
+
+class PlacedError(CommandError):
+    """What is wrong, after the file and the line of a launch file."""
+
+
+class Action:
+    """The base of all actions, and of a launch file's own: `execute` returns more actions or None.
+
+    `place` is the file and line of a Python launch file that made it.
+    """
+
+    place: str
+
+    def __new__(cls, *args: Any, **options: Any) -> Any:
+        """Remember who makes it."""
+        made, caller = super().__new__(cls), sys._getframe(1)
+        is_ours = caller.f_globals["__name__"].startswith(__package__)
+        made.place = "" if is_ours else f"{caller.f_code.co_filename}:{caller.f_lineno}"
+        return made
+
+    def __init__(self, *, condition: Condition | None = None) -> None:
+        self.condition = condition
+
+    def execute(self, context: Context) -> Any:
+        """Return what is to be done."""
+        raise NotImplementedError
 
 
 class LaunchDescription:
@@ -29,47 +57,36 @@ class LaunchDescription:
 
 
 @dataclass
-class DeclareLaunchArgument:
+class DeclareLaunchArgument(Action):
     """An argument of the launch file, given as `NAME:=VALUE`."""
 
     name: str
     default_value: Text | None = None
     description: str | None = None
     choices: Sequence[str] | None = None
-    condition: IfCondition | None = None
+    condition: Condition | None = None
 
 
 @dataclass
-class LogInfo:
+class LogInfo(Action):
     """A line in the log of the launch."""
 
     msg: Text
-    condition: IfCondition | None = None
+    condition: Condition | None = None
 
 
 @dataclass
-class GroupAction:
+class GroupAction(Action):
     """Actions together, under one condition or in one namespace; what they change ends with the group if `scoped`.
 
     A scoped group that is not `forwarding` knows nothing of what holds outside but its `launch_configurations`.
     """
 
     actions: Sequence[Any]
-    condition: IfCondition | None = None
+    condition: Condition | None = None
     scoped: bool = True
     forwarding: bool = True
     launch_configurations: Mapping[Text, Text] = field(default_factory=dict)
-
-
-class Action:
-    """The base of a launch file's own actions: `execute` returns more actions or None."""
-
-    def __init__(self, *, condition: IfCondition | None = None) -> None:
-        self.condition = condition
-
-    def execute(self, context: Context) -> Any:
-        """Return what is to be done."""
-        raise NotImplementedError
 
 
 class LaunchService:
@@ -79,8 +96,12 @@ class LaunchService:
         raise CommandError(f"{type(self).__name__} needs ROS 2's own launch: start this file with `ros2 launch`")
 
 
-class LaunchIntrospector(LaunchService):
-    """As `LaunchService`."""
+class LaunchIntrospector:
+    """Describes what a launch file describes, for a launch file that prints it."""
+
+    def format_launch_description(self, description: LaunchDescription) -> str:
+        """Return a line per action."""
+        return "\n".join(["LaunchDescription:", *(f"    {entity!r}" for entity in description.entities)])
 
 
 class LaunchDescriptionSource:
@@ -91,12 +112,12 @@ class LaunchDescriptionSource:
 
 
 @dataclass
-class IncludeLaunchDescription:
+class IncludeLaunchDescription(Action):
     """All that another launch file describes, with values for its arguments."""
 
     launch_description_source: LaunchDescriptionSource | LaunchDescription | Text
     launch_arguments: Iterable[tuple[Text, Text]] = ()
-    condition: IfCondition | None = None
+    condition: Condition | None = None
 
 
 class OpaqueFunction(Action):
@@ -108,7 +129,7 @@ class OpaqueFunction(Action):
         function: Callable[..., Sequence[Any] | None],
         args: Iterable[Any] = (),
         kwargs: Mapping[str, Any] | None = None,
-        condition: IfCondition | None = None,
+        condition: Condition | None = None,
     ) -> None:
         super().__init__(condition=condition)
         self.function, self.args, self.kwargs = function, tuple(args), dict(kwargs or {})
@@ -119,13 +140,13 @@ class OpaqueFunction(Action):
 
 
 @dataclass
-class TimerAction:
+class TimerAction(Action):
     """Actions that come `period` seconds later, if `cancel_on_shutdown` is false also when the launch is ending."""
 
     period: Any
     actions: Sequence[Any]
     cancel_on_shutdown: Any = True
-    condition: IfCondition | None = None
+    condition: Condition | None = None
 
 
 @dataclass
@@ -134,15 +155,19 @@ class RosTimer(TimerAction):
 
 
 @dataclass
-class Shutdown:
+class Shutdown(Action):
     """Ends the launch: every program gets SIGINT."""
 
     reason: Text = "reason not given"
-    condition: IfCondition | None = None
+    condition: Condition | None = None
+
+
+#: How long a program may take to end (s), unless an argument of the launch says otherwise.
+_TERM_TIMEOUT, _KILL_TIMEOUT = (LaunchConfiguration(f"sig{name}_timeout", default="5") for name in ("term", "kill"))
 
 
 @dataclass(eq=False, kw_only=True)
-class LaunchedProgram:
+class LaunchedProgram(Action):
     """What each program of a launch may have besides its command.
 
     `on_exit` are actions for when it has ended; `respawn` starts it again. `process_details` has `name`, `pid` and
@@ -164,9 +189,9 @@ class LaunchedProgram:
     respawn: Any = False
     respawn_delay: float | None = None
     respawn_max_retries: int = -1
-    sigterm_timeout: Text = "5"
-    sigkill_timeout: Text = "5"
-    condition: IfCondition | None = None
+    sigterm_timeout: Text = _TERM_TIMEOUT
+    sigkill_timeout: Text = _KILL_TIMEOUT
+    condition: Condition | None = None
     process_details: Mapping[str, Any] | None = field(default=None, init=False)
 
 
@@ -204,12 +229,42 @@ class LifecycleNode(Node):
 
 
 @dataclass
-class LifecycleTransition:
+class ComposableNode:
+    """A node in a C++ library, for a container; never started here."""
+
+    package: Text
+    plugin: Text
+    name: Text | None = None
+    namespace: Text | None = None
+    parameters: Sequence[Any] = ()
+    remappings: Sequence[tuple[Text, Text]] = ()
+    extra_arguments: Sequence[Any] = ()
+    condition: Condition | None = None
+
+
+@dataclass(eq=False, kw_only=True)
+class ComposableNodeContainer(Node):
+    """A process for composable nodes: refused, or left out if the user asks for that."""
+
+    composable_node_descriptions: Sequence[ComposableNode] = ()
+
+
+@dataclass(eq=False, kw_only=True)
+class LoadComposableNodes(Action):
+    """Puts composable nodes into a container that runs already: as `ComposableNodeContainer`."""
+
+    composable_node_descriptions: Sequence[ComposableNode]
+    target_container: Any
+    condition: Condition | None = None
+
+
+@dataclass
+class LifecycleTransition(Action):
     """Makes nodes with a life cycle do transitions, each after the one before has succeeded."""
 
     lifecycle_node_names: Sequence[Text]
     transition_ids: Sequence[Any]
-    condition: IfCondition | None = None
+    condition: Condition | None = None
 
 
 def line_of(program: LaunchedProgram, name: str, line: str) -> str:

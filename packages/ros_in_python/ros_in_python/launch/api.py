@@ -11,11 +11,20 @@ _SOURCES = (
     "XMLLaunchDescriptionSource",
     "YAMLLaunchDescriptionSource",
 )
+#: What is read, and never started.
+COMPOSABLE = ("ComposableNode", "ComposableNodeContainer", "LoadComposableNodes")
 #: Module -> its names.
 NAMES: dict[str, tuple[str, ...]] = {
     "launch": (
-        *("Action", "Event", "EventHandler", "LaunchContext", "LaunchDescription", "LaunchDescriptionEntity"),
-        *("LaunchDescriptionSource", "LaunchIntrospector", "LaunchService", "SomeSubstitutionsType", "Substitution"),
+        *("Action", "Condition", "Event", "EventHandler", "LaunchContext", "LaunchDescription"),
+        *(
+            "LaunchDescriptionEntity",
+            "LaunchDescriptionSource",
+            "LaunchIntrospector",
+            "LaunchService",
+            "SomeSubstitutionsType",
+            "Substitution",
+        ),
     ),
     "launch.actions": (
         *("AppendEnvironmentVariable", "DeclareLaunchArgument", "ExecuteProcess", "GroupAction"),
@@ -46,13 +55,15 @@ NAMES: dict[str, tuple[str, ...]] = {
         *("OrSubstitution", "Command", "PathSubstitution", "AnonName", "FileContent", "LocalSubstitution"),
         "SubstitutionFailure",
     ),
-    "launch.utilities": ("perform_substitutions",),
+    "launch.frontend": ("Entity", "Parser", "expose_action", "expose_substitution"),
+    "launch.utilities": ("normalize_to_list_of_substitutions", "perform_substitutions"),
     "launch_ros": (),
     "launch_ros.actions": (
         *("LifecycleNode", "Node", "PushRosNamespace", "SetParametersFromFile", "SetRemap", "SetUseSimTime"),
         *("PushROSNamespace", "SetParameter", "RosTimer", "ROSTimer", "LifecycleTransition", "SetROSLogDir"),
+        *COMPOSABLE[1:],
     ),
-    "launch_ros.descriptions": ("Parameter", "ParameterFile", "ParameterValue"),
+    "launch_ros.descriptions": (COMPOSABLE[0], "Parameter", "ParameterFile", "ParameterValue"),
     "launch_ros.event_handlers": ("OnStateTransition",),
     "launch_ros.events": ("matches_node_name",),
     "launch_ros.events.lifecycle": ("ChangeState", "StateTransition", "matches_node_name"),
@@ -69,12 +80,6 @@ NAMES: dict[str, tuple[str, ...]] = {
     "launch_yaml": (),
     "launch_yaml.launch_description_sources": _SOURCES,
 }
-_COMPOSABLE = "composable nodes are C++ libraries, which need a ROS installation: start each program as a Node instead"
-#: Why some names are not here.
-REASONS = dict.fromkeys(
-    ("ComposableNode", "ComposableNodeContainer", "LoadComposableNodes", "node_container", "load_composable_node"),
-    _COMPOSABLE,
-)
 _INNER_CAPITAL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 

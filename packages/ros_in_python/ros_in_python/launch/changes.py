@@ -7,16 +7,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from ros_in_python.launch.conditions import IfCondition, truth_of
+from ros_in_python.launch.actions import Action
+from ros_in_python.launch.conditions import Condition, truth_of
 from ros_in_python.launch.parameters import parameter_of
 from ros_in_python.launch.substitutions import Context, Text, text_of, texts_of
 
 
 @dataclass
-class ContextChange:
+class ContextChange(Action):
     """An action that is carried out by `change`, which may raise `CommandError`."""
 
-    condition: IfCondition | None = field(default=None, kw_only=True)
+    condition: Condition | None = field(default=None, kw_only=True)
 
     def change(self, context: Context) -> None:
         """Change the context."""
@@ -210,8 +211,8 @@ class PopEnvironment(ContextChange):
         context.pop("environment")
 
 
-def below(above: str, name: str) -> str:
+def below(above: str | None, name: str) -> str:
     """Return a name in a namespace; one with a slash at its front stays as it is."""
     if not name:
-        return above
-    return name if name.startswith("/") else f"{above}/{name}"
+        return above or ""
+    return name if name.startswith("/") else f"{(above or '').rstrip('/')}/{name}"

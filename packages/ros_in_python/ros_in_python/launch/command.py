@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +12,8 @@ import click
 
 from ros_in_python.example_robots import share_folders
 from ros_in_python.launch import markup_file, python_file
-from ros_in_python.launch.actions import DeclareLaunchArgument, LaunchDescription
-from ros_in_python.launch.plan import LaunchPlan, arguments_of
+from ros_in_python.launch.actions import DeclareLaunchArgument, LaunchDescription, LaunchIntrospector
+from ros_in_python.launch.plan import WITHOUT_COMPOSABLE, LaunchPlan, arguments_of
 from ros_in_python.launch.running import ProcessGroup
 from ros_in_python.launch.substitutions import Context, text_of
 from ros_in_python.ros2 import executables
@@ -26,9 +26,21 @@ SUFFIXES = (".py", ".yaml", ".yml", ".xml")
 @click.command(context_settings=CONTEXT)
 @click.option("-s", "--show-args", "--show-arguments", is_flag=True, help="Show the file's arguments; start nothing.")
 @click.option("-n", "--noninteractive", is_flag=True, expose_value=False, help="Always so here.")
+@click.option("-a", "--show-all-subprocesses-output", is_flag=True, expose_value=False, help="Always so here.")
+@click.option("-p", "--print", "--print-description", "is_printed", is_flag=True, help="Print what is in the file.")
+@click.option("--launch-prefix", metavar="COMMAND", help="A command to run the programs with, as in 'gdb --args'.")
+@click.option("--launch-prefix-filter", metavar="REGEX", help="Use the prefix for executables with such names alone.")
+@click.option(WITHOUT_COMPOSABLE, "left_out", is_flag=True, help="Leave out composable nodes; start all else.")
 @click.argument("package_or_file")
 @click.argument("words", nargs=-1, metavar="[LAUNCH_FILE] [NAME:=VALUE ...]")
-def launch(show_args: bool, package_or_file: str, words: tuple[str, ...]) -> None:
+def launch(
+    show_args: bool,
+    is_printed: bool,
+    left_out: bool,
+    package_or_file: str,
+    words: tuple[str, ...],
+    **prefix: str | None,
+) -> None:
     """Start the nodes of a launch file, and end them all with Ctrl-C.
 
     \b
@@ -37,29 +49,42 @@ def launch(show_args: bool, package_or_file: str, words: tuple[str, ...]) -> Non
       ros2 launch --show-args humanoid_control humanoid.launch.py
 
     It reads Python, YAML and XML files of nodes and other programs, with arguments, conditions, groups, other launch
-    files, timers and events. What else ROS 2's own launch knows, such as composable nodes, is refused by name.
+    files, timers and events. What else ROS 2's own launch knows is refused by name.
     """
     cwd = Path.cwd()
     _source(cwd)
     file, rest = _find(package_or_file, words)
     arguments = _given(rest)
-    if show_args:
-        _show(list(arguments_of(read(file).entities)))
+    arguments |= {name.replace("_", "-"): value for name, value in prefix.items() if value}
+    if show_args or is_printed:
+        with python_file.modules():
+            description = read(file)
+            if is_printed:
+                click.echo(LaunchIntrospector().format_launch_description(description))
+            else:
+                _show(list(arguments_of(description.entities, read, file)))
         return
-    raise click.exceptions.Exit(launch_file(file, arguments, cwd))
+    raise click.exceptions.Exit(launch_file(file, arguments, cwd, left_out=left_out))
 
 
-def launch_file(file: Path, arguments: dict[str, str], cwd: Path, parameters: Sequence[Any] = ()) -> int:
+def launch_file(
+    file: Path, arguments: dict[str, str], cwd: Path, parameters: Sequence[Any] = (), *, left_out: bool = False
+) -> int:
     """Run what a file describes, with these `parameters` for every node; return 1 if a program died by itself.
 
-    Raises `CommandError`.
+    Composable nodes are an error, unless they are `left_out`. Raises `CommandError`.
     """
-    description = read(file)
-    _refuse_unknown(arguments, list(arguments_of(description.entities)))
-    with tempfile.TemporaryDirectory(prefix="launch_params_") as folder:
-        plan = LaunchPlan.into(Path(folder), cwd, read)
-        context = Context(arguments, file=file.absolute(), parameters=list(parameters))
-        return ProcessGroup(plan).run(list(plan.steps(description.entities, context)))
+    with python_file.modules(), tempfile.TemporaryDirectory(prefix="launch_params_") as folder:
+        description = read(file)
+        plan = LaunchPlan(Path(folder), cwd, read, left_out)
+        context = Context(dict(arguments), file=file.absolute(), parameters=list(parameters))
+        try:
+            steps = list(plan.steps(description.entities, context))
+        except CommandError as refusal:
+            raise CommandError(*_unused(arguments, description, context), refusal.message) from None
+        if unused := list(_unused(arguments, description, context)):
+            raise CommandError(*unused)
+        return ProcessGroup(plan).run(steps)
 
 
 def read(file: Path) -> LaunchDescription:
@@ -116,11 +141,12 @@ def _given(words: Sequence[str]) -> dict[str, str]:
     return arguments
 
 
-def _refuse_unknown(arguments: dict[str, str], declared: Sequence[DeclareLaunchArgument]) -> None:
-    names = [argument.name for argument in declared]
-    unknown = [name for name in arguments if name not in names]
-    if unknown:
-        raise CommandError(f"the launch file has no argument '{unknown[0]}'. It has: {', '.join(names) or 'none'}.")
+def _unused(arguments: Iterable[str], description: LaunchDescription, context: Context) -> Iterator[str]:
+    """Yield a sentence on each argument that was given, but neither declared nor asked for."""
+    names = list(dict.fromkeys(argument.name for argument in arguments_of(description.entities, read, context.file)))
+    for name in arguments:
+        if name not in context.asked.union(names):
+            yield f"the launch file has no argument '{name}'. It has: {', '.join(names) or 'none'}."
 
 
 def _default(argument: DeclareLaunchArgument) -> str:
@@ -130,6 +156,14 @@ def _default(argument: DeclareLaunchArgument) -> str:
         return "known when it runs"
 
 
+def _described(argument: DeclareLaunchArgument) -> str:
+    if argument.choices is None:
+        return argument.description or "no description given"
+    if not argument.description:
+        return f"One of: {list(argument.choices)}"
+    return f"{argument.description.removesuffix('.')}. Valid choices are: {list(argument.choices)}"
+
+
 def _show(declared: Sequence[DeclareLaunchArgument]) -> None:
     """Print them as the real command does."""
     click.echo("Arguments (pass arguments as '<name>:=<value>'):")
@@ -137,8 +171,6 @@ def _show(declared: Sequence[DeclareLaunchArgument]) -> None:
         click.echo("\n  No arguments.")
     for argument in declared:
         click.echo(f"\n    '{argument.name}':")
-        click.echo(f"        {argument.description or 'no description given'}")
-        if argument.choices:
-            click.echo(f"        One of: {', '.join(argument.choices)}")
+        click.echo(f"        {_described(argument)}")
         if argument.default_value is not None:
             click.echo(f"        (default: '{_default(argument)}')")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from ros_in_python.launch.substitutions import Context, Substitution, Text, text_of
@@ -18,19 +19,24 @@ def truth_of(value: Text, context: Context) -> bool:
     return _TRUTH[text.lower()]
 
 
-class IfCondition:
-    """Holds when a text is `true` or `1`."""
+class Condition:
+    """Holds when a function of the context returns true."""
+
+    def __init__(self, *, predicate: Callable[[Context], bool]) -> None:
+        self._predicate = predicate
+
+    def evaluate(self, context: Context) -> bool:
+        """Return whether it holds."""
+        return self._predicate(context)
+
+
+class IfCondition(Condition):
+    """Holds when a text is `true` or `1`, which raises `CommandError` if it is neither true nor false."""
 
     holds_for = True
 
     def __init__(self, predicate_expression: Text) -> None:
-        self.expression = predicate_expression
-
-    def holds(self, context: Context) -> bool:
-        """Return whether it holds. Raises `CommandError` for a text that is neither true nor false."""
-        return truth_of(self.expression, context) is self.holds_for
-
-    evaluate = holds
+        super().__init__(predicate=lambda context: truth_of(predicate_expression, context) is self.holds_for)
 
 
 class UnlessCondition(IfCondition):
@@ -40,10 +46,10 @@ class UnlessCondition(IfCondition):
 
 
 class LaunchConfigurationEquals(IfCondition):
-    """Holds when an argument has this value."""
+    """Holds when an argument has exactly this value, or for None when there is no such argument."""
 
-    def __init__(self, launch_configuration_name: str, expected_value: Text) -> None:
-        super().__init__(EqualsSubstitution(_ArgumentOrNothing(launch_configuration_name), expected_value))
+    def __init__(self, launch_configuration_name: str, expected_value: Text | None) -> None:
+        super().__init__(_IsValue(launch_configuration_name, expected_value))
 
 
 class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
@@ -52,12 +58,13 @@ class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
     holds_for = False
 
 
-class _ArgumentOrNothing(Substitution):
-    def __init__(self, name: str) -> None:
-        self.name = name
+class _IsValue(Substitution):
+    def __init__(self, name: str, expected: Text | None) -> None:
+        self.name, self.expected = name, expected
 
     def perform(self, context: Context) -> str:
-        return context.values.get(self.name, "")
+        expected = None if self.expected is None else text_of(self.expected, context)
+        return _said(context.value_of(self.name) == expected)
 
 
 def _said(value: bool) -> str:
@@ -67,23 +74,19 @@ def _said(value: bool) -> str:
 class EqualsSubstitution(Substitution):
     """`true` if two texts are the same, or mean the same truth or number."""
 
-    def __init__(self, left: Text, right: Text) -> None:
-        self.left, self.right = left, right
+    def __init__(self, left: Text | None, right: Text | None) -> None:
+        self.left, self.right = ("" if value is None else value for value in (left, right))
 
     def perform(self, context: Context) -> str:
         """Return `true` or `false`."""
         left, right = text_of(self.left, context), text_of(self.right, context)
-        return _said(left == right or _meaning(left) == _meaning(right))
-
-
-def _meaning(text: str) -> object:
-    lower = text.strip().lower()
-    if lower in ("true", "false"):
-        return lower
-    try:
-        return float(lower)
-    except ValueError:
-        return text
+        truths = [_TRUTH.get(text.lower()) for text in (left, right)]
+        if None not in truths:
+            return _said(truths[0] is truths[1])
+        try:
+            return _said(math.isclose(float(left), float(right)))
+        except ValueError:
+            return _said(left == right)
 
 
 class NotEqualsSubstitution(EqualsSubstitution):

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeAlias
 
-from ros_in_python.launch.actions import LaunchedProgram, LifecycleNode
-from ros_in_python.launch.conditions import IfCondition
+from ros_in_python.launch.actions import Action, LaunchedProgram, LifecycleNode
+from ros_in_python.launch.conditions import Condition
 
 #: Actions, or a function that gets the event and the context and returns actions or None.
 Reaction: TypeAlias = Sequence[Any] | Callable[[Any, Any], Any] | Any
@@ -206,27 +206,27 @@ class OnStateTransition(EventHandler):
 
 
 @dataclass
-class RegisterEventHandler:
+class RegisterEventHandler(Action):
     """Makes a handler hold from here on."""
 
     event_handler: EventHandler
-    condition: IfCondition | None = None
+    condition: Condition | None = None
 
 
 @dataclass
-class UnregisterEventHandler:
+class UnregisterEventHandler(Action):
     """Makes a handler hold no more."""
 
     event_handler: EventHandler
-    condition: IfCondition | None = None
+    condition: Condition | None = None
 
 
 @dataclass
-class EmitEvent:
+class EmitEvent(Action):
     """Lets an event happen."""
 
     event: Any
-    condition: IfCondition | None = None
+    condition: Condition | None = None
 
 
 def _concerns(target: Any, action: LaunchedProgram) -> bool:

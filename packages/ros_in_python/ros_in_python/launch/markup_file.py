@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import re
+import contextlib
+import shlex
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,8 +16,7 @@ import yaml
 from ros_in_python.launch import actions as known
 from ros_in_python.launch import changes
 from ros_in_python.launch.actions import LaunchDescription
-from ros_in_python.launch.api import REASONS
-from ros_in_python.launch.conditions import IfCondition, UnlessCondition
+from ros_in_python.launch.conditions import Condition, IfCondition, UnlessCondition
 from ros_in_python.launch.markup_text import parse
 from ros_in_python.launch.parameters import ParameterFile, ParameterValue
 from ros_in_python.launch.substitutions import TextSubstitution
@@ -34,11 +34,14 @@ _ATTRIBUTES = {
     "arg": {"name", "default", "description", *_IF},
     "env": {"name", "value"},
     "choice": {"value"},
+    "composable_node": {"pkg", "plugin", "name", "namespace", *_IF},
     "executable": {"cmd", "shell", *_PROGRAM},
+    "extra_arg": {"name", "value"},
     "group": {"scoped", "forwarding", *_IF},
     "include": {"file", *_IF},
     "keep": {"name", "value"},
     "let": {"name", "value", *_IF},
+    "load_composable_node": {"target", *_IF},
     "log": {"message", *_IF},
     "node": {"pkg", "exec", "exec_name", "namespace", "ns", "args", "ros_args", *_PROGRAM},
     "param": {"name", "value", "value-sep", "from", "type", "allow_substs"},
@@ -57,11 +60,11 @@ _ATTRIBUTES = {
     "timer": {"period", "cancel_on_shutdown", *_IF},
     "unset_env": {"name", *_IF},
 }
-_ATTRIBUTES["lifecycle_node"] = _ATTRIBUTES["node"]
+_ATTRIBUTES |= dict.fromkeys(("lifecycle_node", "node_container"), _ATTRIBUTES["node"])
 #: Other spellings of elements.
 _SPELLINGS = {"push-ros-namespace": "push_ros_namespace", "set-parameter": "set_parameter"}
 #: Elements that stand within others alone.
-_INNER = {"choice", "env", "keep", "param", "remap"}
+_INNER = {"choice", "composable_node", "env", "extra_arg", "keep", "param", "remap"}
 #: The types of a parameter.
 _TYPES: dict[str, Any] = {"yaml": None, "bool": bool, "float": float, "int": int, "str": str}
 _TYPES |= {"list_of_bool": list[bool], "list_of_float": list[float], "list_of_int": list[int], "list_of_str": list[str]}
@@ -69,11 +72,14 @@ _IN_NODE = {"env", "param", "remap"}
 #: The elements that an element may contain; those of `_ANY` may contain all but the inner ones.
 _CHILDREN = {
     "arg": {"choice"},
+    "composable_node": {"extra_arg", "param", "remap"},
     "executable": {"env"},
     "group": {"keep"},
     "include": {"arg", "let"},
     "lifecycle_node": _IN_NODE,
+    "load_composable_node": {"composable_node"},
     "node": _IN_NODE,
+    "node_container": {"composable_node", *_IN_NODE},
     "param": {"param"},
     "reset": {"keep"},
 }
@@ -96,16 +102,16 @@ def read(file: Path) -> LaunchDescription:
         elements = list(_from_xml(text) if text.lstrip().startswith("<") else _from_yaml(text))
         return LaunchDescription([_entity(element) for element in elements])
     except UnicodeDecodeError:
-        raise CommandError(f"{file}: it is not saved as UTF-8.") from None
+        raise known.PlacedError(f"{file}: it is not saved as UTF-8.") from None
     except ElementTree.ParseError as error:
-        raise CommandError(f"{file}:{error.position[0]}: {expat.ErrorString(error.code)}.") from None
+        raise known.PlacedError(f"{file}:{error.position[0]}: {expat.ErrorString(error.code)}.") from None
     except yaml.MarkedYAMLError as error:
         line = f":{error.problem_mark.line + 1}" if error.problem_mark else ""
-        raise CommandError(f"{file}{line}: {error.problem or error.context}.") from None
+        raise known.PlacedError(f"{file}{line}: {error.problem or error.context}.") from None
     except yaml.YAMLError as error:
-        raise CommandError(f"{file}: {error}") from None
+        raise known.PlacedError(f"{file}: {error}") from None
     except CommandError as refusal:
-        raise CommandError(f"{file}: {refusal.message}") from None
+        raise known.PlacedError(f"{file}: {refusal.message}") from None
 
 
 def _from_xml(text: str) -> Iterator[Element]:
@@ -116,7 +122,18 @@ def _from_xml(text: str) -> Iterator[Element]:
 
 
 def _xml_element(item: ElementTree.Element) -> Element:
-    return Element(item.tag, dict(item.attrib), [_xml_element(child) for child in item])
+    attributes: dict[str, Any] = dict(item.attrib)
+    if item.tag == "param" and attributes.keys() == {"name", "value"}:
+        # As in ROS 2, XML's texts are read as YAML, which YAML's own are not: "1" there is a text.
+        attributes["value"] = _read(attributes["value"])
+    return Element(item.tag, attributes, [_xml_element(child) for child in item])
+
+
+def _read(text: str) -> Any:
+    with contextlib.suppress(yaml.YAMLError):
+        value = yaml.safe_load(text)
+        return text if "$(" in text or value is None or isinstance(value, dict) else value
+    return text
 
 
 def _from_yaml(text: str) -> Iterator[Element]:
@@ -163,8 +180,6 @@ def _entity(element: Element) -> Any:
 
 
 def _check(element: Element, kind: str) -> None:
-    if kind in REASONS:
-        raise CommandError(f"the element `{element.kind}`: {REASONS[kind]}.")
     if kind not in _ATTRIBUTES:
         there = ", ".join(known for known in _ATTRIBUTES if known not in _INNER)
         raise CommandError(f"the element `{element.kind}` is not supported here. There is: {there}.")
@@ -233,15 +248,26 @@ def _timer(element: Element) -> known.TimerAction:
 
 
 def _executable(element: Element) -> known.ExecuteProcess:
-    line = str(_needed(element, "cmd"))
-    shell = _yes(element, "shell")
-    words = [line] if shell else _split(line)
-    return known.ExecuteProcess(cmd=[_text(word) for word in words], shell=shell, **_program(element))
+    words = _split(str(_needed(element, "cmd")))
+    return known.ExecuteProcess(cmd=words, shell=_yes(element, "shell"), **_program(element))
 
 
-def _split(line: str) -> list[str]:
-    """Return the words of a command, keeping `$(…)` together, which may have spaces in it."""
-    return re.findall(r"(?:\$\((?:[^()]|\([^()]*\))*\)|\S)+", line)
+def _split(line: str) -> list[Any]:
+    """Return the words of a command as a shell has them, without its quotes; `$(…)` may have spaces in it."""
+    words: list[list[Any]] = []
+    is_open = False
+    for part in parse(line) if "$(" in line else [line]:
+        if isinstance(part, str):
+            pieces = shlex.split(part)
+            if pieces and is_open and not part[0].isspace():
+                words[-1].append(pieces.pop(0))
+            words += [[piece] for piece in pieces]
+            is_open = bool(part) and not part[-1].isspace()
+        else:
+            words += [] if is_open else [[]]
+            words[-1].append(part)
+            is_open = True
+    return words
 
 
 def _program(element: Element) -> dict[str, Any]:
@@ -256,8 +282,11 @@ def _program(element: Element) -> dict[str, Any]:
         "respawn": _optional(element, "respawn") or False,
         "respawn_delay": None if delay is None else float(delay),
         "respawn_max_retries": int(element.attributes.get("respawn_max_retries", -1)),
-        "sigterm_timeout": _optional(element, "sigterm_timeout") or "5",
-        "sigkill_timeout": _optional(element, "sigkill_timeout") or "5",
+        **{
+            name: _needed_text(element, name)
+            for name in ("sigterm_timeout", "sigkill_timeout")
+            if name in element.attributes
+        },
         "on_exit": known.Shutdown() if "on_exit" in element.attributes else (),
         "additional_env": {
             str(_needed(child, "name")): _needed_text(child, "value")
@@ -272,7 +301,7 @@ def _node(element: Element) -> known.Node:
         _check(child, child.kind)
     of, kind = element.attributes, known.LifecycleNode if element.kind == "lifecycle_node" else known.Node
     return kind(
-        package=_needed_text(element, "pkg"),
+        package=_optional(element, "pkg"),
         executable=_needed_text(element, "exec"),
         exec_name=_optional(element, "exec_name"),
         namespace=_optional(element, "namespace", "ns"),
@@ -282,10 +311,24 @@ def _node(element: Element) -> known.Node:
             for child in element.children
             if child.kind == "remap"
         ],
-        arguments=[_text(word) for word in _split(str(of.get("args", "")))],
-        ros_arguments=[_text(word) for word in _split(str(of.get("ros_args", "")))],
+        arguments=_split(str(of.get("args", ""))),
+        ros_arguments=_split(str(of.get("ros_args", ""))),
         **_program(element),
     )
+
+
+def _composable(element: Element) -> list[known.ComposableNode]:
+    """Return the composable nodes in an element, as far as a message names them: they are never started."""
+    nodes = [child for child in element.children if child.kind == "composable_node"]
+    for node in nodes:
+        _check(node, node.kind)
+    return [
+        known.ComposableNode(
+            package=_needed_text(node, "pkg"), plugin=_needed_text(node, "plugin"),
+            condition=_condition(node.attributes),
+        )
+        for node in nodes
+    ]  # fmt: skip
 
 
 def _parameter(element: Element) -> Any:
@@ -302,9 +345,13 @@ def _parameter(element: Element) -> Any:
     if "type" in element.attributes:
         plain = value if isinstance(value, list) else _text(value)
         return {str(_needed(element, "name")): ParameterValue(plain, value_type=_type_of(element))}
-    # A text is read as YAML, as in ROS 2: XML knows nothing else.
-    of_text = TextSubstitution(text=value) if isinstance(value, str) and "$(" not in value else _text(value)
-    return {str(_needed(element, "name")): of_text if isinstance(value, str) else value}
+    return {str(_needed(element, "name")): parse(value) if isinstance(value, str) and "$(" in value else value}
+
+
+def _for_all(element: Element) -> Any:
+    """Return a value that is read as YAML, also in YAML."""
+    value = _needed_text(element, "value")
+    return TextSubstitution(text=value) if isinstance(value, str) else value
 
 
 def _type_of(element: Element) -> Any:
@@ -314,7 +361,7 @@ def _type_of(element: Element) -> Any:
     return _TYPES[name]
 
 
-def _condition(attributes: Mapping[str, Any]) -> IfCondition | None:
+def _condition(attributes: Mapping[str, Any]) -> Condition | None:
     if "if" in attributes:
         return IfCondition(_text(attributes["if"]))
     return UnlessCondition(_text(attributes["unless"])) if "unless" in attributes else None
@@ -341,17 +388,25 @@ _MADE: dict[str, Callable[[Element], Any]] = {
     "include": _include,
     "let": lambda of: changes.SetLaunchConfiguration(_needed_text(of, "name"), _needed_text(of, "value")),
     "lifecycle_node": _node,
+    "load_composable_node": lambda of: known.LoadComposableNodes(
+        composable_node_descriptions=_composable(of), target_container=_needed_text(of, "target")
+    ),
     "log": lambda of: known.LogInfo(_needed_text(of, "message")),
     "node": _node,
+    "node_container": lambda of: known.ComposableNodeContainer(
+        package=_needed_text(of, "pkg"),
+        executable=_needed_text(of, "exec"),
+        composable_node_descriptions=_composable(of),
+    ),
     "push_ros_namespace": lambda of: changes.PushRosNamespace(_needed_text(of, "namespace")),
     "reset": lambda of: changes.ResetLaunchConfigurations(_kept(of) or None),
     "reset_env": lambda of: changes.ResetEnvironment(),
     "ros_timer": _timer,
     "set_env": lambda of: changes.SetEnvironmentVariable(_needed_text(of, "name"), _needed_text(of, "value")),
-    "set_parameter": lambda of: changes.ParameterForAll(_needed_text(of, "name"), [_needed_text(of, "value")]),
+    "set_parameter": lambda of: changes.ParameterForAll(_needed_text(of, "name"), _for_all(of)),
     "set_parameters_from_file": lambda of: changes.SetParametersFromFile(_needed_text(of, "filename")),
     "set_ros_log_dir": lambda of: changes.SetROSLogDir(_needed_text(of, "new_log_dir")),
-    "set_use_sim_time": lambda of: changes.SetUseSimTime([_needed_text(of, "value")]),
+    "set_use_sim_time": lambda of: changes.SetUseSimTime(_for_all(of)),
     "set_remap": lambda of: changes.SetRemap(_needed_text(of, "from"), _needed_text(of, "to")),
     "shutdown": lambda of: known.Shutdown(_optional(of, "reason") or "reason not given"),
     "timer": _timer,

@@ -30,8 +30,8 @@ class _MarkupReader:
             if self._text.startswith("$(", self._at):
                 found += [self._substitution(), ""]
             else:
-                if self._text.startswith("\\$", self._at):
-                    self._at += 1
+                if self._text[self._at : self._at + 1] == "\\" and self._at + 1 < len(self._text):
+                    self._at += 1  # the next character is meant as it is
                 found[-1] += self._text[self._at]
                 self._at += 1
         return [part for part in found if part != ""] or [""]

@@ -9,6 +9,9 @@ import yaml
 from ros_in_python.launch.substitutions import Context, Substitution, Text, text_of
 from ros_in_python.ros2.cli import CommandError
 
+#: How much of a value a message shows (characters).
+_SHOWN = 60
+
 
 class ParameterValue:
     """A parameter's value with its type: `ParameterValue(LaunchConfiguration('gain'), value_type=float)`."""
@@ -58,11 +61,31 @@ class NodeParameter:
 
 
 def parameter_of(value: Any, context: Context) -> Any:
-    """Return a parameter's value as in a parameter file; the text of a substitution is read as YAML, as in ROS 2."""
+    """Return a parameter's value as in a parameter file; the text of a substitution is read as YAML, as in ROS 2.
+
+    A list of texts and substitutions is one text; each list within a list is one as well. Raises `CommandError` for a
+    text that is no parameter's value in YAML, such as a robot's description.
+    """
     if isinstance(value, ParameterValue):
         return value.evaluate(context)
-    if isinstance(value, Substitution) or (
-        isinstance(value, list | tuple) and any(isinstance(part, Substitution) for part in value)
-    ):
-        return yaml.safe_load(text_of(value, context))
-    return list(value) if isinstance(value, tuple) else value
+    if not isinstance(value, list | tuple):
+        return _read(text_of(value, context)) if isinstance(value, Substitution) else value
+    if any(isinstance(part, list | tuple) for part in value):
+        return [_read(text_of(part, context)) for part in value]
+    if any(isinstance(part, Substitution) for part in value):
+        return _read(text_of(value, context))
+    # As in ROS 2, whole numbers between others are floats; a parameter has one type.
+    return list(map(float, value)) if {type(part) for part in value} == {int, float} else list(value)
+
+
+def _read(text: str) -> Any:
+    try:
+        value = yaml.safe_load(text or "''")
+    except yaml.YAMLError:
+        value = None
+    if value is None or isinstance(value, dict):
+        start = text if len(text) < _SHOWN else f"{text[:_SHOWN]}…"
+        raise CommandError(
+            f"'{start}' is not a parameter's value in YAML.", "ParameterValue(…, value_type=str) makes a text of it."
+        )
+    return value

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import math
 import os
+import re
 import shlex
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -26,38 +28,44 @@ from ros_in_python.ros2.executables import find
 
 #: A file that includes itself is not followed any deeper than this.
 _DEEPEST = 30
+#: The option of `ros2 launch` that leaves composable nodes out.
+WITHOUT_COMPOSABLE = "--without-composable-nodes"
 
 
 @dataclass
 class LaunchPlan:
-    """Carries out a description: what it logs and which processes it starts. Parameter files go into `folder`."""
+    """Carries out a description: what it logs and which processes it starts. Parameter files go into `folder`.
+
+    Composable nodes end it with an error, unless they are `left_out`.
+    """
 
     folder: Path
     cwd: Path
     read: Callable[[Path], known.LaunchDescription]
-    _files: itertools.count[int]
-
-    @classmethod
-    def into(cls, folder: Path, cwd: Path, read: Callable[[Path], known.LaunchDescription]) -> LaunchPlan:
-        """Make a plan whose parameter files go into `folder`; packages are looked up from `cwd`, files are `read`."""
-        return cls(folder, cwd, read, itertools.count(1))
+    left_out: bool = False
+    _files: itertools.count[int] = field(default_factory=lambda: itertools.count(1))
 
     def steps(self, entities: Sequence[Any], context: Context) -> Iterator[Step]:
         """Yield what is to be done, in order. Raises `CommandError`."""
         for entity in entities:
-            condition = getattr(entity, "condition", None)
             try:
-                if condition is None or condition.holds(context):
+                if _holds(entity, context):
                     yield from self._steps_of(entity, context)
             except NotYetKnownError:
                 yield DeferredAction(entity, context.copy())
+            except known.PlacedError:
+                raise
+            except Exception as error:
+                place = getattr(entity, "place", "") or context.file
+                raise known.PlacedError(f"{place}: {_fault(error)}") from None
 
     def _steps_of(self, entity: Any, context: Context) -> Iterator[Step]:
         for kind in type(entity).__mro__:
             if carry_out := _HOW.get(kind):
                 yield from carry_out(self, entity, context)
                 return
-        raise CommandError(f"a launch description can't hold a {type(entity).__name__}: {entity!r}")
+        hint = " EmitEvent(event=…) makes an action of an event." if isinstance(entity, events.LaunchEvent) else ""
+        raise CommandError(f"{entity!r} is not an action.{hint}")
 
     # --- programs
 
@@ -82,25 +90,38 @@ class LaunchPlan:
             in_a_row = (lifecycle.CONFIGURE, lifecycle.ACTIVATE)
             yield from self.steps(list(lifecycle.transitions([node.node_name], in_a_row)), context)
 
+    def _composable(self, action: Any, context: Context) -> Iterator[Step]:
+        nodes = [node for node in action.composable_node_descriptions or () if _holds(node, context)]
+        plugins = ", ".join(text_of(node.plugin, context) for node in nodes) or "no nodes yet"
+        if not self.left_out:
+            raise CommandError(
+                f"composable nodes ({plugins}) are C++ libraries, which need a ROS installation.",
+                f"`ros2 launch {WITHOUT_COMPOSABLE} …` starts all else.",
+            )
+        yield f"left out, as composable nodes need a ROS installation: {plugins}"
+
     def _ros_words(self, node: known.Node, context: Context) -> list[str]:
         name = text_of(node.name, context) if node.name is not None else ""
-        namespace = below(context.namespace, text_of(node.namespace, context) if node.namespace is not None else "")
-        node.node_name = below(namespace, name) if namespace.startswith("/") else f"/{below(namespace, name)}"
+        namespace = _namespace(node, context)
+        node.node_name = f"{namespace.rstrip('/')}/{name}"
         words = [text_of(word, context) for word in node.ros_arguments]
         words += ["-r", f"__node:={name}"] if name else []
         words += ["-r", f"__ns:={namespace}"] if namespace else []
-        for parameters in (*context.parameters, *node.parameters):
-            words += ["--params-file", self._parameter_file(parameters, name, namespace, context)]
+        # As in ROS 2, what is written for one node comes before what is written for all, whichever comes later.
+        owner = node.node_name if name and namespace else "/**"
+        for parameters in context.parameters:
+            words += ["--params-file", self._parameter_file(parameters, "/**", context)]
+        for parameters in node.parameters:
+            words += ["--params-file", self._parameter_file(parameters, owner, context)]
         own = [(text_of(old, context), text_of(new, context)) for old, new in node.remappings]
         return words + [word for old, new in (*context.remappings, *own) for word in ("-r", f"{old}:={new}")]
 
-    def _parameter_file(self, parameters: Any, name: str, namespace: str, context: Context) -> str:
+    def _parameter_file(self, parameters: Any, owner: str, context: Context) -> str:
         if isinstance(parameters, NodeParameter):
-            parameters = {parameters.name: parameters.value}
+            parameters, owner = {parameters.name: parameters.value}, "/**"
         if isinstance(parameters, Mapping):
             values = _nested({text_of(key, context): value for key, value in parameters.items()}, context)
-            node = f"{namespace or ''}/{name}" if name else "/**"
-            return self._written(yaml.safe_dump({node: {"ros__parameters": values}}))
+            return self._written(yaml.safe_dump({owner: {"ros__parameters": values}}))
         path = Path(text_of(parameters.file if isinstance(parameters, ParameterFile) else parameters, context))
         if not path.is_file():
             raise CommandError(f"the parameter file {path} does not exist.")
@@ -117,9 +138,8 @@ class LaunchPlan:
         words = [text_of(word, context) for word in process.cmd]
         if not words:
             raise CommandError("ExecuteProcess has an empty cmd")
-        argv = ("/bin/sh", "-c", " ".join(words)) if process.shell else tuple(words)
         name = text_of(process.name, context) if process.name is not None else Path(words[0].split()[0]).name
-        yield from self._program(process, name, argv, dict(os.environ), context)
+        yield from self._program(process, name, tuple(words), dict(os.environ), context)
 
     def _program(
         self, program: known.LaunchedProgram, name: str, argv: tuple[str, ...], env: dict[str, str], context: Context
@@ -130,8 +150,9 @@ class LaunchPlan:
             known.line_of(program, name, "")
         except (LookupError, AttributeError, ValueError) as error:
             raise CommandError(f"output_format '{program.output_format}' can't be filled in: {_fault(error)}") from None
-        if program.prefix is not None:
-            argv = (*shlex.split(text_of(program.prefix, context)), *argv)
+        argv = (*_prefix(program, argv[0], context), *argv)
+        if isinstance(program, known.ExecuteProcess) and program.shell:
+            argv = ("/bin/sh", "-c", " ".join(argv))
         if program.env is not None:
             env = texts_of(program.env, context)
         env = {**context.changed(env), **texts_of(program.additional_env, context), "PYTHONUNBUFFERED": "1"}
@@ -211,21 +232,20 @@ class LaunchPlan:
         arguments = action.launch_arguments
         for name, value in arguments.items() if isinstance(arguments, Mapping) else arguments or ():
             context.values[text_of(name, context)] = text_of(value, context)
-        source = action.launch_description_source
-        if isinstance(source, known.LaunchDescription):
+        source = _source_of(action, context)
+        if isinstance(source, Path):
+            yield from self._included(source, context)
+        else:
             yield from self._described(source, context)
-            return
-        file = Path(text_of(known.path_of_source(source), context))
-        if not file.is_file():
-            raise CommandError(f"the launch file {file} does not exist.")
-        yield from self._included(file, context)
 
     def _included(self, file: Path, context: Context) -> Iterator[Step]:
         outer, outer_depth = context.file, context.depth
         if outer_depth >= _DEEPEST:
             raise CommandError(f"{file} is included {_DEEPEST} files deep: does it include itself?")
-        context.file, context.depth = file.absolute(), outer_depth + 1
-        yield from self.steps(self.read(file).entities, context)
+        context.file, context.depth = file, outer_depth + 1
+        with context.in_environment():
+            description = self.read(file)
+        yield from self.steps(description.entities, context)
         context.file, context.depth = outer, outer_depth
 
     def _described(self, description: known.LaunchDescription, context: Context) -> Iterator[Step]:
@@ -236,7 +256,8 @@ class LaunchPlan:
             yield DeferredAction(action, context.copy())
             return
         try:
-            found = action.execute(context)
+            with context.in_environment():
+                found = action.execute(context)
         except CommandError:
             raise
         except Exception as error:
@@ -245,8 +266,29 @@ class LaunchPlan:
         yield from self.steps(known.as_actions(found), context)
 
 
+def _namespace(node: known.Node, context: Context) -> str:
+    """Return the namespace that a node gets from the launch file; "" if it keeps its own."""
+    if node.namespace is None and context.namespace is None:
+        return ""
+    name = below(context.namespace, text_of(node.namespace, context) if node.namespace is not None else "")
+    return name if name.startswith("/") else f"/{name}"
+
+
+def _prefix(program: known.LaunchedProgram, executable: str, context: Context) -> list[str]:
+    """Return the words before a program's own: those of the file, or of `launch-prefix` if its filter fits."""
+    if program.prefix is not None:
+        return shlex.split(text_of(program.prefix, context))
+    is_meant = re.match(context.value_of("launch-prefix-filter") or "", Path(executable).name)
+    return shlex.split(context.value_of("launch-prefix") or "") if is_meant else []
+
+
 def _fault(error: Exception) -> str:
-    return f"{type(error).__name__}: {error}"
+    return error.message if isinstance(error, CommandError) else f"{type(error).__name__}: {error}"
+
+
+def _holds(entity: Any, context: Context) -> bool:
+    condition = getattr(entity, "condition", None)
+    return condition is None or condition.evaluate(context)
 
 
 def _truth(value: Any, context: Context) -> bool:
@@ -278,6 +320,7 @@ def _declare(plan: LaunchPlan, argument: known.DeclareLaunchArgument, context: C
             text = f" ({argument.description})" if argument.description else ""
             raise CommandError(f"the launch argument '{argument.name}'{text} is missing: give {argument.name}:=VALUE.")
         context.values[argument.name] = text_of(argument.default_value, context)
+    context.asked.add(argument.name)
     value = context.values[argument.name]
     if argument.choices is not None and value not in argument.choices:
         raise CommandError(f"{argument.name}:={value} is not one of: {', '.join(argument.choices)}.")
@@ -308,7 +351,9 @@ def _change(plan: LaunchPlan, action: ContextChange, context: Context) -> Iterat
 #: How each kind of action is carried out.
 _HOW: dict[type, Callable[[LaunchPlan, Any, Context], Iterator[Step]]] = {
     known.Node: LaunchPlan._node,
+    known.ComposableNodeContainer: LaunchPlan._composable,
     known.LifecycleNode: LaunchPlan._lifecycle_node,
+    known.LoadComposableNodes: LaunchPlan._composable,
     known.LifecycleTransition: LaunchPlan._transitions,
     known.ExecuteProcess: LaunchPlan._execute,
     known.TimerAction: LaunchPlan._timer,
@@ -328,10 +373,27 @@ _HOW: dict[type, Callable[[LaunchPlan, Any, Context], Iterator[Step]]] = {
 }
 
 
-def arguments_of(entities: Sequence[Any]) -> Iterator[known.DeclareLaunchArgument]:
-    """Yield the arguments that a description declares, in groups as well."""
+def arguments_of(
+    entities: Sequence[Any], read: Callable[[Path], known.LaunchDescription], file: Path, depth: int = 0
+) -> Iterator[known.DeclareLaunchArgument]:
+    """Yield the arguments that a file's description declares, also in groups, and in files that it surely includes."""
     for entity in entities:
         if isinstance(entity, known.DeclareLaunchArgument):
             yield entity
         elif isinstance(entity, known.GroupAction):
-            yield from arguments_of(entity.actions)
+            yield from arguments_of(entity.actions, read, file, depth)
+        elif isinstance(entity, known.IncludeLaunchDescription) and depth < _DEEPEST:
+            with contextlib.suppress(CommandError):  # which file it is depends on an argument
+                source = _source_of(entity, Context(file=file))
+                inner = source if isinstance(source, known.LaunchDescription) else read(source)
+                yield from arguments_of(inner.entities, read, source if isinstance(source, Path) else file, depth + 1)
+
+
+def _source_of(action: known.IncludeLaunchDescription, context: Context) -> known.LaunchDescription | Path:
+    source = action.launch_description_source
+    if isinstance(source, known.LaunchDescription):
+        return source
+    file = Path(text_of(known.path_of_source(source), context)).absolute()
+    if not file.is_file():
+        raise CommandError(f"the launch file {file} does not exist.")
+    return file

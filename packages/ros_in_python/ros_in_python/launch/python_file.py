@@ -12,12 +12,13 @@ from types import ModuleType
 from typing import Any
 
 from ros_in_python.launch import actions, changes, conditions, events, logger, parameters, places, substitutions
-from ros_in_python.launch.actions import LaunchDescription
-from ros_in_python.launch.api import ALL_NAMES, NAMES, REASONS
+from ros_in_python.launch.actions import LaunchDescription, PlacedError
+from ros_in_python.launch.api import ALL_NAMES, NAMES
 from ros_in_python.ros2.cli import CommandError
 
 #: Names that mean something with another name here, for any module or for one.
 _RENAMED: dict[str, Any] = {
+    "Entity": Any,
     "Event": events.LaunchEvent,
     "LaunchContext": substitutions.Context,
     "LaunchDescriptionEntity": actions.Action,
@@ -31,6 +32,7 @@ _RENAMED: dict[str, Any] = {
     "launch_ros.substitutions.Parameter": substitutions.GlobalParameter,
     "PushROSNamespace": changes.PushRosNamespace,
     "Command": substitutions.CommandOutput,
+    "Parser": Any,
     "FindPackage": places.FindPackagePrefix,
 }
 _PLACES = (actions, changes, events, conditions, logger, parameters, places, substitutions)
@@ -69,8 +71,6 @@ class _Module(ModuleType):
 
 
 def _refusal(module: str, name: str) -> str:
-    if name in REASONS:
-        return f"`{name}` of {module}: {REASONS[name]}."
     there = ", ".join(sorted(MODULES[module])) or "nothing"
     return f"`{name}` of {module} is not supported here. It has: {there}.\n{_ELSEWHERE}"
 
@@ -78,29 +78,29 @@ def _refusal(module: str, name: str) -> str:
 def read(file: Path) -> LaunchDescription:
     """Return what a file's `generate_launch_description()` returns. Raises `CommandError` with the file's line."""
     variables: dict[str, Any] = {"__name__": "launch_file", "__file__": str(file.absolute())}
-    with _modules():
+    with modules():
         try:
             exec(compile(file.read_text(encoding="utf-8"), str(file), "exec"), variables)
             found = variables["generate_launch_description"]()
         except CommandError as refusal:
-            raise CommandError(f"{file}{_line(refusal, file)}: {refusal.message}") from None
+            raise PlacedError(f"{file}{_line(refusal, file)}: {refusal.message}") from None
         except KeyError as error:
             if error.args != ("generate_launch_description",):
-                raise CommandError(f"{file}{_line(error, file)}: {_describe(error)}") from None
-            raise CommandError(f"{file} has no function generate_launch_description().") from None
+                raise PlacedError(f"{file}{_line(error, file)}: {_describe(error)}") from None
+            raise PlacedError(f"{file} has no function generate_launch_description().") from None
         except SyntaxError as error:
-            raise CommandError(f"{file}:{error.lineno}: not valid Python: {error.msg}") from None
+            raise PlacedError(f"{file}:{error.lineno}: not valid Python: {error.msg}") from None
         except Exception as error:
-            raise CommandError(f"{file}{_line(error, file)}: {_describe(error)}") from None
+            raise PlacedError(f"{file}{_line(error, file)}: {_describe(error)}") from None
     if not isinstance(found, LaunchDescription):
-        raise CommandError(
+        raise PlacedError(
             f"{file}: generate_launch_description() returned {type(found).__name__}, not a LaunchDescription."
         )
     return found
 
 
 @contextmanager
-def _modules() -> Iterator[None]:
+def modules() -> Iterator[None]:
     """Let `import launch` and `import launch_ros` find our modules inside the block."""
     before = {name: sys.modules.get(name) for name in MODULES}
     made = {name: _Module(name) for name in MODULES}

@@ -199,7 +199,19 @@ class ProcessGroup:
             self._do(heapq.heappop(self._later)[2].steps)
         for running in self._running:
             while running.due and running.due[0][0] <= now:
-                running.send(running.due.pop(0)[1])
+                self._escalate(running)
+
+    def _escalate(self, running: _LaunchedProcess) -> None:
+        (_, stronger), seconds = running.due.pop(0), running.step.grace_s
+        is_first = stronger == signal.SIGTERM
+        after, weaker = (seconds[0], "SIGINT") if is_first else (sum(seconds), "SIGTERM")
+        self._say(
+            "ERROR",
+            running.name,
+            f"process[{running.name}] failed to terminate '{after}' seconds after receiving '{weaker}', "
+            f"escalating to '{stronger.name}'",
+        )
+        running.send(stronger)
 
     def _take(self, event: Any) -> None:
         if isinstance(event, int):
@@ -216,8 +228,9 @@ class ProcessGroup:
         return max(0.0, min(_POLL_S, due))
 
     def _interrupted(self, number: int) -> None:
-        if not self._is_ending and number == signal.SIGINT:
-            self._say("WARNING", "launch", "user interrupted with ctrl-c (SIGINT)")
+        if number == signal.SIGINT:
+            again = " again" if self._was_interrupted else ""
+            self._say("WARNING", "launch", f"user interrupted with ctrl-c (SIGINT){again}")
         self._was_interrupted = True
         self._end(signal.Signals(number), events.ShutdownRequested("ctrl-c (SIGINT)", due_to_sigint=True))
 
@@ -237,7 +250,8 @@ class ProcessGroup:
             self._say("INFO", running.name, f"process has finished cleanly [pid {pid}]")
         else:
             self._died = self._died or not running.is_told
-            self._say("ERROR", running.name, f"process has died [pid {pid}, exit code {code}]")
+            cmd = " ".join(word for word in step.argv if word.strip())
+            self._say("ERROR", running.name, f"process has died [pid {pid}, exit code {code}, cmd '{cmd}'].")
         self._happened(events.ProcessExited(*running.what, code))
         if step.respawn_s is not None and step.respawns > 0 and not self._is_ending:
             again = replace(step, respawns=step.respawns - 1)

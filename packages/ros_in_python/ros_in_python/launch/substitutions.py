@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import shlex
 import subprocess
 import sys
 import uuid
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from pathlib import Path
@@ -22,11 +24,12 @@ class Context:
 
     `values` are those of the arguments, `parameters` and `remappings` hold for every node that follows, `variables` are
     the changes of its environment (None: removed), `file` is the launch file at hand, and `depth` how many include it.
-    `locals` has the event of a handler. `is_later` says that what is planned now waits for a time or an event.
+    `locals` has the event of a handler. `asked` are the arguments that were declared or asked for. `is_later` says that
+    what is planned now waits for a time or an event.
     """
 
     values: dict[str, str] = field(default_factory=dict)
-    namespace: str = ""
+    namespace: str | None = None
     parameters: list[Any] = field(default_factory=list)
     remappings: list[tuple[str, str]] = field(default_factory=list)
     variables: dict[str, str | None] = field(default_factory=dict)
@@ -34,6 +37,7 @@ class Context:
     depth: int = 0
     locals: SimpleNamespace = field(default_factory=SimpleNamespace)
     is_later: bool = False
+    asked: set[str] = field(default_factory=set)
     _kept: list[tuple[str, Context]] = field(default_factory=list)
 
     @property
@@ -45,6 +49,11 @@ class Context:
     def environment(self) -> Mapping[str, str]:
         """The environment of programs that follow. To change it, a launch file has actions."""
         return MappingProxyType(self.changed(dict(os.environ)))
+
+    def value_of(self, name: str) -> str | None:
+        """Return the value of an argument; None if there is none."""
+        self.asked.add(name)
+        return self.values.get(name)
 
     def perform_substitution(self, substitution: Text) -> str:
         """Return the text that a substitution stands for, as functions in launch files ask for it."""
@@ -67,9 +76,22 @@ class Context:
         all_set = {**base, **{name: value for name, value in self.variables.items() if value is not None}}
         return {name: value for name, value in all_set.items() if self.variables.get(name, "") is not None}
 
+    @contextmanager
+    def in_environment(self) -> Iterator[None]:
+        """Let functions of launch files find the environment in `os.environ` inside the block, and change it there."""
+        before, inside = dict(os.environ), dict(self.environment)
+        _become(inside)
+        try:
+            yield
+        finally:
+            after = dict(os.environ)
+            changes = {name for name in {*inside, *after} if inside.get(name) != after.get(name)}
+            self.variables.update({name: after.get(name) for name in changes})
+            _become(before)
+
     def reset_configurations(self, values: dict[str, str]) -> None:
         """Forget all arguments but these, and what holds for every node."""
-        self.values, self.namespace, self.parameters, self.remappings = values, "", [], []
+        self.values, self.namespace, self.parameters, self.remappings = values, None, [], []
 
     def push(self, kind: str) -> None:
         """Keep the `configurations` or the `environment`."""
@@ -88,12 +110,21 @@ class Context:
         self.parameters, self.remappings = state.parameters, state.remappings
 
 
+def _become(environment: Mapping[str, str]) -> None:
+    os.environ.clear()
+    os.environ.update(environment)
+
+
 class Substitution:
     """A text that is known only when the launch file runs."""
 
     def perform(self, context: Context) -> str:
         """Return the text. Raises `CommandError` if it can't be known."""
         raise NotImplementedError
+
+    def describe(self) -> str:
+        """Return what it is, for a launch file's own messages."""
+        return f"{type(self).__name__}()"
 
 
 #: A text, a substitution, or several of them in a row.
@@ -134,8 +165,9 @@ class LaunchConfiguration(Substitution):
     def perform(self, context: Context) -> str:
         """Return the argument's value, or the default. Raises `CommandError` if there is neither."""
         name = text_of(self.name, context)
-        if name in context.values:
-            return context.values[name]
+        value = context.value_of(name)
+        if value is not None:
+            return value
         if self.default is None:
             known = ", ".join(context.values) or "none"
             raise CommandError(
@@ -190,15 +222,21 @@ class CommandOutput(Substitution):
     def perform(self, context: Context) -> str:
         """Return the command's output. Raises `CommandError` if it fails, or says something on stderr."""
         line, on_stderr = text_of(self.command, context), text_of(self.on_stderr, context)
-        done = subprocess.run(
-            line, shell=True, env=dict(context.environment), capture_output=True, text=True, check=False
-        )
+        words = shlex.split(line)
+        try:
+            done = subprocess.run(words, env=dict(context.environment), capture_output=True, text=True, check=False)
+        except OSError as error:
+            raise CommandError(f"the command `{line}` can't be run: {error.strerror}", *_how_to_get(words[0])) from None
         if done.returncode or (done.stderr and on_stderr == "fail"):
             reason = f"exit code {done.returncode}" if done.returncode else "it wrote to stderr"
             raise CommandError(f"the command `{line}` failed ({reason}): {done.stderr.strip() or 'it said nothing'}")
         if done.stderr and on_stderr == "warn":
             print(done.stderr, end="", file=sys.stderr)
         return done.stdout + (done.stderr if on_stderr == "capture" else "")
+
+
+def _how_to_get(program: str) -> list[str]:
+    return ["`pip install xacro` brings it."] if Path(program).name == "xacro" else []
 
 
 class AnonName(Substitution):

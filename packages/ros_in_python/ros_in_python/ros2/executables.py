@@ -136,10 +136,15 @@ def _append(environment: MutableMapping[str, str], name: str, value: str) -> Non
 
 
 def add_own_prefix(environment: MutableMapping[str, str]) -> None:
-    """Let programs find the packages of this Python's environment, too: `get_package_share_directory('std_msgs')`."""
+    """Let programs find the packages of this Python's environment, too: `get_package_share_directory('std_msgs')`.
+
+    They also know which ROS 2 it is, as after sourcing one.
+    """
     if (Path(sys.prefix) / prefixes.RESOURCES).is_dir():
         _append(environment, "AMENT_PREFIX_PATH", sys.prefix)
     _append(environment, "AMENT_PREFIX_PATH", str(EXAMPLES))
+    for name, value in {"ROS_DISTRO": "jazzy", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}.items():
+        environment.setdefault(name, value)
 
 
 _DEMOS = ("add_two_ints_client", "add_two_ints_server", "listener", "talker")
