@@ -57,11 +57,6 @@ class SandboxedProgram:
         """Where the submission's files are, as the program sees them."""
         self._monitor = Monitor(control, output, limits, self.pid, answer["init"], frozenset(answer["own_processes"]))
 
-    @property
-    def exit(self) -> ProcessExit | None:
-        """How the node's process ended; None while it runs."""
-        return self._monitor.exit
-
     def poll(self) -> ProcessExit | None:
         """Return how the node's process ended; None while it runs."""
         return self._monitor.exit

@@ -20,11 +20,10 @@ import types
 from pathlib import Path
 
 from grader import preloaded
-from grader.sandbox import callers, filesystem, heap, middleware, seccomp, syscalls, uncaught
-from grader.sandbox import middleware as type_support
+from grader.sandbox import callers, filesystem, heap, seccomp, syscalls, uncaught
 from grader.sandbox.confine import PassedDescriptors
 from grader.sandbox.environment import for_program
-from grader.sandbox.middleware import choosable
+from grader.sandbox.middleware import choosable, connect, load_type_support
 from grader.sandbox.program import START_REQUEST, Paths, ProgramSpec
 from grader.sandbox.supervisor import StudentToRun, refuse, supervise
 from groundwork.clean_environment import own_path
@@ -54,7 +53,7 @@ def run_program(program: ProgramSpec, paths: Paths) -> None:
     if not program.preloaded:
         os.execv(sys.executable, [sys.executable, path, *program.arguments])
     if program.hub is not None:
-        middleware.connect(variables["RMW_LOCKSTEP_SOCKET"])
+        connect(variables["RMW_LOCKSTEP_SOCKET"])
     module = _prepare_main(path, program.arguments)
     os.sched_getaffinity = lambda pid: set(range(CORES_SHOWN))
     try:
@@ -131,6 +130,7 @@ def main() -> None:
     requests, modules = int(sys.argv[1]), sys.argv[2:]
     sys.path[:] = own_path(sys.path)  # a .pth file may have added another installation's modules
     os.chdir("/")
+    gc.disable()  # until it forks: it would look through all that is imported, a tenth of the time
     fault = _load(modules)
     _prepare_for_forks()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -153,6 +153,7 @@ def _prepare_for_forks() -> None:
     _note_modules()
     gc.collect()
     gc.freeze()
+    gc.enable()
     heap.fill_gaps()
 
 
@@ -222,7 +223,7 @@ def _import(name: str) -> None:
     """Import a module and, if it is one of message, service or action types, load their compiled support."""
     with preloaded.noted(), contextlib.suppress(ImportError):
         if preloaded.is_of_interfaces(name):
-            type_support.load_type_support(name)
+            load_type_support(name)
         else:
             importlib.import_module(name)
 

@@ -76,9 +76,9 @@ class Judges:
 def _judge(requests: socket.socket, collected: bytes) -> NoReturn:
     from grader.checking.judge import judge_when_collected
 
-    exercise, scenarios = what_to_collect(collected)
+    exercise, partly, scenarios = what_to_collect(collected)
     judging = _JudgingRequest(requests)
-    judging.end(answer_of(lambda: judge_when_collected(exercise, scenarios, judging.runs)))
+    judging.end(answer_of(lambda: judge_when_collected(exercise, scenarios, judging.runs, partly)))
 
 
 class _JudgingRequest:

@@ -176,8 +176,8 @@ class WorkerPool:
 
     def judge(self, job: JudgeJob) -> tuple[Verdict, ...]:
         """Return the verdicts of a judging. The checks of a shared exercise are collected once for all judgings."""
-        collected = self._shared.to_collect(job.exercise, job.recordings)
-        command = PROCESS if collected is None or job.partly else JUDGE + collected
+        collected = self._shared.to_collect(job.exercise, job.recordings, job.partly)
+        command = PROCESS if collected is None else JUDGE + collected
         with Worker(partial(self._process, command), self._shared) as worker:
             verdicts: tuple[Verdict, ...] = worker.do(job)
             return verdicts

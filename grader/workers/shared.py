@@ -44,10 +44,10 @@ class SharedObjects:
         self._numbers |= {id(one): first + i for i, one in enumerate(new)}
         return pickle.dumps((first, new))
 
-    def to_collect(self, exercise: Exercise, scenarios: Iterable[str]) -> bytes | None:
+    def to_collect(self, exercise: Exercise, scenarios: Iterable[str], partly: bool) -> bytes | None:
         """Return what a process needs to collect the checks of an exercise; None if the exercise is not shared."""
         number = self._numbers.get(id(exercise))
-        return None if number is None else json.dumps([number, *scenarios]).encode()
+        return None if number is None else json.dumps([number, partly, *scenarios]).encode()
 
     def pickled(self, job: Any, known: int) -> bytes:
         """Return `job`, pickled for a process that has the first `known` objects."""
@@ -77,10 +77,10 @@ def shared_object(number: int) -> Any:
     return _objects[number]
 
 
-def what_to_collect(content: bytes) -> tuple[Exercise, list[str]]:
-    """Return the exercise and the names of the scenarios, from `SharedObjects.to_collect`."""
-    number, *scenarios = json.loads(content)
-    return shared_object(number), scenarios
+def what_to_collect(content: bytes) -> tuple[Exercise, bool, list[str]]:
+    """Return the exercise, whether it is judged partly, and the names of the scenarios, from `to_collect`."""
+    number, partly, *scenarios = json.loads(content)
+    return shared_object(number), partly, scenarios
 
 
 def receive(content: bytes) -> None:
