@@ -31,23 +31,23 @@ def test_without_mutants_it_tells_only_of_the_files(small: SmallExercise) -> Non
     assert "\nnothing to fix\n" in done.stdout
 
 
-def test_a_mistake_may_be_a_whole_program_that_names_its_checks_in_its_docstring(small: SmallExercise) -> None:
+def test_points_for_nothing_end_with_1_and_a_mistake_may_be_a_whole_program_that_names_its_checks(
+    small: SmallExercise,
+) -> None:
+    small.change(
+        "exercises/doubler/checks.py", 'hint="Look at the name in __init__.", depends=[test_publishes])', 'hint="x")'
+    )
     whole = small.course / "solutions" / "doubler" / "mistakes" / "deaf.py"
     whole.parent.mkdir()
     whole.write_text(
         '"""It does nothing.\n\nCaught by:\n- test_publishes\n"""\nimport rclpy\n' + IDLE.format(name="doubler")
     )
-    done = solutions_only()
-    assert (done.exit_code, "8 mistakes" in done.stdout) == (0, True), done.stdout
-
-
-def test_points_for_a_node_that_does_nothing_end_with_1(small: SmallExercise) -> None:
-    small.change(
-        "exercises/doubler/checks.py", 'hint="Look at the name in __init__.", depends=[test_publishes])', 'hint="x")'
-    )
     done = solutions_only("doubler")
     assert done.exit_code == 1
-    assert "does nothing passes test_is_called_doubler and gets 1 points" in " ".join(done.stdout.split())
+    printed = " ".join(done.stdout.split())
+    assert "does nothing passes test_is_called_doubler and gets 1 points" in printed
+    assert "8 mistakes" in printed
+    assert "mistakes/deaf" not in printed
 
 
 @pytest.mark.parametrize("other", [("--quick",), ("--mutants", "3"), ("--seeds", "2")])
