@@ -10,9 +10,10 @@ from grader.recording.recording import Ending
 from grader.runner.budget import Allowance, Budget, ProgramExited
 from grader.runner.error_advice import advice_on, result_advice
 from grader.runner.node_attributes import silently_replaced
-from grader.runner.program import CannotContinue, ExitStatus, RunningProgram
+from grader.runner.program import CannotContinue, RunningProgram
 from grader.runner.tracebacks import LastError, error_on_interrupt, first_error, last_error
 from grader.scenario.scenario import SECOND
+from groundwork.process_exit import ProcessExit
 from rmw_lockstep.hub import TICK_S, Hub, Violation
 
 LIMITS = {
@@ -57,7 +58,7 @@ def described(last: LastError, sources: Mapping[str, str]) -> str:
     return " ".join(filter(None, (f"{last.error}{place}{text}".rstrip(".") + ".", advice_on(last, sources))))
 
 
-def of_exit(exit_: ExitStatus, log: str, sources: Mapping[str, str]) -> tuple[str, int | None]:
+def of_exit(exit_: ProcessExit, log: str, sources: Mapping[str, str]) -> tuple[str, int | None]:
     """Return why a program ended, as a clause that follows "Your program ended: ", and the line to blame."""
     if exit_.limit:
         return f"{LIMITS.get(exit_.limit, exit_.limit)}.", None
@@ -80,7 +81,7 @@ MAY_TAKE_S = 2.0
 def cut_short(student: RunningProgram, sources: Mapping[str, str], met: bool, when: str) -> Ending:
     """Return the ending of a program that ended by itself, `when`; `met` is whether it was ready by then."""
     exit_ = student.poll() or student.kill()
-    log = student.output().text
+    log = student.output()
     why, line = of_exit(exit_, log, sources)
     if exit_.limit:
         return Ending("over-limit", f"Your program was ended: {why}", line)
@@ -124,12 +125,12 @@ def interrupted(hub: Hub, budget: Budget, student: RunningProgram, sources: Mapp
     its threads runs or could run, as fast as a real clock: a program that waits for a time waits as long as it would
     in real life, and on a busy machine no time passes before it has reacted to the signal.
     """
-    before = student.output().text
+    before = student.output()
     student.interrupt()
     budget.begin(_ALLOWANCE)
     if not _ends(hub, budget):
         return Ending("completed", interrupted=True, ended_in_time=False)
-    error = error_on_interrupt(before, student.output().text, sources)
+    error = error_on_interrupt(before, student.output(), sources)
     return Ending("completed", interrupted=True, traceback=error)
 
 

@@ -135,7 +135,7 @@ class ScenarioRun:
             end_points=self._end_points,
             uses_sim_time=self._sim_time,
             ending=ending,
-            log=self._student.output().text,
+            log=self._student.output(),
             seconds=time.monotonic() - began,
             lockstep_seconds=self._lockstep_seconds,
             **self._of_the_script(),
@@ -161,7 +161,7 @@ class ScenarioRun:
             else:
                 self._lockstep()
             self._lockstep_seconds = time.monotonic() - began
-            survived = survived_by(self._student.output().text, sources)
+            survived = survived_by(self._student.output(), sources)
             ending = Ending("completed")
             if task.scenario.interrupt:
                 ending = interrupted(self._hub, self._budget, self._student, sources)

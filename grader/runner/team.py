@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
 
 from grader.exercise.exercise import ExerciseError
 from grader.recording.events import ProgramExit
-from grader.runner.program import ExitStatus, PrintedOutput, RunningProgram, Task
+from grader.runner.program import RunningProgram, Task
 from grader.runner.tracebacks import last_error
+from groundwork.process_exit import ProcessExit
 from rmw_lockstep.hub import Hub
 
 #: Starts a program, which has to connect to the hub through this inherited socket.
 Start = Callable[[int], RunningProgram]
-
-
-@dataclass(frozen=True)
-class ProgramsTogether:
-    """The outputs of several programs, one after another."""
-
-    text: str
-    dropped: int
 
 
 class Team:
@@ -72,7 +64,7 @@ class Team:
         for companion, program in zip(self._task.scenario.companions, self._companions, strict=False):
             if exit_ := program.poll():
                 file = self._task.exercise.folder / companion.file
-                last = last_error(program.output().text, {companion.file: companion.text})
+                last = last_error(program.output(), {companion.file: companion.text})
                 why = last.error if last else exit_.limit or f"exit code {exit_.code}"
                 problem = f"it ended in the scenario {self._task.scenario.name}: {why}"
                 fix = "A companion must go on to the end, whatever the student's program sends it."
@@ -94,15 +86,14 @@ class Team:
         """Return the ids of all the student's processes."""
         return [pid for one in self._running.values() for pid in one.pids()]
 
-    def output(self) -> PrintedOutput:
-        """Return what all programs printed."""
-        outputs = [one.output() for one in (*self._stopped, *self._running.values())]
-        return ProgramsTogether("".join(one.text for one in outputs), sum(one.dropped for one in outputs))
+    def output(self) -> str:
+        """Return what all programs printed, one after another."""
+        return "".join(one.output() for one in (*self._stopped, *self._running.values()))
 
-    def poll(self) -> ExitStatus | None:
+    def poll(self) -> ProcessExit | None:
         """Return how a student's program ended by itself; once they were asked to end, how the last one did."""
         self._see_companions()
-        found: ExitStatus | None = None
+        found: ProcessExit | None = None
         for name, student in self._running.items():
             exit_ = student.poll()
             if exit_ is None and self._interrupted:
@@ -111,7 +102,7 @@ class Team:
                 found, self.ended = exit_, name
         return found
 
-    def wait(self, timeout_s: float) -> ExitStatus | None:
+    def wait(self, timeout_s: float) -> ProcessExit | None:
         """Wait for the end of the first program."""
         first = next(iter(self._running.values()), None)
         return first.wait(timeout_s) if first else None
@@ -130,7 +121,7 @@ class Team:
         """Return whether one of them is being ended because of a limit."""
         return any(one.at_limit() for one in self._running.values())
 
-    def kill(self) -> ExitStatus:
+    def kill(self) -> ProcessExit:
         """Kill all; return the exit of the program that had ended by itself, or of the first."""
         exits = {name: one.kill() for name, one in self._running.items()}
         for one in self._companions:

@@ -9,8 +9,8 @@ with server.start(ProgramSpec("node.py", {"node.py": source}, hub=socket), isola
 from grader.sandbox.fork_server import ForkServer, SandboxedProgram
 from grader.sandbox.isolation import available, choose
 from grader.sandbox.middleware import MiddlewareUnavailable, require_middleware
-from grader.sandbox.monitor import ProcessExit, ProgramOutput
 from grader.sandbox.program import Isolation, Limits, ProgramSpec, SandboxError, SandboxUnavailable
+from groundwork.process_exit import ProcessExit
 
 __all__ = [
     "ForkServer",
@@ -18,7 +18,6 @@ __all__ = [
     "Limits",
     "MiddlewareUnavailable",
     "ProcessExit",
-    "ProgramOutput",
     "ProgramSpec",
     "SandboxError",
     "SandboxUnavailable",

@@ -18,16 +18,17 @@ from grader.sandbox.confine import StartRequest
 from grader.sandbox.environment import RUNTIME_VARIABLES, for_trusted
 from grader.sandbox.isolation import forget
 from grader.sandbox.middleware import variables
-from grader.sandbox.monitor import Monitor, ProcessExit, ProgramOutput
+from grader.sandbox.monitor import Monitor
 from grader.sandbox.program import OPEN_FILES, START_REQUEST, Isolation, Limits, ProgramSpec, SandboxError
 from groundwork.clean_environment import module_command
+from groundwork.process_exit import ProcessExit
 
 _START_S = 30.0
 _DEATH_S = 30.0
 
 
-class SandboxedProgram:
-    """A student's program in its sandbox. Leaving the `with` block kills all of it."""
+class SandboxedProgram(Monitor):
+    """A student's program in its sandbox, which is watched. Leaving the `with` block kills all of it."""
 
     def __init__(self, control: socket.socket, output: int, limits: Limits) -> None:
         """Wait until the supervisor at the other end of the socket has started the program.
@@ -40,7 +41,6 @@ class SandboxedProgram:
         Raises:
             SandboxError: if it could not be started.
         """
-        self._control = control
         control.settimeout(_START_S)
         try:
             answer = json.loads(control.recv(65536) or b"{}")
@@ -51,24 +51,16 @@ class SandboxedProgram:
             os.close(output)
             raise SandboxError(f"the sandbox could not be made: {answer.get('reason', 'the supervisor died')}")
         control.settimeout(None)
-        self.pid: int = answer["pid"]
-        """The id of the node's process, as seen from outside the sandbox."""
-        self.folder: str = answer["folder"]
-        """Where the submission's files are, as the program sees them."""
-        self._monitor = Monitor(control, output, limits, self.pid, answer["init"], frozenset(answer["own_processes"]))
+        super().__init__(control, output, limits, answer["pid"], answer["init"], frozenset(answer["own_processes"]))
 
     def poll(self) -> ProcessExit | None:
         """Return how the node's process ended; None while it runs."""
-        return self._monitor.exit
+        return self.exit
 
     def wait(self, timeout_s: float) -> ProcessExit | None:
         """Wait for the end of the node's process, at most this many seconds; return None if it still runs."""
-        self._monitor.ended.wait(timeout_s)
-        return self._monitor.exit
-
-    def output(self) -> ProgramOutput:
-        """Return what it has printed so far."""
-        return self._monitor.output()
+        self.ended.wait(timeout_s)
+        return self.exit
 
     def interrupt(self) -> None:
         """Send SIGINT to the node's process, as Ctrl-C would, and return when it is sent; do nothing if it has ended.
@@ -78,24 +70,12 @@ class SandboxedProgram:
         """
         with contextlib.suppress(OSError):
             self._control.send(b"interrupt")
-        if not self._monitor.interrupted.wait(_DEATH_S):
+        if not self.interrupted.wait(_DEATH_S):
             raise SandboxError(f"the student's process {self.pid} was not interrupted within {_DEATH_S:g} s")
-
-    def cpu_seconds(self) -> float:
-        """Return how much CPU time all its processes have used, including those that have ended (s)."""
-        return self._monitor.cpu_seconds()
 
     def pids(self) -> tuple[int, ...]:
         """Return its processes' ids, as seen from outside the sandbox: the first, and others found within 50 ms."""
-        return (self.pid, *self._monitor.others)
-
-    def at_limit(self) -> bool:
-        """Return whether it is being killed for a limit. This checks now, because the monitor may be late."""
-        return self._monitor.at_limit()
-
-    def processes(self) -> int:
-        """Return how many processes it has now."""
-        return len(self._monitor.members())
+        return (self.pid, *self.others)
 
     def kill(self) -> ProcessExit:
         """Kill all its processes, including daemons, and return when all are dead. A second call returns the same.
@@ -105,10 +85,10 @@ class SandboxedProgram:
         """
         with contextlib.suppress(OSError):
             self._control.send(b"kill")
-        if not self._monitor.dead.wait(_DEATH_S):
+        if not self.dead.wait(_DEATH_S):
             raise SandboxError(f"the student's process {self.pid} did not die within {_DEATH_S:g} s of being killed")
-        self._monitor.join()
-        return self._monitor.exit or ProcessExit(None, int(signal.SIGKILL), None)
+        self.join()
+        return self.exit or ProcessExit(None, int(signal.SIGKILL), None)
 
     def __enter__(self) -> SandboxedProgram:
         """Return itself. It is running already."""

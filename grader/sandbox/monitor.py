@@ -10,39 +10,17 @@ import signal
 import socket
 import threading
 import time
-from dataclasses import dataclass
 
 from grader.sandbox import processes
 from grader.sandbox.program import Limits
+from groundwork.process_exit import ProcessExit
 
 HEAD_BYTES = 64 * 1024
 TAIL_BYTES = 64 * 1024
 
 
-@dataclass(frozen=True)
-class ProgramOutput:
-    """What a program printed on standard output and error, in order.
-
-    Attributes:
-        data: the bytes kept: all, or the first and the last 64 KiB.
-        dropped: how many bytes between the two were not kept.
-    """
-
-    data: bytes
-    dropped: int
-
-    @property
-    def text(self) -> str:
-        """The output as text, with a line that says how much is missing, if anything is."""
-        if not self.dropped:
-            return self.data.decode(errors="replace")
-        head, tail = self.data[:HEAD_BYTES], self.data[HEAD_BYTES:]
-        gap = f"\n[... {self.dropped} bytes of output are not shown ...]\n"
-        return head.decode(errors="replace") + gap + tail.decode(errors="replace")
-
-
 class OutputBuffer:
-    """Collects pieces of output and keeps at most 128 KiB of them."""
+    """Collects pieces of output, and keeps all, or the first and the last 64 KiB."""
 
     def __init__(self) -> None:
         self._head = bytearray()
@@ -58,29 +36,17 @@ class OutputBuffer:
         self._tail += piece[room:]
         del self._tail[:-TAIL_BYTES]
 
-    def output(self) -> ProgramOutput:
-        """Return what has been kept so far."""
-        data = bytes(self._head + self._tail)
-        return ProgramOutput(data, self.total - len(data))
+    def text(self) -> str:
+        """Return what has been kept so far, with a line that says how much is missing, if anything is."""
+        dropped = self.total - len(self._head) - len(self._tail)
+        if not dropped:
+            return (self._head + self._tail).decode(errors="replace")
+        gap = f"\n[... {dropped} bytes of output are not shown ...]\n"
+        return self._head.decode(errors="replace") + gap + self._tail.decode(errors="replace")
 
 
 _TICK_S = 0.05
 _PIECE = 1 << 18
-
-
-@dataclass(frozen=True)
-class ProcessExit:
-    """How a program ended.
-
-    Attributes:
-        code: the exit code; None if a signal ended it.
-        signal: the signal's number; None if it exited by itself.
-        limit: the limit that it hit: cpu, memory, processes, file-size, output, wall; otherwise None.
-    """
-
-    code: int | None
-    signal: int | None
-    limit: str | None
 
 
 # The last line that Python prints if the kernel refused more. A program that only pretends gets no points.
@@ -121,7 +87,7 @@ class Monitor:
         self.others: frozenset[int] = frozenset()
         """The other processes, as last seen."""
         self._control, self._pipe, self._limits = control, output, limits
-        self._pid, self._init, self._own_processes = pid, init, own_processes
+        self.pid, self._init, self._own_processes = pid, init, own_processes
         self._buffer = OutputBuffer()
         self._lock = threading.Lock()
         self._limit: str | None = None
@@ -130,23 +96,23 @@ class Monitor:
         self._thread = threading.Thread(target=self._watch, name="monitor", daemon=True)
         self._thread.start()
 
-    def output(self) -> ProgramOutput:
-        """Return what has been printed so far, also what nobody has read yet."""
+    def output(self) -> str:
+        """Return what has been printed so far on standard output and error, also what nobody has read yet."""
         self._drain_what_is_there()
         with self._lock:
-            return self._buffer.output()
+            return self._buffer.text()
 
     def members(self) -> set[int]:
         """Return the program's processes."""
         if self.dead.is_set():
             return set()
-        found = processes.descendants(self._init) | processes.descendants(self._pid)
-        return (found | ({self._pid} if self.exit is None else set())) - self._own_processes
+        found = processes.descendants(self._init) | processes.descendants(self.pid)
+        return (found | ({self.pid} if self.exit is None else set())) - self._own_processes
 
     def cpu_seconds(self) -> float:
         """Return the CPU seconds of all processes, including those that have ended."""
-        alive = (self._pid, *self.others) if self.exit is None else self.others
-        orphans = processes.reaped_cpu_seconds(self._init) if self._init != self._pid else 0.0
+        alive = (self.pid, *self.others) if self.exit is None else self.others
+        orphans = processes.reaped_cpu_seconds(self._init) if self._init != self.pid else 0.0
         return self._reaped_cpu_s + orphans + sum(processes.usage(pid).cpu_s for pid in alive)
 
     def at_limit(self) -> bool:
@@ -209,7 +175,7 @@ class Monitor:
                     self._finish()
                 return
         # The supervisor is gone. With namespaces the kernel has killed everything; without, we kill what we last saw.
-        for pid in (self._pid, *self.others):
+        for pid in (self.pid, *self.others):
             with contextlib.suppress(OSError):
                 os.kill(pid, signal.SIGKILL)
         self._finish()
@@ -236,7 +202,7 @@ class Monitor:
         if number == signal.SIGXFSZ:
             return "file-size"
         if code != 0:
-            lines = self.output().data[-2000:].decode(errors="replace").strip().splitlines()
+            lines = self.output()[-2000:].strip().splitlines()
             for words, limit in _LAST_WORDS.items():
                 if lines and words in lines[-1]:
                     return limit
@@ -245,7 +211,7 @@ class Monitor:
     def _look(self) -> None:
         """Measure what the program uses, and kill it if it exceeds a limit."""
         members = self.members()
-        self.others = frozenset(members - {self._pid})
+        self.others = frozenset(members - {self.pid})
         used = [processes.usage(pid) for pid in members]
         if time.monotonic() - self._since_s > self._limits.wall_s:
             self._kill("wall")

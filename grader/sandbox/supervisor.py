@@ -43,7 +43,7 @@ def supervise(start: StartRequest, passed: PassedDescriptors) -> StudentToRun:
         if isinstance(child, StudentToRun):
             return child
         os.close(passed.output)
-        started = {"event": "started", "pid": child, "folder": paths.folder}
+        started = {"event": "started", "pid": child}
         _report(control, started | {"init": sandbox.init, "own_processes": sorted(sandbox.own_processes)})
         reported = True
         _watch(control, child, sandbox)

@@ -32,7 +32,7 @@ def reason_against(level: Isolation) -> str | None:
         program = ProgramSpec("trial.py", {"trial.py": _PROGRAM.encode()}, preloaded=False)
         with ForkServer(preload=()) as fork_server, fork_server.start(program, level) as student:
             end = student.wait(20.0)
-            last = student.output().text.splitlines()[-1:]  # a module of this Python may print at each start
+            last = student.output().splitlines()[-1:]  # a module of this Python may print at each start
     except (OSError, SandboxError) as fault:
         return str(fault)
     return None if last == [_WORD] else f"a program started in it ended with {end} and printed: {last}"

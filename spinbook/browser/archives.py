@@ -119,7 +119,7 @@ def _used_outside_checks(grader: Path) -> dict[str, bytes]:
     empty = {f"grader/{name}": b"" for name in ("__init__.py", "runner/__init__.py")}
     used = {f"grader/{name}": (grader / name).read_bytes() for name in ("preloaded.py", "runner/message.py")}
     shared = Path(groundwork.__file__).parent
-    names = ("__init__.py", "plain_data.py", "problem.py", "words.py")
+    names = ("__init__.py", "plain_data.py", "problem.py", "process_exit.py", "words.py")
     shown = {f"groundwork/{name}": (shared / name).read_bytes() for name in names}
     return empty | used | shown
 

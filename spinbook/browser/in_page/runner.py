@@ -25,6 +25,7 @@ from grader.runner.program import Task
 from grader.runner.run import ScenarioRun
 from grader.scenario.command_line import arguments
 from grader.scenario.scenario import Scenario
+from groundwork.process_exit import ProcessExit
 from rcl_python import abort, logs
 from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.hub import PageHub, RunFinished, Turns
@@ -40,23 +41,6 @@ class ProgramText:
     source: str
 
 
-@dataclass(frozen=True)
-class PageProgramEnd:
-    """How a program ended: its exit code, or the signal that killed it. No limits apply in a page."""
-
-    code: int | None
-    signal: int | None = None
-    limit: str | None = None
-
-
-@dataclass(frozen=True)
-class PageOutput:
-    """What a program has printed. Nothing is dropped in a page."""
-
-    text: str
-    dropped: int = 0
-
-
 class PageProgram:
     """The program as the grader's runner sees it: see grader/runner/program.py."""
 
@@ -70,18 +54,18 @@ class PageProgram:
         """Return its process ids: none, because it runs in this process."""
         return ()
 
-    def output(self) -> PageOutput:
+    def output(self) -> str:
         """Return what it has printed."""
-        return PageOutput(self._log.getvalue())
+        return self._log.getvalue()
 
-    def poll(self) -> PageProgramEnd | None:
+    def poll(self) -> ProcessExit | None:
         """Return how it ended; None if it still runs."""
         return self._end() if self._turns.has_ended else None
 
-    def _end(self) -> PageProgramEnd:
-        return PageProgramEnd(None, signal.SIGABRT) if self._turns.aborted else PageProgramEnd(self.code)
+    def _end(self) -> ProcessExit:
+        return ProcessExit(None, signal.SIGABRT) if self._turns.aborted else ProcessExit(self.code)
 
-    def wait(self, timeout_s: float) -> PageProgramEnd | None:
+    def wait(self, timeout_s: float) -> ProcessExit | None:
         """Return the same as `poll`: the program does not run while the grader's thread does."""
         return self.poll()
 
@@ -97,7 +81,7 @@ class PageProgram:
         """Return whether it has hit a limit: there are none."""
         return False
 
-    def kill(self) -> PageProgramEnd:
+    def kill(self) -> ProcessExit:
         """End the program, and return how it ended."""
         if not self._turns.has_ended:
             self._turns.is_over = True

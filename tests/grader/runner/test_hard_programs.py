@@ -163,7 +163,7 @@ def test_a_program_has_been_sent_ctrl_c_when_the_call_returns(fork_server: ForkS
         program = ProgramSpec("node.py", {"node.py": f"{block}signal.pause()".encode()}, hub=hub.add_program())
         with fork_server.start(program, choose(None), Limits()) as student:
             deadline = time.monotonic() + 60
-            while "blocked" not in student.output().text:
+            while "blocked" not in student.output():
                 assert time.monotonic() < deadline
                 hub.pause()
             student.interrupt()

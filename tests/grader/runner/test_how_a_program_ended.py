@@ -7,7 +7,7 @@ from rclpy.node import Node
 
 from grader.runner.node_attributes import PUBLIC
 from grader.runner.program_end import of_exit, survived_by
-from grader.sandbox.monitor import ProcessExit
+from groundwork.process_exit import ProcessExit
 
 SOURCE = "import rclpy\nrclpy.spin(node)\n"
 

@@ -52,4 +52,4 @@ def in_the_runner(
                 look()
                 hub.advance(hub.now + SECOND)
         except _Over:
-            return HubRun(student.poll(), student.output().text)
+            return HubRun(student.poll(), student.output())

@@ -99,7 +99,7 @@ def run_to_end(
     """Run a program to its end, in the runner."""
     with fork_server.start(program, level, limits) as student:
         end = student.wait(timeout_s)
-    return Run(end, student.output().text)
+    return Run(end, student.output())
 
 
 def _serve(connection: Connection, level: Isolation, home: str | None) -> None:

@@ -50,12 +50,12 @@ def start_daemons(
     """
     code = DAEMON.format(name=name) + end
     with fork_server.start(ProgramSpec("d.py", {"d.py": code.encode()}), level) as student:
-        while "started" not in student.output().text:
+        while "started" not in student.output():
             time.sleep(0.001)
-        before = student.processes()
+        before = len(student.members())
         if "exit" in end:
             student.wait(30.0)
-    return student.poll(), before, student.processes()
+    return student.poll(), before, len(student.members())
 
 
 @pytest.mark.parametrize("end", ["signal.pause()", "os._exit(0)"])
@@ -92,7 +92,7 @@ def start_and_stay(fork_server: ForkServer, level: Isolation, name: str) -> None
     student = fork_server.start(
         ProgramSpec("d.py", {"d.py": (DAEMON.format(name=name) + "signal.pause()").encode()}), level
     )
-    while "started" not in student.output().text:
+    while "started" not in student.output():
         time.sleep(0.001)
     _kept.append(student)
 

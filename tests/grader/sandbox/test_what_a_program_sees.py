@@ -258,7 +258,7 @@ print(json.dumps([read(path) or None for path in {paths!r}]))"""
     )
     with fork_server.start(program, level) as student:
         student.wait(30.0)
-    reported: list[str | None] = json.loads(student.output().text)
+    reported: list[str | None] = json.loads(student.output())
     return reported
 
 
