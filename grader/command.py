@@ -10,6 +10,7 @@ import click
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import find, load
+from grader.report.svg_file import SvgFile
 from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.submission.file_kinds import kind_of
 from grader.submission.reader import is_one, of_source, read
@@ -33,7 +34,7 @@ _TABLE = click.Path(path_type=Path, exists=True, dir_okay=False)
     "--mistake", metavar="NAME", default="", help="Grade a usual mistake from the exercise's solutions folder."
 )
 @click.option("--json", "json_", is_flag=True, help="Print the grade as JSON, for programs.")
-@click.option("--plot", type=_PATH, help="Draw your node's output over the solution's (.svg).")
+@click.option("--plot", type=SvgFile(), help="Draw your node's output over the solution's (.svg).")
 @click.option("--bag", type=_PATH, help="Write every scenario as a rosbag2 (MCAP) into this folder.")
 @click.option("-v", "--verbose", is_flag=True, help="Print the node's log, too.")
 @click.option("--real-time", is_flag=True, help="Run in real time, not as fast as possible.")
@@ -240,8 +241,6 @@ def _write(result: Grade, exercise: Exercise, plot: Path | None, bag: Path | Non
                 _stop(str(error))
     except OSError as error:
         _stop(f"{error.filename}: {error.strerror}")
-    except ValueError as error:
-        _stop(str(error))
 
 
 def _stop(message: str) -> NoReturn:

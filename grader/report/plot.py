@@ -22,11 +22,8 @@ def draw(grade: Grade, exercise: Exercise, file: Path, scenario: str = "") -> bo
     Return False, and write nothing, if there is nothing to draw.
 
     Raises:
-        ValueError: if the file's name says that it is another kind of picture.
         OSError: if the file can't be written.
     """
-    if file.suffix.lower() not in ("", ".svg"):
-        raise ValueError(f"{file}: plots are SVG files. Choose a name that ends in .svg.")
     svg = scenario_picture(grade, exercise, scenario or _first_wrong(grade))
     if svg:
         write_if_changed(file, svg)

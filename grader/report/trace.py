@@ -19,6 +19,7 @@ from grader.grading.grading import Grading
 from grader.grading.reference import solution_file
 from grader.grading.scenario_runner import ScenarioRunner
 from grader.report.bag import NoBagWriter, write_bags
+from grader.report.svg_file import SvgFile
 from grader.report.terminal import show
 from grader.report.timeline import lines_of
 from grader.sandbox.isolation import choose
@@ -55,7 +56,7 @@ class Trace:
 @click.option("--mistake", default="", metavar="NAME", help="Run a usual mistake from the exercise's solutions folder.")
 @click.option("--only", multiple=True, metavar="TEXT", help="Show only what has this in its name, such as a topic.")
 @click.option("--all", "everything", is_flag=True, help="Show every message, also of topics with many.")
-@click.option("--plot", type=click.Path(path_type=Path), help="Draw the program's output over the solution's (.svg).")
+@click.option("--plot", type=SvgFile(), help="Draw the program's output over the solution's (.svg).")
 @click.option("--bag", type=click.Path(path_type=Path), help="Write the run as a rosbag2 (MCAP) into this folder.")
 @click.option("--log", is_flag=True, help="Show what the program logged, too.")
 @click.option("--seed", default=1, show_default=True, help="The seed for scenarios with random values.")
@@ -138,7 +139,7 @@ def _show(asked: Trace, exercise: Exercise, grade: Grade, steps: tuple[Step, ...
                 click.echo(NOTHING, err=True)
         if asked.bag:
             write_bags(grade, asked.bag)
-    except (NoBagWriter, OSError, ValueError) as error:
+    except (NoBagWriter, OSError) as error:
         click.echo(f"not written: {error}", err=True)
 
 

@@ -51,7 +51,10 @@ def test_where_the_first_scenario_decides_the_others_leave_nothing_among_tempora
     assert list(temporary_files.iterdir()) == []
 
 
-@pytest.mark.parametrize("arguments", [["no_exercise", "x.py"], ["joint_velocity", "nowhere.py"], ["joint_velocity"]])
+@pytest.mark.parametrize("arguments", [
+    ["no_exercise", "x.py"], ["joint_velocity", "nowhere.py"], ["joint_velocity"],
+    ["joint_velocity", "--mistake", "fixed_dt", "--plot", "picture.png"],
+])  # fmt: skip
 def test_wrong_usage_ends_with_2_and_says_what_is_right(arguments: list[str]) -> None:
     done = grade(*arguments)
     assert done.returncode == 2

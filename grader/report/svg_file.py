@@ -1,0 +1,23 @@
+"""The option's type for the file of a plot."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+
+class SvgFile(click.Path):
+    """The file that a plot is written into; another kind of picture is refused before anything runs."""
+
+    def __init__(self) -> None:
+        """A file that need not exist."""
+        super().__init__(path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """Return the file. Its name ends in `.svg`, or has no ending."""
+        file = Path(str(super().convert(value, param, ctx)))
+        if file.suffix.lower() not in ("", ".svg"):
+            self.fail(f"{file}: plots are SVG files. Choose a name that ends in .svg.", param, ctx)
+        return file
