@@ -23,21 +23,12 @@ from grader.exercise.imported_files import importable
 from grader.recording.recording import Recording
 
 
-def judge(
-    exercise: Exercise,
-    recordings: dict[str, Recording],
-    references: dict[str, Recording],
-    titles: dict[str, str],
-    seed: int = 1,
-    partly: bool = False,
-) -> tuple[Verdict, ...]:
-    """Return the verdict of every check, in the order of the files.
+def judge(exercise: Exercise, runs: Mapping[str, Run], partly: bool = False) -> tuple[Verdict, ...]:
+    """Return the verdict of every check on these runs, by scenario, in the order of the files.
 
-    `recordings` are the student's and `references` the solution's, by scenario. Raises `ExerciseError` if the files of
-    checks are unusable. Runs pytest in this process, without the plugins that are installed on this machine. With
-    `partly`, only the checks judge that need no other scenarios.
+    Raises `ExerciseError` if the files of checks are unusable. Runs pytest in this process, without the plugins that
+    are installed on this machine. With `partly`, only the checks judge that need no other scenarios.
     """
-    runs = runs_of(exercise, recordings, references, titles, seed)
     return judge_when_collected(exercise, runs, lambda: runs, partly)
 
 
@@ -48,7 +39,7 @@ def runs_of(
     titles: dict[str, str],
     seed: int = 1,
 ) -> dict[str, Run]:
-    """Return what a check sees of each scenario."""
+    """Return what a check sees of each scenario. `recordings` are the student's, `references` the solution's."""
     return {name: Run(exercise, recordings[name], references[name], titles.get(name, ""), seed) for name in recordings}
 
 

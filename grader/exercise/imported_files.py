@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import functools
 import hashlib
 import importlib
 import importlib.util
+import itertools
 import sys
 import traceback
 from collections.abc import Iterable, Iterator
@@ -26,6 +28,7 @@ def importable(folder: Path) -> Iterator[None]:
     if path in sys.path:
         yield
         return
+    last = next(reversed(sys.modules))
     wrote, sys.dont_write_bytecode = sys.dont_write_bytecode, True
     sys.path.append(path)
     importlib.invalidate_caches()
@@ -34,8 +37,9 @@ def importable(folder: Path) -> Iterator[None]:
     finally:
         sys.path.remove(path)
         sys.dont_write_bytecode = wrote
-        for name, module in list(sys.modules.items()):
-            if Path(getattr(module, "__file__", None) or "/").parent == folder:
+        # Only what was imported meanwhile: to look at another module would copy its memory in a fork.
+        for name in list(itertools.takewhile(lambda name: name != last, reversed(sys.modules))):
+            if Path(getattr(sys.modules[name], "__file__", None) or "/").parent == folder:
                 del sys.modules[name]
 
 
@@ -51,6 +55,7 @@ def imported(file: Path, name: str) -> ModuleType:
     return module
 
 
+@functools.lru_cache(maxsize=64)  # each file is asked for some ten times
 def tree_of(source: str) -> ast.Module:
     """Return a parsed program of an author's; an empty one if it is not valid Python, which running it reports."""
     try:

@@ -11,6 +11,8 @@ from grader.recording.events import Fields
 from grader.recording.types import message_class
 
 _INTEGERS = {f"{sign}int{bits}": (bits, sign == "") for bits in (8, 16, 32, 64) for sign in ("", "u")}
+#: Types of elements that fit whatever their value is; most lists have thousands of these.
+_ALWAYS_FITS = {"double": float, "float": float, "boolean": bool, "string": str}
 _LIST = re.compile(r"sequence<(?P<of>.+?)(, (?P<most>\d+))?>|(?P<array>.+)\[(?P<size>\d+)\]")
 _TEXT = re.compile(r"w?string(<(?P<most>\d+)>)?")
 
@@ -84,6 +86,8 @@ def _checked_list(found: re.Match[str], type_name: str, value: Any, field: str, 
         _expect(len(value) <= int(found["most"]), type_name, value, field, name, fix)
     if isinstance(value, LongArray) and value.typecode == CODES.get(kind):
         return value
+    if set(map(type, value)) == {_ALWAYS_FITS.get(kind)}:
+        return list(value)
     return [_checked(kind, one, f"{field}[{index}]", name) for index, one in enumerate(value)]
 
 

@@ -99,7 +99,7 @@ class JudgeJob:
         from grader.checking.judge import judge
 
         ready()
-        return judge(self.exercise, self.recordings, self.references, self.titles, self.seed, self.partly)
+        return judge(self.exercise, self.runs(), self.partly)
 
     def runs(self) -> dict[str, Run]:
         """Return what is judged, for a process that has collected the checks."""

@@ -16,17 +16,14 @@ from grader.gradescope.pins import LOCKS, needed
 _LEFT_OUT = {"jedi", "parso", "debugpy"}
 
 
-#: Large, and few courses use them.
-_TEST_MESSAGES = {"ros-test-msgs", "ros-jazzy-test-msgs"}
-
-
 def students_pins(texts: bytes) -> list[str]:
     """Return the lines for what notebooks and checks need; none if Spinbook is not installed from a checkout.
 
-    `texts` are what students get to read: test_msgs is left out unless they name it.
+    `texts` are what students get to read: test_msgs, which is large, is left out unless they name it.
     """
     names = needed("spinbook", "student") | needed("spinbook", "colcon")
-    return list(_pins(names if b"test_msgs" in texts else names - _TEST_MESSAGES))
+    unused = set() if b"test_msgs" in texts else {"ros-test-msgs", "ros-jazzy-test-msgs"}
+    return list(_pins(names - unused))
 
 
 def jupyterlab_pins() -> list[str]:

@@ -119,9 +119,10 @@ def verdicts(
     exercise: Exercise, scenarios: list[Scenario], recordings: dict[str, Recording], references: dict[str, Recording]
 ) -> tuple[Verdict, ...]:
     """Return the checks' verdicts."""
-    from grader.checking.judge import judge
+    from grader.checking.judge import judge, runs_of
 
-    return judge(exercise, recordings, references, {scenario.name: scenario.title for scenario in scenarios})
+    titles = {scenario.name: scenario.title for scenario in scenarios}
+    return judge(exercise, runs_of(exercise, recordings, references, titles))
 
 
 @dataclass(frozen=True)
