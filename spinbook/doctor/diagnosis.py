@@ -64,6 +64,12 @@ def missing(found: str, fix: str) -> MachineFinding:
     return MachineFinding("", State.MISSING, found, fix)
 
 
+def last_words(ended: subprocess.CompletedProcess[str] | subprocess.CalledProcessError) -> str:
+    """Return the last line that a program wrote to stderr, or else its exit code."""
+    lines = (ended.stderr or "").strip().splitlines() or [f"exit code {ended.returncode}"]
+    return str(lines[-1])
+
+
 def in_handout() -> bool:
     """Return whether this is a handout's folder: what helps an author then helps nobody."""
     return Path(BASE).is_dir()

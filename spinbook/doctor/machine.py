@@ -14,10 +14,11 @@ from pathlib import Path
 from typing import Any
 
 from groundwork.child_process import run_program
+from groundwork.files import write_folder
 from interface_compiler import prefixes, shipped, toolchain
 from ros_in_python.ros2.executables import is_built_in, real_ros2
 from spinbook.doctor import python_build
-from spinbook.doctor.diagnosis import MachineFinding, in_handout, missing, ok, set_up_again, warning
+from spinbook.doctor.diagnosis import MachineFinding, in_handout, last_words, missing, ok, set_up_again, warning
 
 OLDEST, NEWEST = (3, 10), (3, 14)
 
@@ -96,6 +97,8 @@ setup(name='{_NAME}', version='0.0.0', packages=['{_NAME}'],
     f"{_NAME}/trial.py": "def main():\n    print('built')\n",
 }
 _TOO_NEW = 80
+#: Longer than the check may take, whose end also ends the build (s).
+_BUILD_S = 120.0
 _BUILD = ("--log-base", "log", "build", "--symlink-install", "--event-handlers", "console_direct-")
 
 
@@ -105,24 +108,20 @@ def examine_colcon() -> MachineFinding:
         colcon, setuptools = version("colcon-core"), version("setuptools")
     except PackageNotFoundError as error:
         return missing(f"{error.name} is not installed for {sys.executable}", set_up_again())
-    found = f"colcon-core {colcon}, setuptools {setuptools}"
+    versions = f"colcon-core {colcon}, setuptools {setuptools}"
     with tempfile.TemporaryDirectory(prefix="spinbook-doctor-") as folder:
         workspace = Path(folder)
-        for path, text in _FILES.items():
-            file = workspace / "src" / _NAME / path
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(text)
+        write_folder(workspace / "src" / _NAME, _FILES)
         built = _build(workspace)
         if built.returncode:
-            lines = [line for line in built.stderr.splitlines() if line.strip()] or [f"exit code {built.returncode}"]
-            return missing(f"{found}; a build fails: {lines[-1]}", set_up_again())
+            return missing(f"{versions}; a build fails: {last_words(built)}", set_up_again())
         linked = not any((workspace / "install").glob(f"{_NAME}/lib/python*/site-packages/{_NAME}/trial.py"))
     if not linked or int(setuptools.split(".")[0]) >= _TOO_NEW:
         return warning(
-            f"{found}; `--symlink-install` copies, silently",
+            f"{versions}; `--symlink-install` copies, silently",
             "With setuptools 80 or newer, an edit of a node has no effect. Fix: pip install 'setuptools<80'",
         )
-    return ok(f"{found}; built a package with --symlink-install")
+    return ok(f"{versions}; built a package with --symlink-install")
 
 
 def _build(workspace: Path) -> subprocess.CompletedProcess[str]:
@@ -131,14 +130,8 @@ def _build(workspace: Path) -> subprocess.CompletedProcess[str]:
         "AMENT_PREFIX_PATH": os.pathsep.join(dict.fromkeys([*prefixes, sys.prefix])),
         "COLCON_LOG_LEVEL": "error",
     }
-    return subprocess.run(
-        [sys.executable, "-m", "colcon", *_BUILD],
-        cwd=workspace,
-        env=os.environ | settings,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    argv = [sys.executable, "-m", "colcon", *_BUILD]
+    return run_program(argv, _BUILD_S, cwd=workspace, env=os.environ | settings)
 
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
@@ -161,8 +154,7 @@ def examine_browser() -> MachineFinding:
         except subprocess.TimeoutExpired:
             return warning(f"{path} does not respond within {_DEADLINE_S:g} s", _ONLY_TESTS)
     if "spinbook" not in trial.stdout:
-        lines = trial.stderr.strip().splitlines() or [f"exit code {trial.returncode}"]
-        return warning(f"{path} does not show a page: {lines[-1]}", _ONLY_TESTS)
+        return warning(f"{path} does not show a page: {last_words(trial)}", _ONLY_TESTS)
     return ok(path)
 
 

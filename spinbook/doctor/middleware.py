@@ -10,25 +10,34 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Mapping
 from pathlib import Path
 
+from groundwork.child_process import run_program
 from rmw_lockstep import IDENTIFIER
 from rmw_lockstep.library import PREBUILT, Library, library
-from spinbook.doctor.diagnosis import MachineFinding, missing, ok, set_up_again, warning
+from spinbook.doctor.diagnosis import MachineFinding, last_words, missing, ok, set_up_again, warning
 from spinbook.kernel.environment import claim_domain, for_domain, missing_middleware
 
 #: rclpy's exit code if RMW_IMPLEMENTATION can't be loaded.
 NOT_LOADED = 102
-_PRINT_MIDDLEWARE = "from rclpy.utilities import get_rmw_implementation_identifier as name; print(name())"
+_PRINT_MIDDLEWARE = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
+#: Longer than the checks may take, whose end also ends this (s).
+_LOADING_S = 60.0
+
+
+def _load(environment: Mapping[str, str]) -> tuple[str, subprocess.CompletedProcess[str]]:
+    """Load the middleware in a process of its own, which rclpy ends if the middleware is missing. Return its name."""
+    trial = run_program([sys.executable, "-c", _PRINT_MIDDLEWARE], _LOADING_S, env=environment)
+    return "".join(trial.stdout.splitlines()[-1:]), trial
 
 
 def examine_middleware() -> MachineFinding:
-    """Load the middleware in a process of its own, which rclpy ends if the middleware is missing."""
+    """Load the middleware that nodes use here."""
     chosen = os.environ.get("RMW_IMPLEMENTATION", "")
     absent = missing_middleware(os.environ)
-    trial = subprocess.run([sys.executable, "-c", _PRINT_MIDDLEWARE], capture_output=True, text=True, check=False)
+    loaded, trial = _load(os.environ)
     if trial.returncode == 0:
-        loaded = "".join(trial.stdout.splitlines()[-1:])
         if loaded.startswith("rmw_fastrtps"):
             return ok(f"{loaded}{' (RMW_IMPLEMENTATION)' if chosen else ''}")
         return warning(
@@ -41,39 +50,29 @@ def examine_middleware() -> MachineFinding:
             f"RMW_IMPLEMENTATION is '{chosen}', which is not installed here",
             "Nodes would exit with code 102 and no message. Fix: unset RMW_IMPLEMENTATION",
         )
-    lines = trial.stderr.strip().splitlines() or [f"exit code {trial.returncode}"]
-    return missing(f"does not load: {lines[-1]}", set_up_again())
+    return missing(f"does not load: {last_words(trial)}", set_up_again())
 
 
 _NEEDED = "Without it nothing can be graded or checked."
-_PRINT_LOCKSTEP = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
 
 
 def examine_lockstep() -> MachineFinding:
-    """Let rclpy load the grader's middleware in a process of its own."""
-    found = library()
-    if not isinstance(found, Library):
-        return warning(f"not available: {found.reason}", f"{_NEEDED} {found.remedy}")
-    trial = _trial(found)
-    loaded = "".join(trial.stdout.splitlines()[-1:])
+    """Load the grader's middleware."""
+    lockstep = library()
+    if not isinstance(lockstep, Library):
+        return warning(f"not available: {lockstep.reason}", f"{_NEEDED} {lockstep.remedy}")
+    loaded, trial = _load({**os.environ, **lockstep.environment(os.environ)})
     if loaded == IDENTIFIER:
-        return ok(f"{loaded}, {found.folder}")
-    lines = trial.stderr.strip().splitlines() or [f"rclpy has loaded {loaded or 'nothing'}"]
-    return warning(f"it is compiled, but does not load: {lines[-1]}", f"{_NEEDED} {_again(found)}")
+        return ok(f"{loaded}, {lockstep.folder}")
+    reason = last_words(trial) if trial.stderr.strip() else f"rclpy has loaded {loaded or 'nothing'}"
+    return warning(f"it is compiled, but does not load: {reason}", f"{_NEEDED} {_again(lockstep)}")
 
 
-def _again(found: Library) -> str:
-    if found.folder.name == PREBUILT:
+def _again(lockstep: Library) -> str:
+    if lockstep.folder.name == PREBUILT:
         wheel = f"wheels/{PREBUILT}-*.whl"
         return f"Install its wheel again. In a handout's folder: .venv/bin/pip install --force-reinstall {wheel}"
-    return f"Compile it again: rm -r {found.folder}; python -m rmw_lockstep.build"
-
-
-def _trial(found: Library) -> subprocess.CompletedProcess[str]:
-    environment = {**os.environ, **found.environment(os.environ)}
-    return subprocess.run(
-        [sys.executable, "-c", _PRINT_LOCKSTEP], env=environment, capture_output=True, text=True, check=False
-    )
+    return f"Compile it again: rm -r {lockstep.folder}; python -m rmw_lockstep.build"
 
 
 #: Bytes that should be free: each participant of Fast DDS takes about half a MB.
@@ -158,9 +157,9 @@ def examine_message() -> MachineFinding:
             "Is the loopback interface up (ip link show lo)? Does a firewall drop UDP on 127.0.0.1?",
         )
     except subprocess.CalledProcessError as error:
-        lines = (error.stderr or "").strip().splitlines() or [f"exit code {error.returncode}"]
         return missing(
-            f"the listener failed: {lines[-1]}", "To see its output: python -m spinbook.doctor.middleware listen"
+            f"the listener failed: {last_words(error)}",
+            "To see its output: python -m spinbook.doctor.middleware listen",
         )
     finally:
         claimed.release()
@@ -171,25 +170,15 @@ def examine_message() -> MachineFinding:
 
 
 def _send_one(environment: dict[str, str]) -> dict[str, float]:
-    talker = subprocess.Popen(
-        [sys.executable, "-m", "spinbook.doctor.middleware"],
-        env=environment,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
+    program = [sys.executable, "-m", "spinbook.doctor.middleware"]
+    silent = subprocess.DEVNULL
+    talker = subprocess.Popen(program, env=environment, stdin=subprocess.PIPE, stdout=silent, stderr=silent)
     try:
-        listener = subprocess.run(
-            [sys.executable, "-m", "spinbook.doctor.middleware", "listen"],
-            env=environment,
-            capture_output=True,
-            text=True,
-            timeout=_ARRIVES_WITHIN_S,
-            check=True,
-        )
+        listener = run_program([*program, "listen"], _ARRIVES_WITHIN_S, env=environment)
     finally:
         talker.kill()
         talker.communicate()
+    listener.check_returncode()
     took = json.loads(listener.stdout)
     assert isinstance(took, dict)
     return took

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import os
 import sys
+from collections.abc import Iterator
 from importlib.metadata import version as distribution_version
 from pathlib import Path
 from xml.etree import ElementTree
@@ -86,72 +87,60 @@ _WATCHED = (
 
 def examine_ros_settings() -> MachineFinding:
     """Check the variables that decide which nodes discover each other."""
-    surprises = [*_about_other_installations(), *_about_domain(), *_about_profiles(), *_about_discovery()]
+    surprises = [*_other_installations(), *_domain(), *_profiles(), *_discovery()]
     if surprises:
         return warning("; ".join(found for found, _ in surprises), "\n".join(fix for _, fix in surprises))
     is_set = [f"{variable}={os.environ[variable]}" for variable in _WATCHED if os.environ.get(variable)]
     return ok(", ".join(is_set) or "none set: domain 0, notebooks in domains of their own")
 
 
-def _about_other_installations() -> list[tuple[str, str]]:
+#: What is set, and what to do about it.
+_Surprises = Iterator[tuple[str, str]]
+
+
+def _other_installations() -> _Surprises:
     values = ignored()
-    names = sorted(values.keys() - {GUARD})
-    if not names:
-        return []
-    shown = ", ".join(f"{name}={values[name]}" for name in names)
-    return [
-        (
+    if names := sorted(values.keys() - {GUARD}):
+        shown = ", ".join(f"{name}={values[name]}" for name in names)
+        yield (
             f"of another installation, so Spinbook's programs do not use it: {shown}",
             f"Jupyter and your own programs still do. If they fail: unset {' '.join(names)}",
         )
-    ]
 
 
-def _about_domain() -> list[tuple[str, str]]:
+def _domain() -> _Surprises:
     text = os.environ.get("ROS_DOMAIN_ID", "")
-    if not text or (text.isdecimal() and int(text) <= HIGHEST):
-        return []
-    return [
-        (
+    if text and not (text.isdecimal() and int(text) <= HIGHEST):
+        yield (
             f"ROS_DOMAIN_ID is '{text}'",
             f"Use a domain from 0 to {HIGHEST}, because others have no free ports: export ROS_DOMAIN_ID=0",
         )
-    ]
 
 
-def _about_profiles() -> list[tuple[str, str]]:
+def _profiles() -> _Surprises:
     for variable in _PROFILES:
         file = os.environ.get(variable, "")
         if file and not Path(file).is_file():
-            return [(f"{variable} names {file}, which does not exist", f"unset {variable}")]
-        if file and Path(file) != LOOPBACK_PROFILE:
-            return [
-                (
-                    f"{variable}={file}",
-                    "Notebooks and the grader use profiles of their own in its place; your terminals use this one. "
-                    f"If they do not receive each other's messages: unset {variable}",
-                )
-            ]
-    return []
-
-
-def _about_discovery() -> list[tuple[str, str]]:
-    surprises = []
-    if os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() == "OFF":
-        surprises.append(
-            (
-                "ROS_AUTOMATIC_DISCOVERY_RANGE is OFF",
-                "Nodes in terminals won't discover each other: unset ROS_AUTOMATIC_DISCOVERY_RANGE",
+            yield f"{variable} names {file}, which does not exist", f"unset {variable}"
+        elif file and Path(file) != LOOPBACK_PROFILE:
+            yield (
+                f"{variable}={file}",
+                "Notebooks and the grader use profiles of their own in its place; your terminals use this one. "
+                f"If they do not receive each other's messages: unset {variable}",
             )
+
+
+def _discovery() -> _Surprises:
+    if os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() == "OFF":
+        yield (
+            "ROS_AUTOMATIC_DISCOVERY_RANGE is OFF",
+            "Nodes in terminals won't discover each other: unset ROS_AUTOMATIC_DISCOVERY_RANGE",
         )
     if os.environ.get("ROS_DISCOVERY_SERVER"):
-        surprises.append(
-            (
-                "ROS_DISCOVERY_SERVER is set",
-                "Nodes in terminals use that server for discovery, and notebooks do not: unset ROS_DISCOVERY_SERVER",
-            )
+        yield (
+            "ROS_DISCOVERY_SERVER is set",
+            "Nodes in terminals use that server for discovery, and notebooks do not: unset ROS_DISCOVERY_SERVER",
         )
-    return surprises
 
 
 # The wheels set LD_LIBRARY_PATH themselves: their .pth file restarts Python with it, and sets a guard variable. If the

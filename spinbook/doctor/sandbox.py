@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
 from pathlib import Path
 
+from groundwork.child_process import run_program
 from rmw_lockstep.library import Library, library
-from spinbook.doctor.diagnosis import MachineFinding, missing, ok, set_up_again, warning
+from spinbook.doctor.diagnosis import MachineFinding, last_words, missing, ok, set_up_again, warning
 
 _ALLOW = (
     "Install bubblewrap (sudo apt-get install bubblewrap) and allow namespaces (see the finding about them); "
@@ -43,6 +43,8 @@ def examine_sandbox() -> MachineFinding:
     return missing(f"none ({reasons})", f"Spinbook does not run students' code without a sandbox. {_ALLOW}")
 
 
+#: A trial of a sandbox takes a few milliseconds (s).
+_TRIAL_S = 10.0
 _ALSO_WITHOUT = "The grader makes the same namespaces without it, if this user may (see the sandbox finding)."
 
 
@@ -51,15 +53,10 @@ def examine_bubblewrap() -> MachineFinding:
     path = shutil.which("bwrap")
     if path is None:
         return warning("not installed", f"{_ALSO_WITHOUT}\nsudo apt-get install bubblewrap")
-    version = subprocess.run([path, "--version"], capture_output=True, text=True, check=False).stdout.split()[-1:]
-    trial = subprocess.run(
-        [path, "--ro-bind", "/", "/", "--unshare-pid", "true"], capture_output=True, text=True, check=False
-    )
-    found = f"{' '.join(version) or 'of unknown version'}, {path}"
-    if trial.returncode:
-        lines = trial.stderr.strip().splitlines() or [f"exit code {trial.returncode}"]
-        return warning(f"{found}: {lines[-1]}", _ALSO_WITHOUT)
-    return ok(found)
+    version = run_program([path, "--version"], _TRIAL_S).stdout.split()[-1:]
+    installed = f"{' '.join(version) or 'of unknown version'}, {path}"
+    trial = run_program([path, "--ro-bind", "/", "/", "--unshare-pid", "true"], _TRIAL_S)
+    return warning(f"{installed}: {last_words(trial)}", _ALSO_WITHOUT) if trial.returncode else ok(installed)
 
 
 _KNOBS = (
@@ -90,23 +87,15 @@ def examine_namespaces() -> MachineFinding:
     for kind, flags in kinds.items():
         # Without root, the others can only be made inside a user namespace.
         inside = [] if os.geteuid() == 0 or kind == "user" else kinds["user"].split()
-        reason = _refusal(["unshare", *inside, *flags.split(), "true"])
-        if reason:
-            failed[kind] = reason
+        trial = run_program(["unshare", *inside, *flags.split(), "true"], _TRIAL_S)
+        if trial.returncode:
+            failed[kind] = last_words(trial).removeprefix("unshare: ")
     if not failed:
         return ok(", ".join(kinds))
     return warning(
         "; ".join(f"{kind}: {reason}" for kind, reason in failed.items()),
         "The grader falls back to weaker sandboxes (see the sandbox finding).\n" + _fix(),
     )
-
-
-def _refusal(argv: list[str]) -> str:
-    trial = subprocess.run(argv, capture_output=True, text=True, check=False)
-    if trial.returncode == 0:
-        return ""
-    lines = trial.stderr.strip().splitlines() or [f"exit code {trial.returncode}"]
-    return lines[-1].removeprefix("unshare: ")
 
 
 def _fix() -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal
@@ -59,12 +59,15 @@ class Span:
     open: bool = False
 
 
+_MarkLook = Literal["tick", "asked", "answered", "cancel", "good", "bad"]
+
+
 @dataclass(frozen=True)
 class Mark:
     """A point in time (s) on a lane. `text` is written next to it, if there is any."""
 
     at: float
-    look: Literal["tick", "asked", "answered", "cancel", "good", "bad"]
+    look: _MarkLook
     text: str = ""
 
 
@@ -142,7 +145,8 @@ def _answers(events: list[TimelineEvent]) -> dict[str, list[TimelineEvent]]:
 
 def _goal(name: str, label: str, events: list[TimelineEvent], end: float) -> Lane:
     events = sorted(events, key=lambda event: event.at)
-    return Lane(name, label, tuple(_bars(events, end)), tuple(filter(None, map(_mark, events))))
+    marks = tuple(Mark(event.at, *_MARKS[event.what]) for event in events if event.what in _MARKS)
+    return Lane(name, label, tuple(_bars(events, end)), marks)
 
 
 def _bars(events: list[TimelineEvent], end: float) -> Iterator[Span]:
@@ -160,18 +164,17 @@ def _bars(events: list[TimelineEvent], end: float) -> Iterator[Span]:
             yield Span(step.at, after, looks[step.what], index + 1 == len(steps))
 
 
-def _mark(event: TimelineEvent) -> Mark | None:
-    if event.what == "goal":
-        return Mark(event.at, "asked", "goal")
-    if event.what == "feedback":
-        return Mark(event.at, "tick")
-    if event.what == "cancel":
-        return Mark(event.at, "cancel", "cancel")
-    if event.what == "cancel answered":
-        return Mark(event.at, "answered", "answer to cancel")
-    if event.what in (*ENDS, "rejected"):
-        return Mark(event.at, "good" if event.what == "SUCCEEDED" else "bad", event.what)
-    return None
+#: What happens to a goal -> the look and the text of its mark.
+_MARKS: Mapping[str, tuple[_MarkLook, str]] = {
+    "goal": ("asked", "goal"),
+    "feedback": ("tick", ""),
+    "cancel": ("cancel", "cancel"),
+    "cancel answered": ("answered", "answer to cancel"),
+    "SUCCEEDED": ("good", "SUCCEEDED"),
+    "CANCELED": ("bad", "CANCELED"),
+    "ABORTED": ("bad", "ABORTED"),
+    "rejected": ("bad", "rejected"),
+}
 
 
 def in_words(drawn: Iterable[Lane], start: float) -> str:

@@ -14,15 +14,13 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from ros_in_python.animation import Cycle, coord, on_paper
-from spinbook.kernel.plot.picture import Scale
+from spinbook.kernel.plot.picture import Scale, pointer_moves, shown_faster
 from spinbook.kernel.timeline import Lane, Mark, Span, in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-#: A longer recording (s) is shown faster, so that it takes no longer than this.
-LONGEST_S = 20.0
 #: A lane with more ticks than this is thinned out; otherwise they would merge into a bar.
 MOST_TICKS = 150
 #: The whole width, where labels and lanes begin, and the margins (px). The upper one has room for a page's Pause.
@@ -32,12 +30,14 @@ _CHAR, _CAPITAL = 6.4, 8.0
 _GREY = "#808890"
 _SPANS = {"waits": ("#a8b0b8", "waits"), "runs": ("#0072B2", "runs"), "cancels": ("#E69F00", "is being canceled")}
 _MARKS = {
-    "asked": ("#808890", "goal or request"),
-    "answered": ("#009E73", "answer"),
+    "asked": (_GREY, "goal or request"),
     "cancel": ("#D55E00", "cancel"),
+    "answered": ("#009E73", "answer"),
     "good": ("#009E73", ""),
     "bad": ("#D55E00", ""),
 }
+#: How many pixels a bar is narrower than a lane, above and below.
+_INSETS = {"waits": 5, "runs": 2, "cancels": 2}
 #: Marks of these kinds have their text next to them, unless the legend explains it.
 _WRITTEN = ("good", "bad", "cancel", "answered")
 _UNWRITTEN = "response"
@@ -66,7 +66,7 @@ def moving_timeline(lanes: Sequence[Lane], title: str = "", *, moves: bool = Tru
         drawn.append(part)
     grid, bottom = _axis(across, _TOP, y), y + 22
     legend, bottom = _legend(lanes, bottom + 16)
-    faster = max(1, math.ceil((end - start) / LONGEST_S))
+    faster, pace = shown_faster(end - start)
     moving = _moving(Cycle(key, max(end - start, 0.1) / faster), y) if moves else ""
     pointer = f'<path class="{key}x" d="M{_LEFT} {_TOP}V{coord(y)}" stroke="{_GREY}" opacity="0"/>'
     window = f' clip-path="url(#{key}c)"' if moves else ""
@@ -74,10 +74,9 @@ def moving_timeline(lanes: Sequence[Lane], title: str = "", *, moves: bool = Tru
         f'{moving}<g class="{key}i" font-size="12">{grid}{"".join(labels)}'
         f"<g{window}>{''.join(drawn)}</g>{pointer}{legend}</g>"
     )
-    if not moves:
-        return on_paper(content, _WIDTH, math.ceil(bottom), key, name, words)
-    pace = "as fast as it happened" if faster == 1 else f"{faster} times as fast as it happened"
-    return on_paper(content, _WIDTH, math.ceil(bottom), key, name, f"{words}\nIt is drawn {pace}, again and again.")
+    if moves:
+        words = f"{words}\nIt is drawn {pace} it happened, again and again."
+    return on_paper(content, _WIDTH, math.ceil(bottom), key, name, words)
 
 
 def _lines(label: str) -> list[str]:
@@ -93,7 +92,7 @@ def _lane(lane: Lane, top: float, across: Scale) -> tuple[str, float]:
     """Return the bars, marks and texts of a lane below `top`, and where it ends (px)."""
     middle = top + _BAR / 2
     bars = "".join(_bar(span, top, across) for span in lane.spans)
-    marks = "".join(_shape(mark, across.at(mark.at), middle) for mark in _few(lane.marks))
+    marks = "".join(_shape(mark.look, across.at(mark.at), middle) for mark in _few(lane.marks))
     rows, texts = 0, ""
     for text, x, row in _placed(lane.marks, across):
         rows = max(rows, row + 1)
@@ -104,7 +103,7 @@ def _lane(lane: Lane, top: float, across: Scale) -> tuple[str, float]:
 def _bar(span: Span, top: float, across: Scale) -> str:
     x, width = across.at(span.start), max(1.0, across.at(span.end) - across.at(span.start))
     colour, _ = _SPANS[span.look]
-    inset = 5 if span.look == "waits" else 2
+    inset = _INSETS[span.look]
     dash = ' stroke-dasharray="4 3" fill-opacity=".15"' if span.open else ' fill-opacity=".45"'
     return (
         f'<rect x="{coord(x)}" y="{coord(top + inset)}" width="{coord(width)}" height="{_BAR - 2 * inset}" '
@@ -119,13 +118,13 @@ def _few(marks: Sequence[Mark]) -> Iterator[Mark]:
     return chain(ticks[::step], (mark for mark in marks if mark.look != "tick"))
 
 
-def _shape(mark: Mark, x: float, y: float) -> str:
-    if mark.look == "tick":
+def _shape(look: str, x: float, y: float) -> str:
+    if look == "tick":
         return f'<path d="M{coord(x - 0.6)} {coord(y - 6)}h1.2v12h-1.2z"/>'
-    colour, _ = _MARKS[mark.look]
-    if mark.look == "asked":
+    colour, _ = _MARKS[look]
+    if look == "asked":
         return f'<path d="M{coord(x - 4)} {coord(y - 6)}l9 6l-9 6z" fill="{colour}"/>'
-    if mark.look in ("cancel", "bad"):
+    if look in ("cancel", "bad"):
         cross = f"M{coord(x - 5)} {coord(y - 5)}l10 10m0-10l-10 10"
         return f'<path d="{cross}" stroke="{colour}" stroke-width="2.6"/>'
     return f'<circle cx="{coord(x)}" cy="{coord(y)}" r="4.5" fill="{colour}"/>'
@@ -162,28 +161,27 @@ def _legend(lanes: Sequence[Lane], y: float) -> tuple[str, float]:
     """Return the legend of the bars and marks in use, and where it ends (px)."""
     spans = {span.look for lane in lanes for span in lane.spans}
     marks = {mark.look for lane in lanes for mark in lane.marks}
-    entries = [
-        (
-            f'<rect x="{{x}}" y="{{y}}" width="16" height="8" fill="{colour}" fill-opacity=".45" stroke="{colour}"/>',
-            text,
-        )
-        for look, (colour, text) in _SPANS.items()
-        if look in spans
-    ]
-    shown = [("asked", "goal or request"), ("cancel", "cancel"), ("answered", "answer")]
-    entries += [(look, text) for look, text in shown if look in marks]
+    entries: list[tuple[str, str]] = [(look, text) for look, (_, text) in _SPANS.items() if look in spans]
+    entries += [(look, text) for look, (_, text) in _MARKS.items() if look in marks and text]
     entries += [("tick", "feedback" if spans and not _plain_ticks(lanes) else "message")] if "tick" in marks else []
     x, drawn = float(_MARGIN), ""
     for look, text in entries:
         width = 34 + _CHAR * len(text)
         if x > _MARGIN and x + width > _WIDTH:
             x, y = float(_MARGIN), y + 18
-        middle = y - 4
-        is_bar = look.startswith("<")
-        drawn += look.format(x=coord(x), y=coord(y - 8)) if is_bar else _shape(Mark(0.0, look), x + 8, middle)  # type: ignore[arg-type]
+        drawn += _in_legend(look, x, y)
         drawn += f'<text x="{coord(x + 21)}" y="{coord(y)}" font-size="11">{escape(text)}</text>'
         x += width
     return drawn, y + 12
+
+
+def _in_legend(look: str, x: float, y: float) -> str:
+    """Return a bar or a mark as the legend shows it, left of a text at `y`."""
+    if look not in _SPANS:
+        return _shape(look, x + 8, y - 4)
+    colour, _ = _SPANS[look]
+    place = f'x="{coord(x)}" y="{coord(y - 8)}" width="16" height="8"'
+    return f'<rect {place} fill="{colour}" fill-opacity=".45" stroke="{colour}"/>'
 
 
 def _plain_ticks(lanes: Sequence[Lane]) -> bool:
@@ -194,22 +192,14 @@ def _plain_ticks(lanes: Sequence[Lane]) -> bool:
 def _moving(cycle: Cycle, height: float) -> str:
     """Return the window through which the lanes are seen, which grows to the right, and the pointer at its edge."""
     key, width = cycle.key, _WIDTH - _LEFT - _RIGHT
-    whole = _WIDTH
-    shown = f"transform:scaleX({coord(_LEFT / whole, 4)})"
-    last = f"transform:scaleX({coord(1 - _RIGHT / whole, 4)})"
+    shown = f"transform:scaleX({coord(_LEFT / _WIDTH, 4)})"
+    last = f"transform:scaleX({coord(1 - _RIGHT / _WIDTH, 4)})"
     rules = cycle.style(
         cycle.keyframes("w", [(0.0, shown), (cycle.moving_s, last), (cycle.moving_s + 0.1, "transform:scaleX(1)")]),
-        cycle.keyframes(
-            "x",
-            [
-                (0.0, "transform:translateX(0px);opacity:1"),
-                (cycle.moving_s, f"transform:translateX({width}px);opacity:1"),
-                (cycle.moving_s + 0.2, f"transform:translateX({width}px);opacity:0"),
-            ],
-        ),
+        pointer_moves(cycle, width),
         f".{key}w{{transform-origin:0 0}}",
     )
-    window = f'<rect class="{key}w" x="0" y="0" width="{whole}" height="{coord(height)}"/>'
+    window = f'<rect class="{key}w" x="0" y="0" width="{_WIDTH}" height="{coord(height)}"/>'
     return f'{rules}<clipPath id="{key}c">{window}</clipPath>'
 
 
@@ -245,11 +235,9 @@ def _draw_lane(draw: Axes, lane: Lane, top: float, across: Scale) -> float:
         draw.text(_MARGIN, top + 8 + _ROW * row, line, fontsize=10, fontweight="bold", va="center")
     for span in lane.spans:
         x, (colour, _) = across.at(span.start), _SPANS[span.look]
-        inset = 5 if span.look == "waits" else 2
         width, alpha = max(1.0, across.at(span.end) - x), 0.15 if span.open else 0.45
-        draw.barh(
-            top + _BAR / 2, width, left=x, height=_BAR - 2 * inset, facecolor=colour, alpha=alpha, edgecolor=colour
-        )
+        height = _BAR - 2 * _INSETS[span.look]
+        draw.barh(top + _BAR / 2, width, left=x, height=height, facecolor=colour, alpha=alpha, edgecolor=colour)
     for mark in _few(lane.marks):
         x, y = across.at(mark.at), top + _BAR / 2
         if mark.look == "tick":

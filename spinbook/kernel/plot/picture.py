@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING
 
 from ros_in_python.animation import Cycle, coord, on_paper
@@ -32,10 +32,8 @@ def draw(recording: PlotRecording, title: str = "") -> Figure:
     shown = panels(recording)
     figure = Figure(figsize=(8, 1.2 + 2.6 * len(shown)), layout="constrained")
     axes = figure.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
-    several_topics = len({curve.quantity.topic for curve in recording.curves.values()}) > 1
-    for axis, ((kind, unit), curves) in zip(axes, shown.items(), strict=True):
-        for number, curve in enumerate(curves):
-            label = f"{curve.quantity.topic} {curve.quantity.label}" if several_topics else curve.quantity.label
+    for axis, (name, curves) in zip(axes, shown.items(), strict=True):
+        for number, (label, curve) in enumerate(curves.items()):
             axis.plot(
                 [time - recording.start for time in curve.times],
                 curve.values,
@@ -46,7 +44,7 @@ def draw(recording: PlotRecording, title: str = "") -> Figure:
                 markersize=4,
                 label=label,
             )
-        axis.set_ylabel(f"{kind.replace('_', ' ')} ({unit})" if unit else kind.replace("_", " "))
+        axis.set_ylabel(name)
         axis.grid(alpha=0.3)
         axis.spines[["top", "right"]].set_visible(False)
         axis.margins(x=0.01)
@@ -56,22 +54,25 @@ def draw(recording: PlotRecording, title: str = "") -> Figure:
     return figure
 
 
-def panels(recording: PlotRecording) -> dict[tuple[str, str], list[PlotCurve]]:
-    """Return (kind, unit) -> the curves that share an axis, in the order of the paths."""
-    panels: dict[tuple[str, str], list[PlotCurve]] = {}
+def panels(recording: PlotRecording) -> dict[str, dict[str, PlotCurve]]:
+    """Return axis -> label -> the curves that share this axis, in the order of the paths."""
+    several_topics = len({quantity.topic for quantity in recording.curves}) > 1
+    panels: dict[str, dict[str, PlotCurve]] = {}
     for curve in recording.in_order():
-        panels.setdefault((curve.quantity.kind, curve.quantity.unit), []).append(curve)
+        quantity = curve.quantity
+        axis = quantity.kind.replace("_", " ") + (f" ({quantity.unit})" if quantity.unit else "")
+        label = f"{quantity.topic} {quantity.label}" if several_topics else quantity.label
+        panels.setdefault(axis, {})[label] = curve
     return panels
 
 
 def in_words(recording: PlotRecording) -> str:
     """Describe the figure, for those who can't see it and for front ends without pictures."""
     lines = []
-    for (kind, unit), curves in panels(recording).items():
-        for curve in curves:
-            low, high = min(curve.values), max(curve.values)
-            span = f"{low:.3f} … {high:.3f} {unit}".rstrip()
-            lines.append(f"{kind} {curve.quantity.label}: {len(curve.values)} samples, {span}")
+    for curve in chain.from_iterable(curves.values() for curves in panels(recording).values()):
+        quantity = curve.quantity
+        span = f"{min(curve.values):.3f} … {max(curve.values):.3f} {quantity.unit}".rstrip()
+        lines.append(f"{quantity.kind} {quantity.label}: {len(curve.values)} samples, {span}")
     return "\n".join(lines)
 
 
@@ -211,40 +212,50 @@ def plot_svg(recording: PlotRecording, title: str = "") -> str | None:
     heading = f'<text x="{LEFT}" y="20" font-size="14" font-weight="600">{escape(name)}</text>'
     content = f'<g class="{key}i" font-size="12">{heading}{"".join(drawn)}</g>'
     if len(curves) <= MOST_CURVES:
-        faster = max(1, math.ceil(end / LONGEST_S))
+        faster, pace = shown_faster(end)
         content = _moving(Cycle(key, end / faster), y) + content
-        pace = "as fast as they were recorded" if faster == 1 else f"{faster} times as fast as they were recorded"
-        words = f"{words}\nThe curves are drawn {pace}, again and again."
+        words = f"{words}\nThe curves are drawn {pace} they were recorded, again and again."
     return on_paper(content, WIDTH, math.ceil(y), key, name, words)
 
 
 def _shown(recording: PlotRecording) -> dict[str, dict[str, PlotCurve]]:
-    """Return axis -> label -> curve, for the curves that can be drawn."""
-    several_topics = len({quantity.topic for quantity in recording.curves}) > 1
-    shown: dict[str, dict[str, PlotCurve]] = {}
-    for (kind, unit), curves in panels(recording).items():
-        axis = f"{kind.replace('_', ' ')} ({unit})" if unit else kind.replace("_", " ")
-        for curve in curves:
-            if len(curve.values) > 1 and all(map(math.isfinite, curve.values)):
-                label = f"{curve.quantity.topic} {curve.quantity.label}" if several_topics else curve.quantity.label
-                shown.setdefault(axis, {})[label] = curve
-    return shown
+    """Return the panels with the curves that can be drawn."""
+    shown = {
+        axis: {label: curve for label, curve in curves.items() if _is_drawn(curve)}
+        for axis, curves in panels(recording).items()
+    }
+    return {axis: curves for axis, curves in shown.items() if curves}
+
+
+def shown_faster(duration: float) -> tuple[int, str]:
+    """Return how many times as fast a recording (s) is shown, as a number and as the words before a clause."""
+    faster = max(1, math.ceil(duration / LONGEST_S))
+    return faster, "as fast as" if faster == 1 else f"{faster} times as fast as"
+
+
+def pointer_moves(cycle: Cycle, width: float) -> str:
+    """Return the keyframes of the pointer: to the right over this width (px), and gone when it is there."""
+    away = f"transform:translateX({width}px)"
+    return cycle.keyframes(
+        "x",
+        [
+            (0.0, "transform:translateX(0px);opacity:1"),
+            (cycle.moving_s, f"{away};opacity:1"),
+            (cycle.moving_s + 0.2, f"{away};opacity:0"),
+        ],
+    )
+
+
+def _is_drawn(curve: PlotCurve) -> bool:
+    return len(curve.values) > 1 and all(map(math.isfinite, curve.values))
 
 
 def _moving(cycle: Cycle, height: float) -> str:
     """Return the window through which the curves are seen, which grows to the right, and the pointers at its edge."""
     key, width = cycle.key, WIDTH - LEFT - RIGHT
-    away = f"transform:translateX({width}px)"
     rules = cycle.style(
         cycle.keyframes("w", [(0.0, "transform:scaleX(0)"), (cycle.moving_s, "transform:scaleX(1)")]),
-        cycle.keyframes(
-            "x",
-            [
-                (0.0, "transform:translateX(0px);opacity:1"),
-                (cycle.moving_s, f"{away};opacity:1"),
-                (cycle.moving_s + 0.2, f"{away};opacity:0"),
-            ],
-        ),
+        pointer_moves(cycle, width),
         f".{key}w{{transform-origin:{LEFT}px 0}}",
     )
     window = f'<rect class="{key}w" x="{LEFT}" y="0" width="{width}" height="{coord(height)}"/>'
