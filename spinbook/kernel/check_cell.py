@@ -25,8 +25,9 @@ from grader.submission.program_choice import digest_of
 from grader.submission.python_code import definitions
 from groundwork.clean_environment import module_command
 from spinbook.kernel.cell_output import DisplayLimit
-from spinbook.kernel.process import CellFailed, KeptProcess
+from spinbook.kernel.process import KeptProcess
 from spinbook.kernel.session import Session
+from spinbook.package.cell_line import CellFailed
 
 
 @dataclass(frozen=True)

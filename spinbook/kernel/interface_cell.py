@@ -11,8 +11,8 @@ from interface_compiler.definition import CompileError, Definition, DefinitionEr
 from interface_compiler.near import current, make_current, use, use_near
 from spinbook.chapter.fence import interface_path
 from spinbook.chapter.installed_interfaces import is_someone_elses
-from spinbook.kernel.process import CellFailed
 from spinbook.kernel.session import Session
+from spinbook.package.cell_line import CellFailed
 from spinbook.package.workspace import write_interface_packages, written_definitions
 
 

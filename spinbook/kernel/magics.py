@@ -5,50 +5,20 @@ Each reads its line and calls the session.
 
 from __future__ import annotations
 
-import argparse
 import re
 import shlex
 from collections.abc import Sequence
-from typing import Any, NoReturn
+from typing import Any
 
 from IPython.core.magic import Magics, cell_magic, line_magic, magics_class, no_var_expand
 
 from spinbook.course.course import Package
 from spinbook.kernel import environment, interface_cell, picture_cells, terminal_cells, timeline_cell
 from spinbook.kernel.cell_output import DisplayLimit
-from spinbook.kernel.process import CellFailed
-from spinbook.kernel.session import COMMAND_SECONDS, GRAPH_SECONDS, LOG_SECONDS, NODE_SECONDS, NodeStart, Session
+from spinbook.kernel.session import COMMAND_SECONDS, GRAPH_SECONDS, LOG_SECONDS, NodeStart, Session
+from spinbook.package.cell_line import CellFailed, LineReader, chapter_reader, node_reader, split
 
 _OWN_OPTION = re.compile(r"""\s*--(?:(seconds|until)\s+("[^"]*"|'[^']*'|\S+)|(expect-error)(?!\S))\s*""")
-
-
-class LineReader(argparse.ArgumentParser):
-    """Parses a magic's line; wrong usage and the text of `--help` are shown in the cell."""
-
-    def __init__(self, prog: str, description: str) -> None:
-        super().__init__(prog=prog, description=description, allow_abbrev=False)
-
-    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
-        raise CellFailed(message or "")
-
-    def error(self, message: str) -> NoReturn:
-        raise CellFailed(f"{message}\n{self.format_usage().rstrip()}")
-
-    def read(self, line: str) -> argparse.Namespace | None:
-        """Return the arguments, or None if the help was requested and has been printed."""
-        words = split(line)
-        if "-h" in words or "--help" in words:
-            print(self.format_help())
-            return None
-        return self.parse_args(words)
-
-
-def split(line: str) -> list[str]:
-    """Return the words of a line, quoted as in a shell. Raises CellFailed."""
-    try:
-        return shlex.split(line)
-    except ValueError as error:
-        raise CellFailed(f"can't read this line: {error}. A quotation mark is missing in: {line}") from None
 
 
 def own_options(line: str, seconds: float) -> tuple[DisplayLimit, str]:
@@ -84,11 +54,7 @@ class SpinbookMagics(Magics):
     @line_magic
     def chapter(self, line: str) -> None:
         """%chapter NAME --package PACKAGE: set the chapter and the package of this notebook's nodes."""
-        reader = LineReader("%chapter", "Set this notebook's chapter, and the package of its nodes.")
-        reader.add_argument("name")
-        reader.add_argument("--package", default="notebook_nodes")
-        reader.add_argument("--workspace", default="notebook_ws")
-        if arguments := reader.read(line):
+        if arguments := chapter_reader().read(line):
             self.session.package = Package(name=arguments.package, workspace=arguments.workspace)
             interface_cell.begin(self.session)
 
@@ -114,35 +80,7 @@ class SpinbookMagics(Magics):
     @cell_magic
     def node(self, line: str, cell: str) -> None:
         """%%node NAME: run this cell's code as a process of its own, as `ros2 run` would."""
-        reader = LineReader("%%node", "Run this cell as a node, in its own process. Running it again restarts it.")
-        reader.add_argument("name", help="the node's file, without .py")
-        reader.add_argument("--seconds", type=float, default=NODE_SECONDS, help="how long its log is shown")
-        reader.add_argument("--until", help="stop showing the log once it contains this text")
-        reader.add_argument(
-            "--class",
-            dest="classes",
-            action="append",
-            default=[],
-            help="run this Node class with rclpy.spin, or call CLASS.METHOD",
-        )
-        reader.add_argument("--main", action="store_true", help="call main(), because the code does not call it")
-        reader.add_argument(
-            "--after", nargs="+", default=[], metavar="CELL", help="use what these nodes and parts define"
-        )
-        reader.add_argument("--usual-imports", action="store_true", help="add the imports that the code leaves out")
-        reader.add_argument("--keep", action="store_true", help="only save it, for `%%ros2 run` to start with words")
-        reader.add_argument(
-            "--as",
-            dest="known_as",
-            action="append",
-            default=[],
-            metavar="PACKAGE/EXECUTABLE",
-            help="the name of this node for `ros2 run`",
-        )
-        reader.add_argument("--of", metavar="CHAPTER", help="only save this program, which another chapter shows")
-        reader.add_argument("--replaces", metavar="NODE", help="stop this node first: it is an earlier version")
-        reader.add_argument("--expect-error", action="store_true", help="its errors are meant: do not report them")
-        if arguments := reader.read(line):
+        if arguments := node_reader().read(line):
             name = arguments.name.removesuffix(".py")
             if not name.isidentifier():
                 raise CellFailed(f"`{name}` can't be a node's file name: use letters, digits and underscores.")

@@ -21,7 +21,8 @@ from spinbook.kernel.environment import EXECUTING
 from spinbook.kernel.plot.picture import as_png, draw, moving_plot
 from spinbook.kernel.plot.picture import in_words as plot_in_words
 from spinbook.kernel.plot.recording import APPEAR_S, PlotRecording, RecordingTime
-from spinbook.kernel.process import CellFailed, KeptProcess
+from spinbook.kernel.process import KeptProcess
+from spinbook.package.cell_line import CellFailed
 
 #: How long looking at the graph may take, in addition to counting (s).
 _GRAPH_LIMIT_S = 20.0

@@ -104,11 +104,3 @@ class KeptProcess:
         self._answers.close()
         self._control.close()
         self._supervisor.wait()
-
-
-class CellFailed(Exception):
-    """Raised by a notebook command. Only its message is shown, but the cell counts as failed everywhere."""
-
-    def _render_traceback_(self) -> list[str]:
-        """Return the lines that IPython prints instead of a traceback."""
-        return [str(self)]

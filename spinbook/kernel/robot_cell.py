@@ -15,8 +15,8 @@ from ros_in_python.robot.drawing import KIND, RobotMotion, as_data, in_words
 from ros_in_python.robot.still import WIDTH, as_png
 from ros_in_python.robot.urdf import InvalidUrdf, read
 from spinbook.kernel.picture_cells import record, show_picture
-from spinbook.kernel.process import CellFailed
 from spinbook.kernel.robot_recorder import APPEAR_S, RobotRecording
+from spinbook.package.cell_line import CellFailed
 
 #: How many positions of a joint per second are kept (Hz), and for how long a picture moves at most (s).
 _RATE, _LONGEST_S = 20.0, 20.0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import itertools
 import os
 import sys
@@ -14,7 +13,7 @@ from pathlib import Path
 from interface_compiler import prefixes
 from spinbook.chapter.complete_program import join
 from spinbook.chapter.launch_files import is_package_file
-from spinbook.chapter.python_code import CodeError, inspect
+from spinbook.chapter.python_code import CodeError, facts_of
 from spinbook.course.course import Package
 from spinbook.kernel import environment
 from spinbook.kernel.cell_output import DisplayLimit, in_short, joins, show_for, show_rest
@@ -22,15 +21,15 @@ from spinbook.kernel.environment import Domain
 from spinbook.kernel.long_lines import whole_in
 from spinbook.kernel.node_errors import AS_EXPECTED, NodeError, how_it_ended
 from spinbook.kernel.node_registry import NodeRegistry, RunningNode, StopResult
-from spinbook.kernel.process import CellFailed, KeptProcess, Status
+from spinbook.kernel.process import KeptProcess, Status
 from spinbook.kernel.reader_frames import magic_comment, readable
 from spinbook.kernel.silent_errors import SilentErrors
 from spinbook.kernel.timeline_cell import TimelineProcess
+from spinbook.package.cell_line import CellFailed
 from spinbook.package.files import Module
 from spinbook.package.workspace import add_file, add_module
 
-#: How long a node's log is shown, and how long a command that does not end may run (s).
-NODE_SECONDS = 3.0
+#: How long a command that does not end may run (s).
 COMMAND_SECONDS = 5.0
 #: How long `%log --until` waits at most (s).
 LOG_SECONDS = 30.0
@@ -209,9 +208,8 @@ class Session:
     def _keep_earlier(self, name: str) -> None:
         """Keep the code of a node's earlier version, whose `main` the newer one runs with."""
         before = self.ran.get(name, "")
-        with contextlib.suppress(CodeError):
-            if before and inspect(before).is_complete:
-                self.earlier[name] = before
+        if before and facts_of(before).is_complete:
+            self.earlier[name] = before
 
     def _whole(self, name: str, code: str, after: Sequence[str]) -> str:
         pieces = []

@@ -12,8 +12,8 @@ from interface_compiler import toolchain
 from ros_in_python.ros2 import create
 from spinbook.chapter.own_packages import created_node, created_package
 from spinbook.kernel.cell_output import DisplayLimit
-from spinbook.kernel.process import CellFailed
 from spinbook.kernel.session import NodeStart, Session
+from spinbook.package.cell_line import CellFailed
 from spinbook.package.workspace import write_package, written_definitions
 
 #: How long a build may take (s).

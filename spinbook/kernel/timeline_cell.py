@@ -9,9 +9,10 @@ from pathlib import Path
 
 from spinbook.kernel.picture_cells import show_picture
 from spinbook.kernel.plot.picture import as_png
-from spinbook.kernel.process import CellFailed, KeptProcess
+from spinbook.kernel.process import KeptProcess
 from spinbook.kernel.timeline import RecordedEvents, in_words, lanes
 from spinbook.kernel.timeline_picture import moving_timeline, span_of, still_timeline
+from spinbook.package.cell_line import CellFailed
 
 #: How long the recorder may take to find the first name (s).
 _APPEAR_S = 20.0

@@ -25,10 +25,11 @@ from spinbook.kernel.check_cell import exercise_of, notebook_file
 from spinbook.kernel.environment import EXECUTING
 from spinbook.kernel.picture_cells import show_picture
 from spinbook.kernel.plot.picture import as_png
-from spinbook.kernel.process import STOP_GRACE, CellFailed
+from spinbook.kernel.process import STOP_GRACE
 from spinbook.kernel.session import Session
 from spinbook.kernel.timeline import in_words, lanes
 from spinbook.kernel.timeline_picture import span_of, still_timeline
+from spinbook.package.cell_line import CellFailed
 
 #: The name of what surrounds the node, for `%stop` and `%log`.
 SURROUNDINGS = "surroundings"

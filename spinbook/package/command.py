@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import json
-import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from argparse import Namespace
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
 from pathlib import Path
 
 import click
 
+from grader.submission.notebook import read_notebook
+from grader.submission.problems import Unreadable
 from groundwork.problem import Problem
 from interface_compiler.definition import Definition
 from spinbook.chapter.chapter import ChapterCell
@@ -20,6 +20,7 @@ from spinbook.chapter.python_code import CodeError
 from spinbook.chapters import read_all
 from spinbook.course.course import FILE, Course, Package, find_course
 from spinbook.interfaces.definitions import checked
+from spinbook.package.cell_line import CellFailed, chapter_reader, node_reader, split
 from spinbook.package.files import Module
 from spinbook.package.workspace import write_interface_packages, write_package
 from spinbook.problem import SpinbookError
@@ -41,46 +42,37 @@ def read_notebooks(folder: Path) -> Notebooks:
     read = Notebooks()
     for file in sorted(folder.glob("*.ipynb")):
         read.code.clear()
-        for source in _sources(file):
-            _take(read, source, file)
+        try:
+            for cell in read_notebook(file.read_bytes()).cells:
+                _take(read, cell.source, file)
+        except (OSError, Unreadable) as error:
+            raise SpinbookError(Problem(file, None, str(error), "Save it again in JupyterLab.")) from None
+        except CellFailed as error:
+            problem = f"a cell can't run, so it makes no node: {error}"
+            raise SpinbookError(Problem(file, None, problem, "Correct it, and save the notebook.")) from None
     if read.package is None:
-        found = "there is no course.toml and no notebook of a course here."
-        raise SpinbookError(Problem(folder, None, found, "Go into a course's folder, or into a handout's."))
+        problem = "there is no course.toml and no notebook of a course here."
+        raise SpinbookError(Problem(folder, None, problem, "Go into a course's folder, or into a handout's."))
     return read
 
 
-def _sources(file: Path) -> Iterator[str]:
-    """Yield the code cells of a notebook. Raises SpinbookError."""
-    try:
-        cells = json.loads(file.read_text(encoding="utf-8"))["cells"]
-        sources = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        found = f"it is not a valid notebook: {type(error).__name__}: {error}."
-        raise SpinbookError(Problem(file, None, found, "Save it again in JupyterLab.")) from None
-    yield from (source if isinstance(source, str) else "".join(source) for source in sources)
-
-
 def _take(read: Notebooks, source: str, file: Path) -> None:
+    """Add what a cell makes. Raises CellFailed, as the cell itself does, if its magic is wrong."""
     for line in source.split("\n"):
         if line.startswith("%chapter "):
-            read.package = _package(_words(line))
+            chapter = chapter_reader().parse_args(split(line)[1:])
+            read.package = Package(chapter.package, chapter.workspace)
     first, _, code = source.partition("\n")
-    words = _words(first)
-    if len(words) < 2:
-        return
-    name = words[1].removesuffix(".py")
-    if words[0] == "%%part":
+    magic, _, line = first.partition(" ")
+    if magic == "%%part":
+        read.code["".join(split(line)[:1])] = code
+    elif magic == "%%interface" and read.package:
+        _take_interface(read, "".join(split(line)[:1]), code, file)
+    elif magic == "%%node":
+        node = node_reader().parse_args(split(line))
+        name = node.name.removesuffix(".py")
         read.code[name] = code
-    elif words[0] == "%%interface" and read.package:
-        _take_interface(read, words[1], code, file)
-    elif words[0] == "%%node":
-        read.code[name] = code
-        read.modules[name] = _module(name, words, code, read)
-
-
-def _package(words: Sequence[str]) -> Package:
-    options = dict(pairwise(words))
-    return Package(options.get("--package", "notebook_nodes"), options.get("--workspace", "notebook_ws"))
+        read.modules[name] = _module(name, node, code, read)
 
 
 def _take_interface(read: Notebooks, title: str, text: str, file: Path) -> None:
@@ -92,40 +84,19 @@ def _take_interface(read: Notebooks, title: str, text: str, file: Path) -> None:
         read.definitions[path] = Definition(package, kind, name.rpartition(".")[0], body, file)
 
 
-def _module(name: str, words: Sequence[str], code: str, read: Notebooks) -> Module:
+def _module(name: str, node: Namespace, code: str, read: Notebooks) -> Module:
     """Return the complete module of a `%%node` cell, with the code that `--after` and `--usual-imports` add."""
-    options = _options(words[2:])
     whole = code
-    if "--after" in options or "--usual-imports" in options:
-        pieces = [read.code[piece] for piece in options.get("--after", ()) if piece in read.code]
+    if node.after or node.usual_imports:
+        pieces = [read.code[piece] for piece in node.after if piece in read.code]
         try:
             whole = join(code, pieces).whole
         except CodeError:
             whole = code  # Python itself reports best what is wrong.
-    pairs = [known.partition("/") for known in options.get("--as", ())]
+    pairs = [known.partition("/") for known in node.known_as]
     own = read.package.name if read.package else ""
     executables = tuple(executable for package, _, executable in pairs if package == own)
     return Module(name, whole.rstrip("\n") + "\n", executables)
-
-
-def _options(words: Sequence[str]) -> dict[str, list[str]]:
-    """Return the values of each option; an option given twice has the values of both."""
-    options: dict[str, list[str]] = {}
-    name = ""
-    for word in words:
-        if word.startswith("--"):
-            name = word
-            options.setdefault(name, [])
-        else:
-            options.setdefault(name, []).append(word)
-    return options
-
-
-def _words(line: str) -> list[str]:
-    try:
-        return shlex.split(line)
-    except ValueError:
-        return line.split()
 
 
 @click.command()

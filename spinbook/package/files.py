@@ -11,7 +11,7 @@ from interface_compiler.definition import Definition
 from ros_in_python.ros2 import ament_python
 from ros_in_python.ros2.ament_python import Manifest
 from spinbook.chapter.imports import ros_packages
-from spinbook.chapter.python_code import CodeError, inspect
+from spinbook.chapter.python_code import facts_of
 from spinbook.course.course import Package
 
 
@@ -29,10 +29,7 @@ class Module:
     @property
     def has_main(self) -> bool:
         """Whether it has a `main`, which `ros2 run` calls."""
-        try:
-            return inspect(self.code).has_main
-        except CodeError:
-            return False
+        return facts_of(self.code).has_main
 
 
 def package_files(
@@ -69,13 +66,7 @@ def _executables(modules: Sequence[Module]) -> list[tuple[str, str]]:
 
 def _dependencies(modules: Sequence[Module], interfaces: Sequence[str]) -> list[str]:
     """Return the ROS packages that the modules import."""
-    imported: set[str] = set()
-    for module in modules:
-        try:
-            code = inspect(module.code)
-        except CodeError:
-            continue
-        imported |= {name.partition(".")[0] for name in code.imports}
+    imported = {name.partition(".")[0] for module in modules for name in facts_of(module.code).imports}
     return sorted(imported & (ros_packages() | {"rclpy", *interfaces}))
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import spinbook.browser
 from spinbook.kernel.magics import SpinbookMagics
-from spinbook.kernel.process import CellFailed
+from spinbook.package.cell_line import CellFailed
 
 SCRIPT = Path(spinbook.browser.__file__).with_name("static") / "magic_line.js"
 USAGES = dict(re.findall(r'^  (\w+): "(.*)",$', SCRIPT.read_text(encoding="utf-8"), re.MULTILINE))

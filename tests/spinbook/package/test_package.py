@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -9,7 +10,11 @@ import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
+import pytest
 from course_folder import CourseFolder
+
+from spinbook.package.command import read_notebooks
+from spinbook.problem import SpinbookError
 
 NODE = '''"""Says hello."""
 
@@ -33,6 +38,10 @@ if __name__ == "__main__":
     main()
 '''
 CHAPTER = f'# One\n\n```python title="hello.py"\n{NODE}```\n'
+
+
+def _notebook(*sources: str) -> str:
+    return json.dumps({"cells": [{"cell_type": "code", "source": source} for source in sources]})
 
 
 def test_modules_are_the_chapters_code_to_the_byte(course: CourseFolder) -> None:
@@ -165,3 +174,17 @@ def test_colcon_builds_it_and_ros2_run_runs_it_and_ctrl_c_ends_it(course: Course
     node.send_signal(signal.SIGINT)
     assert node.wait(30) == 0
     assert "Traceback" not in node.stdout.read()
+
+
+def test_a_node_s_line_in_a_notebook_is_read_as_its_cell_reads_it(tmp_path: Path) -> None:
+    (tmp_path / "one.ipynb").write_text(_notebook("%chapter one --package robot", "%%node --until hello talker\na = 1"))
+    assert {name: module.code for name, module in read_notebooks(tmp_path).modules.items()} == {"talker": "a = 1\n"}
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"), [("{", "not a valid notebook"), (_notebook("%%node talker --untill x"), "--untill")]
+)
+def test_a_notebook_of_which_a_part_would_be_left_out_is_refused(tmp_path: Path, text: str, problem: str) -> None:
+    (tmp_path / "one.ipynb").write_text(text)
+    with pytest.raises(SpinbookError, match=problem):
+        read_notebooks(tmp_path)

@@ -21,7 +21,8 @@ from small_class import wait_until
 from grader.exercise import load
 from grader.submission.code import Code
 from spinbook.kernel import check_cell
-from spinbook.kernel.process import CellFailed, KeptProcess, Status
+from spinbook.kernel.process import KeptProcess, Status
+from spinbook.package.cell_line import CellFailed
 from submit.conftest import COUNTED, node_cell, solution
 
 #: Longer than by default: whatever the check says, a busy machine must not end it first.
