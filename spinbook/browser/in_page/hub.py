@@ -7,9 +7,9 @@ the program: `PageHub` and `PageConnection` are the hub's side, and `Turns` alte
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from pathlib import Path
 
-from rmw_lockstep.hub import BEGIN, EPOCH, Hub, HubLimits
+from rmw_lockstep.hub import Hub, HubLimits
 from rmw_lockstep.hub.frames import HelloFrame, IdleFrame
 from rmw_lockstep.hub.limits import HubUsage
 from rmw_lockstep.hub.link import ProcessLink
@@ -78,12 +78,9 @@ class PageConnection(ProcessLink):
 
     def __init__(self, use: HubUsage) -> None:
         self.queued: deque[bytes] = deque()
-        # There is no socket: the program's side takes the frames out of the queue.
-        super().__init__(None, PROGRAM, use)  # type: ignore[arg-type]
+        # There is no socket: the program's side takes the frames out of the queue. No process has the number 0.
+        super().__init__(None, PROGRAM, use, pid=0)  # type: ignore[arg-type]
         self.hello = HelloFrame(1, PROGRAM, 0, True)
-
-    def _peer(self) -> int:
-        return 0  # no process of this machine has the number 0
 
     def queue(self, frame: bytes) -> None:
         """Put a frame into the program's queue."""
@@ -106,18 +103,14 @@ class PageHub(Hub):
     """The hub of one run."""
 
     def __init__(self, turns: Turns, limits: HubLimits | None = None) -> None:
+        super().__init__(limits=limits)
         self._turns = turns
-        self._use = HubUsage(limits or HubLimits())
-        self._until, self._epoch, self._instant = BEGIN, EPOCH, BEGIN
-        self._standstills, self._awaited, self._runs = 0, False, {}
-        self.main: int | None = None
-        self.mains: set[int] = set()
-        self.on_tick: Callable[[], None] = lambda: None
-        self.before_end: Callable[[], None] = lambda: None
-        self._router = Router(self._use, lambda: EPOCH + self._until, EPOCH)
         self._use.connection(0)
         self.connection = PageConnection(self._use)
         self._router.links.append(self.connection)
+
+    def _listen(self, folder: Path | None) -> None:
+        """Do nothing: there are no sockets."""
 
     @property
     def router(self) -> Router:

@@ -11,8 +11,9 @@ from rmw_lockstep.hub.endpoints import (
     PendingRequest,
 )
 from rmw_lockstep.hub.frames import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, EndpointFrame, NodeFrame
-from rmw_lockstep.hub.hub import BEGIN, EPOCH, SOCKET, TICK_S, Hub
+from rmw_lockstep.hub.hub import BEGIN, SOCKET, TICK_S, Hub
 from rmw_lockstep.hub.limits import HubLimits, Violation
+from rmw_lockstep.hub.router import EPOCH
 from rmw_lockstep.qos import QosPolicies
 
 __all__ = [

@@ -318,9 +318,9 @@ def to_response(client: int, number: int, source_time: int, cdr: bytes) -> bytes
     return frame(b"R", OUT_RESPONSE.pack(client, number, source_time) + cdr)
 
 
-def to_time(until: int, stop: bool = False) -> bytes:
-    """Encode a TIME."""
-    return frame(b"T", TIME.pack(until, stop))
+def to_time(until: int) -> bytes:
+    """Encode a TIME, which does not end before `until` (ns)."""
+    return frame(b"T", TIME.pack(until, False))
 
 
 def _text(text: str) -> bytes:

@@ -18,12 +18,12 @@ from rmw_lockstep.hub.graph import HubGraph
 from rmw_lockstep.hub.limits import HubLimits, HubUsage, Violation
 from rmw_lockstep.hub.link import ProcessLink
 from rmw_lockstep.hub.listeners import InheritedSocket, Listener
-from rmw_lockstep.hub.router import Router
+from rmw_lockstep.hub.router import EPOCH, Router
 
 SECOND = 1_000_000_000
 
-#: The time on a process's clock when the first one connects, and the calendar time at a clock of 0 (ns).
-BEGIN, EPOCH = 1_000 * SECOND, 1_767_225_600 * SECOND
+#: The time on a process's clock when the first one connects (ns).
+BEGIN = 1_000 * SECOND
 
 #: The name of the socket in its folder.
 SOCKET = "hub"
@@ -58,8 +58,6 @@ class Hub:
         folder: Path | None = None,
         limits: HubLimits | None = None,
         on_tick: Callable[[], None] = _do_nothing,
-        begin: int = BEGIN,
-        epoch: int = EPOCH,
     ) -> None:
         """Listen in `folder`, which other users of this machine may enter but not list; without one, nowhere yet.
 
@@ -72,14 +70,17 @@ class Hub:
         self.before_end: Callable[[], None] = _do_nothing
         self.on_tick = on_tick
         self._use = HubUsage(limits or HubLimits())
-        self._until, self._epoch = begin, epoch
-        self._instant = begin
+        self._until = self._instant = BEGIN
         self._standstills = 0
         self._awaited = False
         self._runs: dict[int, int] = {}
         self._due = 0.0
         self._ticks = 0
-        self._router = Router(self._use, lambda: self._epoch + self._until, epoch)
+        self._router = Router(self._use, lambda: EPOCH + self._until)
+        self._listen(folder)
+
+    def _listen(self, folder: Path | None) -> None:
+        """Make the sockets. A hub without processes, in a page, has none."""
         self._poll = select.poll()
         self._new = select.poll()
         self._listeners: list[Listener | InheritedSocket] = []

@@ -25,6 +25,9 @@ from rmw_lockstep.hub.moment_counter import MomentCounter
 from rmw_lockstep.qos import TRANSIENT_LOCAL, QosPolicies
 from rmw_lockstep.type_hash import type_hash
 
+#: The calendar time at a clock of 0 (ns).
+EPOCH = 1_767_225_600 * 1_000_000_000
+
 
 @dataclass(frozen=True)
 class Route:
@@ -43,13 +46,13 @@ class Route:
 class Router:
     """Forwards frames between the links to processes and the hub's own endpoints."""
 
-    def __init__(self, use: HubUsage, calendar: Callable[[], int], epoch: int) -> None:
+    def __init__(self, use: HubUsage, calendar: Callable[[], int]) -> None:
         """`calendar` is the current calendar time, which stamps the hub's messages (ns)."""
         self.graph = HubGraph()
         self.links: list[ProcessLink] = []
         self.published = 0
         self._certain = 0
-        self._use, self._calendar, self._epoch = use, calendar, epoch
+        self._use, self._calendar = use, calendar
         self._at_once = MomentCounter(self.graph, use.limits)
         self._numbers = count(1)
         self._ends: dict[int, HubEndpoint] = {}
@@ -103,7 +106,7 @@ class Router:
         """Let a process that has sent HELLO begin: when its parent forked it, otherwise at the time `now`."""
         now = self._begins.pop(link.order, now)
         link.begin(now, self.published)
-        link.queue(frames.to_welcome(link.number, now, self._epoch))
+        link.queue(frames.to_welcome(link.number, now, EPOCH))
 
     def _idle(self, link: ProcessLink, payload: bytes) -> None:
         link.believe(frames.idle(payload))
