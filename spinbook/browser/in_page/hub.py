@@ -122,7 +122,7 @@ class PageHub(Hub):
         self._take()
         self.on_tick()
 
-    def drain(self, at_most_s: float = 1.0) -> None:
+    def drain(self) -> None:
         """Do nothing: frames are handled when the program sends them."""
 
     def _take(self) -> None:
