@@ -7,11 +7,9 @@ always give the same bytes.
 from __future__ import annotations
 
 import importlib.util
-import io
 import json
 import sys
-import zipfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import groundwork
@@ -160,13 +158,3 @@ def _type_hashes() -> dict[str, str]:
             for item in json.loads(file.read_text(encoding="utf-8")).get("type_hashes", ()):
                 hashes[item["type_name"]] = item["hash_string"]
     return hashes
-
-
-def sizes(archive: bytes) -> Iterable[tuple[str, int]]:
-    """Return the compressed size of each top-level package of an archive, in bytes, the largest first."""
-    totals: dict[str, int] = {}
-    with zipfile.ZipFile(io.BytesIO(archive)) as opened:
-        for item in opened.infolist():
-            package = item.filename.partition("/")[0]
-            totals[package] = totals.get(package, 0) + item.compress_size
-    return sorted(totals.items(), key=lambda item: -item[1])

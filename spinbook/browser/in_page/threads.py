@@ -107,9 +107,15 @@ class Lock:
     def _wait(self, milliseconds: float) -> None:
         self._wanted += 1
         try:
-            pause(milliseconds, False)
+            self._pause(milliseconds)
         finally:
             self._wanted -= 1
+
+    def _pause(self, milliseconds: float) -> None:
+        pause(milliseconds, False)
+
+    def _wake(self) -> None:
+        changed()
 
     def release(self) -> None:
         """Release the lock. Raises RuntimeError if it is not held."""
@@ -117,7 +123,7 @@ class Lock:
             raise RuntimeError("release unlocked lock")
         self._held = False
         if self._wanted:
-            changed()
+            self._wake()
 
     def locked(self) -> bool:
         """Return whether it is held."""
@@ -136,18 +142,11 @@ class Lock:
 class _RawLock(Lock):
     """A lock that waits without the scheduler."""
 
-    def release(self) -> None:
-        """Release the lock."""
-        self._held = False
-        if self._wanted:
-            _page.wake()
+    def _pause(self, milliseconds: float) -> None:
+        _pause_in_page(milliseconds, False)
 
-    def _wait(self, milliseconds: float) -> None:
-        self._wanted += 1
-        try:
-            _pause_in_page(milliseconds, False)
-        finally:
-            self._wanted -= 1
+    def _wake(self) -> None:
+        _page.wake()
 
 
 class NotifyingCondition(threading.Condition):
