@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import math
-import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -25,6 +24,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import Trigger
 
+from groundwork.files import write_if_changed
 from ros_in_python.turtlesim.events import DT, PIXELS_PER_UNIT, SIDE, Pen
 from ros_in_python.turtlesim.messages import Pose
 from ros_in_python.turtlesim.moving import moving_svg
@@ -80,10 +80,7 @@ def save(world: WorldPicture, file: Path) -> None:
     picture = io.BytesIO()
     with mpl.rc_context({"svg.hashsalt": "turtlesim"}):
         draw(world).savefig(picture, format=kind, dpi=_DPI, metadata=metadata)
-    file.parent.mkdir(parents=True, exist_ok=True)
-    part = file.with_name(f".{file.name}.{os.getpid()}.part")
-    part.write_bytes(picture.getvalue())
-    part.replace(file)
+    write_if_changed(file, picture.getvalue())
 
 
 def _prepare(axes: Axes, world: WorldPicture) -> None:

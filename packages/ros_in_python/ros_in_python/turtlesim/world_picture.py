@@ -72,28 +72,9 @@ class WorldPicture:
     def to_json(self) -> str:
         """Return JSON in one line, the same for the same world."""
         text = {
-            "size": round(self.size, 6),
-            "background": self.background,
-            "turtles": [
-                {
-                    "name": turtle.name,
-                    "x": round(turtle.x, _DIGITS),
-                    "y": round(turtle.y, _DIGITS),
-                    "theta": round(turtle.theta, _DIGITS),
-                    "pen": vars(turtle.pen),
-                }
-                for turtle in self.turtles
-            ],
-            "trails": [
-                {
-                    "turtle": stroke.turtle,
-                    "color": stroke.color,
-                    "width": stroke.width,
-                    "points": [[round(x, _DIGITS), round(y, _DIGITS)] for x, y in stroke.points],
-                }
-                for stroke in self.trails
-            ],
-            "incomplete": self.incomplete,
+            **vars(self),
+            "turtles": [vars(turtle) | {"pen": vars(turtle.pen)} for turtle in self.turtles],
+            "trails": [vars(stroke) for stroke in self.trails],
             "tracks": [_track_as_json(track) for track in self.tracks],
         }
         return json.dumps(text, separators=(",", ":"))
@@ -123,13 +104,17 @@ def picture_of(world: TurtleWorld, background: Color) -> WorldPicture:
     """Return the world as it is now."""
     turtles = sorted(world.turtles.values(), key=lambda turtle: turtle.name)
     return WorldPicture(
-        size=SIDE,
+        size=round(SIDE, 6),
         background=background,
-        turtles=tuple(TurtlePicture(each.name, each.x, each.y, each.theta, each.pen) for each in turtles),
+        turtles=tuple(TurtlePicture(each.name, *_rounded(each.x, each.y, each.theta), each.pen) for each in turtles),
         trails=strokes(world.trail.strokes),
         incomplete="the oldest part of the trail is left out" if world.trail.forgotten else "",
         tracks=tracks(world.tracks),
     )
+
+
+def _rounded(x: float, y: float, theta: float) -> tuple[float, float, float]:
+    return round(x, _DIGITS), round(y, _DIGITS), round(theta, _DIGITS)
 
 
 def tracks(by_turtle: Mapping[str, Track]) -> tuple[TrackPicture, ...]:
@@ -159,7 +144,12 @@ def _describe(turtle: TurtlePicture) -> str:
 def strokes(drawn: Iterable[Stroke]) -> tuple[StrokePicture, ...]:
     """Return the strokes of a trail as a picture shows them."""
     return tuple(
-        StrokePicture(each.turtle, (each.pen.r, each.pen.g, each.pen.b), each.pen.width, tuple(each.points))
+        StrokePicture(
+            each.turtle,
+            (each.pen.r, each.pen.g, each.pen.b),
+            each.pen.width,
+            tuple((round(x, _DIGITS), round(y, _DIGITS)) for x, y in each.points),
+        )
         for each in drawn
     )
 

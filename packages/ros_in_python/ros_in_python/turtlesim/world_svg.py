@@ -20,6 +20,18 @@ COATS = (
     ("#20707c", "#4fb0b6", "#a9e0dd"),
 )
 
+# A turtle around its centre, looking along +x (px). A flipper is a curve from its first place to its last, bent towards
+# the two between. An ellipse is its middle, half its length and half its breadth. A circle ends in its radius.
+Place = tuple[float, float]
+FLIPPERS: tuple[tuple[Place, ...], ...] = (
+    ((12, 5), (20, 21), (5, 30), (1, 11)),
+    ((-5, 9), (-9, 23), (-23, 19), (-14, 4)),
+)
+TAIL: tuple[Place, ...] = ((-14, 3), (-22, 0), (-14, -3))
+PLATE: tuple[Place, ...] = ((6, 0), (3, 4.6), (-3, 4.6), (-6, 0), (-3, -4.6), (3, -4.6))
+HEAD, SHELL = (19.5, 7.2, 6), (0, 15.3, 13)
+EYE, PUPIL = (22, 3.5, 1.9), (22.6, 3.6, 1.1)
+
 #: Space around the world for its axes and caption (px).
 LEFT, TOP, RIGHT, BOTTOM = 26, 30, 10, 26
 LINE = "#16301f"
@@ -56,23 +68,26 @@ def path(points: Sequence[tuple[float, float]], color: Color, width: int, more: 
 def turtle_mark(turtle: TurtlePicture, coat: int, name: str, size: float) -> str:
     """A turtle around its centre, looking along +x, put to its place; `name` is the class that moves it."""
     shell, plate, skin = COATS[coat % len(COATS)]
-    limbs = "".join(
-        f'<path d="M12 {s * 5}C20 {s * 21} 5 {s * 30} 1 {s * 11}zM-5 {s * 9}C-9 {s * 23}-23 {s * 19}-14 {s * 4}z"/>'
-        for s in (1, -1)
-    )
+    limbs = "".join(_drawn("C", flipper, side) for flipper in FLIPPERS for side in (1, -1))
     eyes = "".join(
-        f'<circle cx="22" cy="{s * 3.5}" r="1.9" fill="#fff"/><circle cx="22.6" cy="{s * 3.6}" r="1.1"/>'
-        for s in (1, -1)
+        f'<circle cx="{x}" cy="{side * y}" r="{radius}"{fill}/>'
+        for side in (1, -1)
+        for (x, y, radius), fill in ((EYE, ' fill="#fff"'), (PUPIL, ""))
     )
+    head, body = (f'<ellipse cx="{x}" rx="{wide}" ry="{high}"' for x, wide, high in (HEAD, SHELL))
     x, y = position(turtle.x, turtle.y, size)
     place = f"translate({coord(x)} {coord(y)})rotate({coord(-math.degrees(turtle.theta), 0)})"
     moving = f' class="{name}"' if name else ""
     return (
         f'<g{moving} transform="{place}" fill="{LINE}">'
-        f'<g fill="{skin}" stroke="{LINE}" stroke-width=".8"><path d="M-14 3L-22 0L-14-3z"/>{limbs}'
-        f'<ellipse cx="19.5" rx="7.2" ry="6"/><ellipse rx="15.3" ry="13" fill="{shell}"/></g>'
-        f'<path d="M6 0L3 4.6H-3L-6 0L-3-4.6H3z" fill="{plate}"/>{eyes}</g>'
+        f'<g fill="{skin}" stroke="{LINE}" stroke-width=".8">{_drawn("L", TAIL)}{limbs}'
+        f'{head}/>{body} fill="{shell}"/></g><g fill="{plate}">{_drawn("L", PLATE)}</g>{eyes}</g>'
     )
+
+
+def _drawn(command: str, places: Sequence[Place], side: int = 1) -> str:
+    first, *others = (f"{x} {side * y}" for x, y in places)
+    return f'<path d="M{first}{command}{" ".join(others)}z"/>'
 
 
 def ground(world: WorldPicture, key: str) -> str:
