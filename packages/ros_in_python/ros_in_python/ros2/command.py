@@ -92,34 +92,13 @@ daemon = Menu(
     """,
 )
 
-_WHY = "(none is needed: each command looks at the graph itself, so there is nothing to restart)"
+
+def _add_daemon_verb(name: str, help_line: str, answer: str) -> None:
+    @daemon.command(name=name, help=f"{help_line}\n\n\b\n  ros2 daemon {name}")
+    def verb() -> None:
+        click.echo(f"{answer} (none is needed: each command looks at the graph itself, so there is nothing to restart)")
 
 
-@daemon.command()
-def status() -> None:
-    """Say that none is running.
-
-    \b
-      ros2 daemon status
-    """
-    click.echo(f"The daemon is not running {_WHY}")
-
-
-@daemon.command()
-def start() -> None:
-    """Say that none is needed.
-
-    \b
-      ros2 daemon start
-    """
-    click.echo(f"The daemon has not been started {_WHY}")
-
-
-@daemon.command()
-def stop() -> None:
-    """Say that none is running.
-
-    \b
-      ros2 daemon stop
-    """
-    click.echo(f"The daemon is not running {_WHY}")
+_add_daemon_verb("status", "Say that none is running.", "The daemon is not running")
+_add_daemon_verb("start", "Say that none is needed.", "The daemon has not been started")
+_add_daemon_verb("stop", "Say that none is running.", "The daemon is not running")

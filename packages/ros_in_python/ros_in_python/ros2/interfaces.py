@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import difflib
+import functools
 import importlib
 import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 import click
 
 from interface_compiler import prefixes, shipped
-from ros_in_python.ros2.cli import CommandError, Menu
+from ros_in_python.ros2.cli import CommandError, F, Menu
 
 _PRIMITIVE = re.compile(r"(bool|byte|char|float32|float64|u?int(8|16|32|64)|w?string(<=\d+)?)$")
 _ARRAY = re.compile(r"\[(<=)?\d*\]$")
@@ -176,14 +177,18 @@ interface = Menu(
 _TITLES = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 
 
-def _kinds(only_msgs: bool, only_srvs: bool, only_actions: bool) -> list[str]:
-    chosen = [kind for kind, is_chosen in zip(_TITLES, (only_msgs, only_srvs, only_actions), strict=True) if is_chosen]
-    return chosen or list(_TITLES)
+def _with_kinds(command: F) -> F:
+    """Give a command `kinds`: those that its options name, or all."""
 
+    @click.option("-m", "--only-msgs", "msg", is_flag=True, help="Messages.")
+    @click.option("-s", "--only-srvs", "srv", is_flag=True, help="Services.")
+    @click.option("-a", "--only-actions", "action", is_flag=True, help="Actions.")
+    @functools.wraps(command)
+    def run(**named: Any) -> Any:
+        chosen = [kind for kind in _TITLES if named.pop(kind)]
+        return command(kinds=chosen or list(_TITLES), **named)
 
-_only_msgs = click.option("-m", "--only-msgs", is_flag=True, help="Messages.")
-_only_srvs = click.option("-s", "--only-srvs", is_flag=True, help="Services.")
-_only_actions = click.option("-a", "--only-actions", is_flag=True, help="Actions.")
+    return cast("F", run)
 
 
 @interface.command()
@@ -207,10 +212,8 @@ def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
 
 
 @interface.command(name="list")
-@_only_msgs
-@_only_srvs
-@_only_actions
-def list_(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
+@_with_kinds
+def list_(kinds: list[str]) -> None:
     """Every type installed here.
 
     \b
@@ -219,7 +222,7 @@ def list_(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
           test_msgs/action/Fibonacci
     """
     everything = installed_interfaces()
-    for kind in _kinds(only_msgs, only_srvs, only_actions):
+    for kind in kinds:
         click.echo(f"{_TITLES[kind]}:")
         for package_name, names in everything.items():
             for name in names:
@@ -229,10 +232,8 @@ def list_(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
 
 @interface.command()
 @click.argument("package_name")
-@_only_msgs
-@_only_srvs
-@_only_actions
-def package(package_name: str, only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
+@_with_kinds
+def package(package_name: str, kinds: list[str]) -> None:
     """The types of one package.
 
     \b
@@ -242,23 +243,19 @@ def package(package_name: str, only_msgs: bool, only_srvs: bool, only_actions: b
     if not names:
         advice = shipped.how_to_add(package_name) or "`ros2 interface packages` shows those that have types."
         raise CommandError(f"Unknown package '{package_name}'", advice)
-    kinds = _kinds(only_msgs, only_srvs, only_actions)
     for name in names:
         if name.split("/")[0] in kinds:
             click.echo(f"{package_name}/{name}")
 
 
 @interface.command()
-@_only_msgs
-@_only_srvs
-@_only_actions
-def packages(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
+@_with_kinds
+def packages(kinds: list[str]) -> None:
     """The packages that have types.
 
     \b
       ros2 interface packages -a
     """
-    kinds = _kinds(only_msgs, only_srvs, only_actions)
     for package_name, names in installed_interfaces().items():
         if any(name.split("/")[0] in kinds for name in names):
             click.echo(package_name)

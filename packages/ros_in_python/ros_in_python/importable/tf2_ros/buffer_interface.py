@@ -62,39 +62,11 @@ class BufferInterface:
         )
         return _as_type(do_transform(object_stamped, found), new_type)
 
-    def lookup_transform(
-        self, target_frame: str, source_frame: str, time: Time, timeout: Duration | None = None
-    ) -> TransformStamped:
-        """Return where `source_frame` is in `target_frame`."""
+    def _not_implemented(self, *arguments: Any, **named: Any) -> Any:
         raise NotImplementedException
 
-    def lookup_transform_full(
-        self,
-        target_frame: str,
-        target_time: Time,
-        source_frame: str,
-        source_time: Time,
-        fixed_frame: str,
-        timeout: Duration | None = None,
-    ) -> TransformStamped:
-        """Return where `source_frame` was, in `target_frame` as that is at another time."""
-        raise NotImplementedException
-
-    def can_transform(self, target_frame: str, source_frame: str, time: Time, timeout: Duration | None = None) -> Any:
-        """Return whether there is a transform."""
-        raise NotImplementedException
-
-    def can_transform_full(
-        self,
-        target_frame: str,
-        target_time: Time,
-        source_frame: str,
-        source_time: Time,
-        fixed_frame: str,
-        timeout: Duration | None = None,
-    ) -> Any:
-        """Return whether there is a transform between two times."""
-        raise NotImplementedException
+    # What a subclass has: see `Buffer`.
+    lookup_transform = lookup_transform_full = can_transform = can_transform_full = _not_implemented
 
 
 class TransformRegistration:

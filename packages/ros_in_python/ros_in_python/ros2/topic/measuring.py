@@ -13,7 +13,7 @@ import click
 from ros_in_python.ros2.cli import CommandError, F
 from ros_in_python.ros2.names import absolute
 from ros_in_python.ros2.opening import with_graph
-from ros_in_python.ros2.topic.selection import Filter, filter_option
+from ros_in_python.ros2.topic.selection import Filter, filter_option, wait_for_type
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
@@ -151,8 +151,6 @@ def hz(graph: GraphView, topic_name: str, window: int, wall_time: bool, filter_e
     from rclpy.clock import Clock, ClockType
     from rclpy.qos import qos_profile_sensor_data
 
-    from ros_in_python.ros2.topic.selection import wait_for_type
-
     name = absolute(topic_name)
     message = wait_for_type(graph, name)
     rate = Rate(window)
@@ -191,8 +189,6 @@ def bw(graph: GraphView, topic_name: str, window: int) -> None:
     """
     from rclpy.qos import qos_profile_sensor_data
 
-    from ros_in_python.ros2.topic.selection import wait_for_type
-
     name = absolute(topic_name)
     message = wait_for_type(graph, name)
     bandwidth = Bandwidth(window)
@@ -226,7 +222,6 @@ def delay(graph: GraphView, topic_name: str, window: int) -> None:
     from rclpy.time import Time
 
     from ros_in_python.ros2.messages import field_names, type_name
-    from ros_in_python.ros2.topic.selection import wait_for_type
 
     name = absolute(topic_name)
     message = wait_for_type(graph, name)
