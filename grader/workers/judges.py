@@ -116,6 +116,7 @@ class _JudgingRequest:
             if not message:
                 os._exit(0)
             if fork() == 0:
+                gc.enable()
                 limit_memory()
                 break
             os.close(descriptors[0])

@@ -31,9 +31,7 @@ if TYPE_CHECKING:
 
 def preload() -> None:
     """Import the modules that run a program, scan the file system, and prepare the memory for sharing with forks."""
-    gc.disable()  # it would look through all that is imported, a tenth of the time
     importlib.import_module("grader.runner.run")
-    gc.enable()
     filesystem.mounts((), (), 0)
     _share()
 
@@ -77,6 +75,7 @@ def _share() -> None:
 
 def main() -> None:
     """Serve jobs until the other end of the control socket is closed; remove the folders with the jobs' files."""
+    gc.disable()  # until a fork works: it would look through all that is imported, a tenth of the time
     descriptor, *folders = sys.argv[1:]
     control = socket.socket(fileno=int(descriptor))
     with ForkServer() as fork_server:
@@ -125,6 +124,7 @@ def _reap(working: set[int]) -> None:
 
 def _work(descriptor: int, fork_server: ForkServer) -> NoReturn:
     """Do one job after another, until one fails or the client closes the connection."""
+    gc.enable()
     limit_memory()
     connection = multiprocessing.connection.Connection(descriptor)
     jobs: queue.SimpleQueue[Job] = queue.SimpleQueue()
