@@ -25,8 +25,7 @@ _INIT = b'"""The compiled libraries of rmw_lockstep, which finds them: nothing t
 def compiled_wheels() -> dict[str, bytes]:
     """Return file name -> content of the wheels that spare another machine a compiler.
 
-    Raises:
-        MiddlewareUnavailable: if there is no middleware here.
+    Raises `MiddlewareUnavailable` if there is no middleware here.
     """
     return dict([middleware_wheel(), *_interface_wheels()])
 
@@ -34,10 +33,8 @@ def compiled_wheels() -> dict[str, bytes]:
 def middleware_wheel() -> tuple[str, bytes]:
     """Return the file name and content of the middleware's wheel, which fits every Python 3.
 
-    Its version ends in the digest of its sources, so that pip replaces one of other sources.
-
-    Raises:
-        MiddlewareUnavailable: if there is no middleware here, or colcon has built it for the ROS 2 that is sourced.
+    Its version ends in the digest of its sources, so that pip replaces one of other sources. Raises
+    `MiddlewareUnavailable` if there is no middleware here, or colcon has built it for the ROS 2 that is sourced.
     """
     require_middleware()
     found = library()

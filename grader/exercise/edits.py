@@ -66,8 +66,7 @@ class Edit:
     def applied_to(self, base: Path) -> str:
         """Return the whole program: `base`, or the file that the diff names, with this edit.
 
-        Raises:
-            ExerciseError: if a hunk has no place in the base, or more than one.
+        Raises `ExerciseError` if a hunk has no place in the base, or more than one.
         """
         base = self.file.parent / self.base if self.base else base
         try:
@@ -106,8 +105,7 @@ class Edit:
 def read_edits(file: Path) -> tuple[Edit, ...]:
     """Return the programs of a Markdown file: one for each heading of the second level.
 
-    Raises:
-        ExerciseError: if two have the same name, or a name is not valid.
+    Raises `ExerciseError` if two have the same name, or a name is not valid.
     """
     text = file.read_text(encoding="utf-8-sig")
     lines = text.splitlines()

@@ -57,8 +57,7 @@ class NoMistake(click.UsageError):
 def mistakes_of(exercise: Exercise) -> tuple[Mistake, ...]:
     """Return every usual mistake in an exercise, sorted by name; none in a student's copy of the course.
 
-    Raises:
-        ExerciseError: if an edit does not fit the solution, or two mistakes have the same name.
+    Raises `ExerciseError` if an edit does not fit the solution, or two mistakes have the same name.
     """
     mistakes = {}
     for each in each_mistake(exercise):
@@ -86,9 +85,7 @@ def each_mistake(exercise: Exercise) -> Iterator[Mistake | ExerciseError]:
 def mistake_of(exercise: Exercise, name: str) -> Mistake:
     """Return the mistake with this name.
 
-    Raises:
-        NoMistake: if there is none.
-        ExerciseError: if an edit does not fit the solution.
+    Raises `NoMistake` if there is none, and `ExerciseError` if an edit does not fit the solution.
     """
     mistakes = {mistake.name: mistake for mistake in mistakes_of(exercise)}
     if name not in mistakes:

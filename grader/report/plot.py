@@ -19,10 +19,7 @@ NOTHING = "--plot: there is nothing to draw, no number that changes on a topic o
 def draw(grade: Grade, exercise: Exercise, file: Path, scenario: str = "") -> bool:
     """Draw a scenario of the grade into `file`, as SVG: by default the first that went wrong.
 
-    Return False, and write nothing, if there is nothing to draw.
-
-    Raises:
-        OSError: if the file can't be written.
+    Return False, and write nothing, if there is nothing to draw. Raises OSError if the file can't be written.
     """
     svg = scenario_picture(grade, exercise, scenario or _first_wrong(grade))
     if svg:

@@ -75,11 +75,8 @@ class Budget:
     def look(self) -> None:
         """Count the time since the last look. Call this every 20 ms.
 
-        The first call reads nothing, as most steps end before the second.
-
-        Raises:
-            ProgramExited: if the program has ended.
-            CannotContinue: if the step exceeds its allowance.
+        The first call reads nothing, as most steps end before the second. Raises `ProgramExited` if the program has
+        ended, and `CannotContinue` if the step exceeds its allowance.
         """
         now = time.monotonic()
         passed = now - self._looked if now - self._looked <= LONGEST_LOOK_S else 0.0

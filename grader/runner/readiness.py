@@ -41,10 +41,7 @@ def wait_until_up(hub: Hub, connected: Callable[[], bool], has_nodes: Callable[[
     """Let the computer's time pass until the program has a node that is ready.
 
     A node is ready when it has its subscriptions (`connected`), or spins and has had time to create them. `has_nodes`
-    returns whether the program has created any.
-
-    Raises:
-        CannotContinue: if there will be no node.
+    returns whether the program has created any. Raises `CannotContinue` if there will be no node.
     """
     try:
         _wait_until_up(hub, connected, has_nodes)

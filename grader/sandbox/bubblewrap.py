@@ -39,14 +39,8 @@ def options(plan: Sequence[Mount]) -> bytes:
 def build(root: bytes, user_namespace: int) -> Namespaces:
     """Make the namespaces and their root, and move this process into them (except the pid namespace's children).
 
-    There is no network, not even loopback.
-
-    Args:
-        root: the `options` that build it.
-        user_namespace: that of the student.
-
-    Raises:
-        OSError: if bubblewrap could not be run or ended early; the text has its output.
+    There is no network, not even loopback. `root` has the `options` that build it, and `user_namespace` is that
+    of the student. Raises OSError if bubblewrap could not be run or ended early; the text has its output.
     """
     program = find()
     if program is None:

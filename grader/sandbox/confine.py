@@ -77,8 +77,7 @@ def confine(
         passed: its output becomes the process's own, its hub gets the number that programs expect.
         keep_open: a descriptor that the caller still needs; every other one is closed.
 
-    Raises:
-        OSError: if the kernel refuses one of the steps; none of the student's code may run then.
+    Raises OSError if the kernel refuses one of the steps; none of the student's code may run then.
     """
     os.setsid()
     _take_descriptors(passed, keep_open)

@@ -71,10 +71,8 @@ class Mount:
 def mounts(readonly: tuple[Path, ...], hidden: tuple[Path, ...], scratch_bytes: int) -> tuple[Mount, ...]:
     """Return the steps that build a root, in order.
 
-    Args:
-        readonly: what is shown besides Python and ROS 2.
-        hidden: what is not shown, although it is inside something that is.
-        scratch_bytes: the size of each writable path.
+    `readonly` is what is shown besides Python and ROS 2. `hidden` is what is not shown, although it is inside something
+    that is. `scratch_bytes` is the size of each writable path.
     """
     shown = list(_without_nested([*interpreter(), *readonly]))
     plan = _MountPlan()

@@ -33,13 +33,8 @@ class SandboxedProgram(Monitor):
     def __init__(self, control: socket.socket, output: int, limits: Limits) -> None:
         """Wait until the supervisor at the other end of the socket has started the program.
 
-        Args:
-            control: the socket to the supervisor.
-            output: the read end of the pipe that the program prints to.
-            limits: what it may use.
-
-        Raises:
-            SandboxError: if it could not be started.
+        `control` is the socket to the supervisor. `output` is the read end of the pipe that the program prints to.
+        `limits` is what it may use. Raises `SandboxError` if it could not be started.
         """
         control.settimeout(_START_S)
         try:
@@ -65,8 +60,7 @@ class SandboxedProgram(Monitor):
     def interrupt(self) -> None:
         """Send SIGINT to the node's process, as Ctrl-C would, and return when it is sent; do nothing if it has ended.
 
-        Raises:
-            SandboxError: if the supervisor does not answer.
+        Raises `SandboxError` if the supervisor does not answer.
         """
         with contextlib.suppress(OSError):
             self._control.send(b"interrupt")
@@ -80,8 +74,7 @@ class SandboxedProgram(Monitor):
     def kill(self) -> ProcessExit:
         """Kill all its processes, including daemons, and return when all are dead. A second call returns the same.
 
-        Raises:
-            SandboxError: if one of its processes does not die.
+        Raises `SandboxError` if one of its processes does not die.
         """
         with contextlib.suppress(OSError):
             self._control.send(b"kill")
@@ -113,11 +106,8 @@ class ForkServer:
     def __init__(self, preload: Sequence[str] = PRELOAD) -> None:
         """Start the process that students are forked from. It imports the modules while the caller continues.
 
-        Args:
-            preload: the modules to import beforehand; those that are not installed are left out.
-
-        Raises:
-            MiddlewareUnavailable: if the middleware has not been compiled here.
+        `preload` names the modules to import beforehand; those that are not installed are left out. Raises
+        `MiddlewareUnavailable` if the middleware has not been compiled here.
         """
         soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
         if 0 <= soft < OPEN_FILES <= hard:
@@ -142,8 +132,7 @@ class ForkServer:
             limits: what it may use.
             core: the CPU to keep it on; several cores make some executors slow without making any faster.
 
-        Raises:
-            SandboxError: if the sandbox could not be made: our fault or the machine's, never the student's.
+        Raises `SandboxError` if the sandbox could not be made: our fault or the machine's, never the student's.
         """
         limits = limits or Limits()
         # Where the author's files are stays here: a program could search its memory for it.

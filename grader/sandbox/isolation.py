@@ -51,8 +51,8 @@ def available() -> dict[Isolation, str | None]:
 def choose(requested: Isolation | None = None) -> Isolation:
     """Return the level to use: `requested`, or the strongest that works here. It is NONE only if that is `requested`.
 
-    Raises:
-        SandboxUnavailable: if `requested`, or without it every level, does not work here, or what all need is missing.
+    Raises `SandboxUnavailable` if `requested`, or without it every level, does not work here, or what all need is
+    missing.
     """
     _refuse_what_no_level_works_with()
     if requested is not Isolation.NONE:

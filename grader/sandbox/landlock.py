@@ -52,8 +52,7 @@ def keeps_signals_inside() -> bool:
 def student_user() -> int:
     """Return the user for a student's program. For root it is an unused one: the kernel limits no root processes.
 
-    Raises:
-        OSError: as root, if that user cannot reach Python, or other folders that programs need.
+    As root, raises OSError if that user cannot reach Python, or other folders that programs need.
     """
     if os.geteuid() != 0:
         return os.geteuid()
@@ -82,14 +81,8 @@ def rules(readonly: Sequence[Path], hidden: Sequence[Path]) -> int:
 
     In /proc a program's processes check whether they are idle. It then sees others' command lines; Landlock itself
     keeps their memory, environment and files closed. The runner makes the rules, so that no program's process has ever
-    had the hidden paths in its memory.
-
-    Args:
-        readonly: what else it may read.
-        hidden: what it may not read, although it is inside something that it may; the names remain visible.
-
-    Raises:
-        OSError: if the kernel has no Landlock.
+    had the hidden paths in its memory. `readonly` is what else it may read. `hidden` is what it may not read, although
+    it is inside something that it may; the names remain visible. Raises OSError if the kernel has no Landlock.
     """
     ruleset = _new_ruleset()
     for path in (*filesystem.system(), *filesystem.interpreter(), *readonly):

@@ -27,8 +27,7 @@ def _on_stderr(text: str) -> None:
 def require_middleware(announce: Callable[[str], None] = _on_stderr) -> None:
     """Make sure that the grader's middleware is available. Compile it if this machine has none, and `announce` that.
 
-    Raises:
-        MiddlewareUnavailable: if it is neither installed nor can be compiled here.
+    Raises `MiddlewareUnavailable` if it is neither installed nor can be compiled here.
     """
     from rmw_lockstep.build import BuildError, build  # the processes that become students must not compile
 
@@ -46,8 +45,7 @@ def require_middleware(announce: Callable[[str], None] = _on_stderr) -> None:
 def variables(of: Mapping[str, str]) -> dict[str, str]:
     """Return the variables that a process needs to load the middleware, given its other environment.
 
-    Raises:
-        MiddlewareUnavailable: if it has not been compiled.
+    Raises `MiddlewareUnavailable` if it has not been compiled.
     """
     built = library()
     if isinstance(built, UnavailableLibrary):
@@ -85,8 +83,7 @@ _this_process = ctypes.CDLL(None)
 def connect(hub: str) -> None:
     """Connect this process, into which liblockstep was preloaded, to the hub; from now on the hub sets its time.
 
-    Raises:
-        OSError: if there is no hub, or it does not answer.
+    Raises OSError if there is no hub, or it does not answer.
     """
     error = _this_process.lockstep_connect(os.fsencode(hub))
     if error:

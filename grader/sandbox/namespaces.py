@@ -33,10 +33,9 @@ class Builder:
 class Namespaces:
     """A pid namespace with a root of its own, as seen by the process outside that made it.
 
-    Attributes:
-        init: the first process of the pid namespace; when it dies, the kernel kills all others.
-        own_processes: processes of ours inside, which are not the student's.
-        builder: the bubblewrap process outside, parent of `init`; None if `init` is this process's own child.
+    `init` is the first process of the pid namespace; when it dies, the kernel kills all others. `own_processes` are
+    processes of ours inside, which are not the student's. `builder` is the bubblewrap process outside, parent of
+    `init`; None if `init` is this process's own child.
     """
 
     init: int
@@ -84,10 +83,7 @@ _MOUNT = syscalls.MS_NOSUID | syscalls.MS_NODEV
 def build(plan: Sequence[Mount], user_namespace: int) -> Namespaces:
     """Make the namespaces and their root, and move this process into them (except the pid namespace's children).
 
-    There is no network, not even loopback.
-
-    Raises:
-        OSError: if a namespace or a mount is refused.
+    There is no network, not even loopback. Raises OSError if a namespace or a mount is refused.
     """
     syscalls.setns(user_namespace, syscalls.CLONE_NEWUSER)
     flags = syscalls.CLONE_NEWNS | syscalls.CLONE_NEWPID | syscalls.CLONE_NEWIPC | syscalls.CLONE_NEWUTS
@@ -137,8 +133,7 @@ def _be_init(plan: Sequence[Mount], status_write: int) -> NoReturn:
 def build_root(plan: Sequence[Mount]) -> None:
     """Replace the root of this mount namespace by the one that the steps describe.
 
-    Raises:
-        OSError: if a mount is refused.
+    Raises OSError if a mount is refused.
     """
     syscalls.mount("", "/", flags=syscalls.MS_REC | syscalls.MS_PRIVATE)
     syscalls.mount("tmpfs", "/tmp", "tmpfs", _MOUNT, "mode=0755")
@@ -208,8 +203,7 @@ _of_process: dict[int, int] = {}
 def user_namespace_of_this_process() -> int:
     """Return the user namespace that this process uses for all students; the first call makes it.
 
-    Raises:
-        OSError: if this machine allows no user namespaces.
+    Raises OSError if this machine allows no user namespaces.
     """
     if os.getpid() not in _of_process:
         _of_process[os.getpid()] = create_user_namespace()
@@ -219,12 +213,9 @@ def user_namespace_of_this_process() -> int:
 def create_user_namespace() -> int:
     """Make a user namespace and return a descriptor of it.
 
-    As root, a user of no other process becomes the student (the kernel does not limit the number of root's
-    processes), and root stays root inside, so the student can't reach what we leave running there.
-    Otherwise the only user is the current one, under the student's number.
-
-    Raises:
-        OSError: if this machine allows no user namespaces.
+    As root, a user of no other process becomes the student (the kernel does not limit the number of root's processes),
+    and root stays root inside, so the student can't reach what we leave running there. Otherwise the only user is the
+    current one, under the student's number. Raises OSError if this machine allows no user namespaces.
     """
     if os.geteuid() == 0:
         users = f"0 0 1\n{USER_ID} {dedicated_user()} 1\n"

@@ -139,9 +139,7 @@ class ProcessTree:
 def make_paths(files: Mapping[str, bytes], owner: int | None) -> Paths:
     """Make a folder in the machine's temporary folder, with the submission's files and a home.
 
-    Args:
-        files: name to content.
-        owner: the user that the home is given to; None for the current one.
+    `files` has the contents by name. `owner` is the user that the home is given to; None for the current one.
     """
     top = Path(tempfile.mkdtemp(prefix="spinbook-student-"))
     top.chmod(0o755)

@@ -83,8 +83,7 @@ class ProgramSpec:
     def __post_init__(self) -> None:
         """Check that all paths are inside the submission's folder and that the main file exists.
 
-        Raises:
-            ValueError: for a path that could lead outside or has a NUL in it, or a main file that does not exist.
+        Raises ValueError for a path that could lead outside or has a NUL in it, or a main file that does not exist.
         """
         for name in self.files:
             if any(part in ("", ".", "..") for part in name.split("/")) or "\0" in name:
@@ -132,8 +131,7 @@ class Limits:
     def __post_init__(self) -> None:
         """Refuse limits that rclpy is known not to start with.
 
-        Raises:
-            ValueError: if the memory is below 512 MiB or there are fewer than 20 processes.
+        Raises ValueError if the memory is below 512 MiB or there are fewer than 20 processes.
         """
         if self.memory_bytes < 512 * _MIB:
             raise ValueError(f"memory_bytes is {self.memory_bytes}: rclpy needs at least {512 * _MIB} (512 MiB)")
@@ -144,10 +142,8 @@ class Limits:
 def apply_limits(limits: Limits, *, other_processes: int = 0) -> None:
     """Set the kernel's limits for this process and its children: setrlimit(2).
 
-    Args:
-        limits: what is allowed.
-        other_processes: processes and threads of the same user that the kernel counts too: 0 in a user namespace of
-        its own, on a kernel that counts for each namespace.
+    `limits` is what is allowed. `other_processes` is how many processes and threads of the same user the kernel counts,
+    too: 0 in a user namespace of its own, on a kernel that counts for each namespace.
     """
     cpu_s = int(limits.cpu_s) + 1
     rlimits = {

@@ -133,11 +133,8 @@ def supported() -> bool:
 def program(*, no_signals: bool = False) -> bytes:
     """Return the filter in the kernel's format (an array of struct sock_filter).
 
-    Args:
-        no_signals: also refuse every signal to another process, if neither a pid namespace nor Landlock does.
-
-    Raises:
-        OSError: for an architecture whose system calls are not known here.
+    With `no_signals` it also refuses every signal to another process, if neither a pid namespace nor Landlock does.
+    Raises OSError for an architecture whose system calls are not known here.
     """
     if not supported():
         raise OSError(f"seccomp: the system calls of {platform.machine()} are not known here")

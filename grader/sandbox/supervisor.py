@@ -28,9 +28,7 @@ class StudentToRun:
 def supervise(start: StartRequest, passed: PassedDescriptors) -> StudentToRun:
     """Start a student's program and watch it until it is dead. Return only in the student; the supervisor exits.
 
-    Args:
-        start: what to start.
-        passed: the descriptors that came with it.
+    `start` is what to start. `passed` has the descriptors that came with it.
     """
     control, reported = passed.control, False
     try:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import wraps
-from typing import Any, Literal, ParamSpec
+from typing import Any, Literal
 
 from grader.recording.events import Fields
 from grader.scenario.code import AuthorCode, code_of, line_of_the_author
@@ -14,8 +13,6 @@ from grader.scenario.code import AuthorCode, code_of, line_of_the_author
 OnCancel = Literal["accept", "refuse", "ignore"]
 
 End = Literal["succeeded", "aborted", "never"]
-
-_Given = ParamSpec("_Given")
 
 
 @dataclass(frozen=True)
@@ -103,18 +100,16 @@ def succeeds(
     return GoalScript(True, answers_after, timed_feedback, "succeeded", after, result or {}, cancel, cancel_takes)
 
 
-def _ending(end: End, script: Callable[_Given, GoalScript], doc: str) -> Callable[_Given, GoalScript]:
-    """Return a function that takes what `script` takes, for goals that end otherwise."""
-
-    @wraps(script)
-    def scripted(*args: _Given.args, **kwargs: _Given.kwargs) -> GoalScript:
-        return replace(script(*args, **kwargs), end=end)
-
-    scripted.__doc__ = doc
-    return scripted
-
-
-aborts = _ending("aborted", succeeds, "Accept the goal, give feedback at these seconds, and abort `after` s.")
+def aborts(
+    after: float = 0.0,
+    result: Fields | None = None,
+    feedback: dict[float, Fields] | None = None,
+    cancel: OnCancel = "accept",
+    cancel_takes: float = 0.0,
+    answers_after: float = 0.0,
+) -> GoalScript:
+    """Accept the goal, give feedback at these seconds, and abort `after` s."""
+    return replace(succeeds(after, result, feedback, cancel, cancel_takes, answers_after), end="aborted")
 
 
 def never_ends(

@@ -36,10 +36,8 @@ class Judges:
     def request(self, collected: bytes, descriptor: int, control: socket.socket) -> None:
         """Have one judging done for the other end of the socket `descriptor`.
 
-        Args:
-            collected: what `SharedObjects.to_collect` returned.
-            descriptor: the socket from which the `JudgeJob` comes, and to which its result goes.
-            control: a socket that only the worker may keep open.
+        `collected` is what `SharedObjects.to_collect` returned. `descriptor` is the socket from which the `JudgeJob`
+        comes, and to which its result goes. `control` is a socket that only the worker may keep open.
         """
         for _ in range(2):
             requests = self._requests.get(collected) or self._start(collected, descriptor, control)

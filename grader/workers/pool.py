@@ -141,8 +141,7 @@ class WorkerPool:
     def __init__(self, *folders: Path) -> None:
         """Start the worker. When this process ends, however it ends, the worker removes the `folders`.
 
-        Raises:
-            MiddlewareUnavailable: if the grader's middleware is not available on this machine.
+        Raises `MiddlewareUnavailable` if the grader's middleware is not available on this machine.
         """
         require_middleware()
         # A cancelled job ends at once; its files are removed with the pool.

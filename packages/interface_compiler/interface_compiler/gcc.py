@@ -90,8 +90,7 @@ def compile_package(generated: GeneratedCode, work: Path, dependencies: Sequence
         dependencies: the packages whose types it uses.
         wheels: the prefix with ROS's own headers and libraries.
 
-    Raises:
-        CompileError: if gcc fails.
+    Raises `CompileError` if gcc fails.
     """
     units = _units(generated, work)
     # Assertions in the code name its file: without the folder, so that the result is the same in every folder.

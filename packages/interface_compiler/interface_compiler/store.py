@@ -51,11 +51,8 @@ class CompiledPackages:
 def ensure(definitions: Sequence[Definition], store: Path) -> CompiledPackages:
     """Return the compiled packages of these definitions, compiled now if they are not in the store yet.
 
-    If two processes need the same packages, one waits for the other.
-
-    Raises:
-        DefinitionError: if a definition is wrong.
-        CompileError: if this machine can't compile.
+    If two processes need the same packages, one waits for the other. Raises `DefinitionError` if a definition is wrong,
+    and `CompileError` if this machine can't compile.
     """
     found = keys(definitions)
     prefix = _prefix(found, store)

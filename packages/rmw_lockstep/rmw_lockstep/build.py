@@ -64,10 +64,8 @@ class BuildError(Exception):
 def build(announce: Callable[[], None] = lambda: None) -> Library | UnavailableLibrary:
     """Return the compiled middleware; compile it now if there is none yet (about 20 s, and 300 MB of memory).
 
-    Of several processes one compiles, and the others wait for it. `announce` is called before that.
-
-    Raises:
-        BuildError: if the compiler or the linker fails.
+    Of several processes one compiles, and the others wait for it. `announce` is called before that. Raises `BuildError`
+    if the compiler or the linker fails.
     """
     found = library()
     ros = installed_ros()

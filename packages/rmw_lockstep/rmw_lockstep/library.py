@@ -32,9 +32,8 @@ DESCRIPTION = "built.json"
 class Library:
     """The compiled middleware.
 
-    Attributes:
-        folder: contains `liblockstep.so`, `librmw_lockstep_cpp.so` and the folder `wheels/`.
-        prefix: the ROS 2 that it is for.
+    `folder` contains `liblockstep.so`, `librmw_lockstep_cpp.so` and the folder `wheels/`. `prefix` is the ROS 2 that
+    it is for.
     """
 
     folder: Path

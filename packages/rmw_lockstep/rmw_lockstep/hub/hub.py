@@ -61,9 +61,7 @@ class Hub:
     ) -> None:
         """Listen in `folder`, which other users of this machine may enter but not list; without one, nowhere yet.
 
-        Raises:
-            ValueError: if the path is too long for a socket.
-            OSError: if no socket can be made.
+        Raises ValueError if the path is too long for a socket, and OSError if no socket can be made.
         """
         self.main: int | None = None
         self.mains: set[int] = set()

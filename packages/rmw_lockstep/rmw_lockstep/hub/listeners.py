@@ -20,9 +20,7 @@ class Listener:
     def __init__(self, path: Path, backlog: int) -> None:
         """Listen, for every user who may enter the folder.
 
-        Raises:
-            ValueError: if the path is too long for a socket.
-            OSError: if no socket can be made.
+        Raises ValueError if the path is too long for a socket, and OSError if no socket can be made.
         """
         if len(str(path).encode()) > LONGEST_PATH:
             raise ValueError(f"{path} is too long for a socket: at most {LONGEST_PATH} bytes")
@@ -62,8 +60,7 @@ class InheritedSocket:
     def accept(self) -> tuple[socket.socket, int]:
         """Return a connection for the next process that asks, and its id. Raises BlockingIOError if none asks.
 
-        Raises:
-            OSError: if somebody sent anything but a Unix socket.
+        Raises OSError if somebody sent anything but a Unix socket.
         """
         _, descriptors, _, _ = socket.recv_fds(self.socket, 16, 1)
         if not descriptors:
