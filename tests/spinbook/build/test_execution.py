@@ -10,6 +10,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -47,88 +48,123 @@ while len(heard) < 20:
 """
 
 
-def test_cells_run_and_their_outputs_are_kept(course: CourseFolder, process_mark: ProcessMark) -> None:
-    course.write(
-        one=f"# One\n\n{TALKER}\n```bash seconds=60 until='window: 2'\nros2 topic hz /chatter\n```\n\n"
-        "```python\n6 * 7\n```\n"
-    )
+#: Cells that fail, and others that are meant to; with and without a node.
+BAD = """# Bad
 
-    said = course.spinbook("build", "--execute")
+```python title="crash.py"
+import rclpy
+rclpy.init()
+print("so far so good")
+rclpy.spin(1 / 0)
+```
 
-    outputs = course.outputs("one")
-    assert said.returncode == 0, said.stdout
+```python
+a = 1
+undefined = a.b
+```
+
+```python raises
+1 / 0
+```
+
+```python raises
+'fine'
+```
+
+```python title="place.py" raises
+import rclpy, os
+rclpy.spin(os.getcwd() / 2)
+```
+
+```python
+import os
+os.getcwd() + '/x'
+```
+"""
+ONE = (
+    f"# One\n\n{TALKER}\n```bash seconds=60 until='window: 2'\nros2 topic hz /chatter\n```\n\n"
+    f"{TALKER.replace('talker', 'walker').replace('until=talking', 'until=walking').replace('seconds=60', 'seconds=1')}"
+    "\n```python\n6 * 7\n```\n"
+)
+KILLED = f"# One\n\n{TALKER}\n```python\nimport os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n```\n"
+TINY = "# Tiny\n\nProse.\n\n```python\nimport uuid\nuuid.uuid4()\n```\n"
+
+
+@dataclass(frozen=True)
+class BuiltCourse:
+    """A course after `build --execute`, what that said, and the mark of its processes."""
+
+    folder: CourseFolder
+    said: subprocess.CompletedProcess[str]
+    processes: ProcessMark
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> BuiltCourse:
+    folder = CourseFolder(tmp_path_factory.mktemp("course")).write(one=ONE, bad=BAD, killed=KILLED, tiny=TINY)
+    with pytest.MonkeyPatch.context() as patch:
+        processes = ProcessMark(patch)
+        return BuiltCourse(folder, folder.spinbook("build", "--execute"), processes)
+
+
+def test_cells_run_and_their_outputs_are_kept(built: BuiltCourse) -> None:
+    outputs = built.folder.outputs("one")
+    assert "one: ran in" in built.said.stdout, "though others failed"
     assert "[INFO] [talker]: talking" in outputs["node-talker"]
     assert "continues in the background" in outputs["node-talker"]
     assert re.search(r"average rate: \d+\.\d{3}\n\tmin: ", outputs["ros2-topic-hz-chatter"])
-    assert course.notebook("one", "executed").cells[-1].outputs[0].data["text/plain"] == "42"
-    process_mark.wait_until_none()
+    assert built.folder.notebook("one", "executed").cells[-1].outputs[0].data["text/plain"] == "42"
 
 
-def test_what_has_not_changed_is_not_run_again(course: CourseFolder) -> None:
-    chapter = "# One\n\nProse.\n\n```python\nimport uuid\nuuid.uuid4()\n```\n"
-    course.write(one=chapter).spinbook("build", "--execute")
-    first = course.notebook("one", "executed").cells[-1].outputs
+def test_a_failing_cell_is_reported_by_chapter_and_line_with_its_log_and_the_rest_is_run(built: BuiltCourse) -> None:
+    said = built.said.stdout
 
-    said = course.write(one=chapter.replace("Prose.", "Other prose.")).spinbook("build", "--execute")
-    assert "unchanged since its last run" in said.stdout
-    assert course.notebook("one", "executed").cells[-1].outputs == first
-    assert "Other prose." in course.notebook("one", "executed").cells[0].source, "prose is new, outputs are kept"
-
-    said = course.write(one=chapter.replace("uuid4()", "uuid4().hex")).spinbook("build", "--execute")
-    assert "ran in" in said.stdout
-    assert course.spinbook("build", "--execute", "--again").stdout.count("ran in") == 1
+    assert built.said.returncode == 1
+    assert "chapters/bad.md:7: crash ended with exit code 1." in said
+    assert "    | so far so good" in said
+    assert "    | ZeroDivisionError: division by zero" in said
+    assert "chapters/bad.md:12: AttributeError: 'int' object has no attribute 'b'" in said
+    assert "/x'" in str(built.folder.notebook("bad", "executed").cells[-1].outputs)
 
 
-def test_a_failing_cell_is_reported_by_chapter_and_line_with_its_log_and_the_rest_is_run(
-    course: CourseFolder,
-) -> None:
-    crash = '```python title="crash.py"\nimport rclpy\nrclpy.init()\nprint("so far so good")\nrclpy.spin(1 / 0)\n```\n'
-    course.write(
-        bad=f"# Bad\n\n{crash}\n```python\na = 1\nundefined = a.b\n```\n\n```python\n'still here'\n```\n",
-        good="# Good\n\n```python\n'all right'\n```\n",
-    )
-
-    said = course.spinbook("build", "--execute")
-
-    assert said.returncode == 1
-    assert "chapters/bad.md:7: crash ended with exit code 1." in said.stdout
-    assert "    | so far so good" in said.stdout
-    assert "    | ZeroDivisionError: division by zero" in said.stdout
-    assert "chapters/bad.md:12: AttributeError: 'int' object has no attribute 'b'" in said.stdout
-    assert "still here" in str(course.notebook("bad", "executed").cells[-1].outputs)
-    assert "good: ran in" in said.stdout
-    assert "bad: 2 cells failed" in course.spinbook("build", "--execute").stdout, "a failed run is not remembered"
+def test_failing_can_be_the_lesson(built: BuiltCourse) -> None:
+    assert "bad: 3 cells failed" in built.said.stdout
+    assert "chapters/bad.md:20: this cell says `raises`, but it did not fail." in built.said.stdout
 
 
-def test_a_text_that_was_waited_for_in_vain_is_reported_by_chapter_and_line(course: CourseFolder) -> None:
-    course.write(one=f"# One\n\n{TALKER.replace('until=talking', 'until=walking').replace('seconds=60', 'seconds=1')}")
-
-    first, again = course.spinbook("build", "--execute"), course.spinbook("build", "--execute")
-
-    for said in (first, again):
-        assert said.returncode == 0, said.stdout
-        assert "chapters/one.md:4: `until` failed: 'walking' was not printed within 1 s." in said.stdout
-    assert "unchanged since its last run" in again.stdout
-    assert "— the text 'walking' did not appear within 1 s —" in course.outputs("one")["node-talker"]
+def test_no_folder_of_the_machine_gets_into_the_outputs(built: BuiltCourse) -> None:
+    assert "robot_ws/src/robot/robot/place.py" in built.folder.outputs("bad")["node-place"]
+    assert str(built.folder.root) not in (built.folder.root / "build/executed/bad.ipynb").read_text()
 
 
-def test_failing_can_be_the_lesson(course: CourseFolder) -> None:
-    course.write(one="# One\n\n```python raises\n1 / 0\n```\n\n```python raises\n'fine'\n```\n")
-
-    said = course.spinbook("build", "--execute")
-
-    assert "1 cell failed" in said.stdout
-    assert "chapters/one.md:8: this cell says `raises`, but it did not fail." in said.stdout
+def test_a_text_that_was_waited_for_in_vain_is_reported_by_chapter_and_line(built: BuiltCourse) -> None:
+    assert IN_VAIN in built.said.stdout
+    assert "— the text 'walking' did not appear within 1 s —" in built.folder.outputs("one")["node-walker"]
 
 
-def test_no_folder_of_the_machine_gets_into_the_outputs(course: CourseFolder) -> None:
-    crash = '```python title="crash.py" raises\nimport rclpy, os\nrclpy.spin(os.getcwd() / 2)\n```\n'
-    course.write(one=f"# One\n\n{crash}\n```python\nimport os\nos.getcwd() + '/x'\n```\n").spinbook(
-        "build", "--execute"
-    )
+IN_VAIN = "chapters/one.md:24: `until` failed: 'walking' was not printed within 1 s."
 
-    assert "robot_ws/src/robot/robot/crash.py" in course.outputs("one")["node-crash"]
-    assert str(course.root) not in (course.root / "build/executed/one.ipynb").read_text()
+
+def test_a_killed_kernel_is_reported_and_no_node_is_left(built: BuiltCourse) -> None:
+    assert "chapters/killed.md:20: the kernel died in this cell" in built.said.stdout
+    built.processes.wait_until_none()
+
+
+def test_what_has_not_changed_is_not_run_again_unless_it_failed_or_somebody_asks(built: BuiltCourse) -> None:
+    course, first = built.folder, built.folder.notebook("tiny", "executed").cells[-1].outputs
+
+    course.write(tiny=TINY.replace("Prose.", "Other prose."))
+    said = course.spinbook("build", "--execute", "tiny", "one", "bad").stdout
+    assert "tiny: unchanged since its last run" in said
+    assert course.notebook("tiny", "executed").cells[-1].outputs == first
+    assert "Other prose." in course.notebook("tiny", "executed").cells[0].source, "prose is new, outputs are kept"
+    assert "one: unchanged since its last run" in said
+    assert IN_VAIN in said
+    assert "bad: 3 cells failed" in said, "a failed run is not remembered"
+
+    course.write(tiny=TINY.replace("uuid4()", "uuid4().hex"))
+    assert "tiny: ran in" in course.spinbook("build", "--execute", "tiny").stdout
+    assert "tiny: ran in" in course.spinbook("build", "--execute", "--again", "tiny").stdout
 
 
 HOSTILE = """# Nodes that misbehave
@@ -226,22 +262,12 @@ def test_the_deadline_ends_a_notebook_and_its_nodes_and_says_where(
     process_mark.wait_until_none()
 
 
-def test_a_killed_kernel_is_reported_and_takes_its_nodes_along(course: CourseFolder, process_mark: ProcessMark) -> None:
-    course.write(one=f"# One\n\n{TALKER}\n```python\nimport os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n```\n")
-
-    said = course.spinbook("build", "--execute")
-
-    assert said.returncode == 1
-    assert "chapters/one.md:20: the kernel died in this cell" in said.stdout
-    process_mark.wait_until_none()
-
-
-@pytest.mark.parametrize("count", [2, pytest.param(20, marks=pytest.mark.soak)])
-def test_notebooks_that_run_at_once_do_not_hear_each_other(course: CourseFolder, count: int) -> None:
-    names = [f"c{number:02}" for number in range(count)]
+@pytest.mark.soak  # two that do not are in kernel/test_nodes.py
+def test_notebooks_that_run_at_once_do_not_hear_each_other(course: CourseFolder) -> None:
+    names = [f"c{number:02}" for number in range(20)]
     course.write(**{name: f"# C\n\n{TALKER.replace('WHO', name)}\n{LISTENER}" for name in names})
 
-    said = course.spinbook("build", "--execute", "--jobs", str(count))
+    said = course.spinbook("build", "--execute", "--jobs", "20")
 
     assert said.returncode == 0, said.stdout
     for name in names:

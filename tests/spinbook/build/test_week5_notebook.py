@@ -1,12 +1,11 @@
 """The real Week 5 chapter, built and run: every cell does what the chapter says about it.
 
-`make soak` runs the whole chapter, `make test` a few sections in which `ros2 param` refuses values.
+`make soak` runs it, and so does `make course`; what its nodes do is in tests/chapters.
 """
 
 from __future__ import annotations
 
 import re
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,8 +13,7 @@ from executed_chapter import executed
 
 NAME = "05-parameters-and-qos"
 
-#: A node that checks its parameters and one that forgets to answer: values are set, and refused.
-CHECKED = ("Check a new value, then use it", "A callback that forgets to answer", "Two values at once")
+pytestmark = pytest.mark.soak
 
 
 @pytest.fixture(scope="module")
@@ -43,22 +41,16 @@ def failed_unexpectedly(notebook: Any) -> set[str]:
     return failed ^ {cell.id for cell in code_of(notebook) if "raises-exception" in cell.metadata.get("tags", [])}
 
 
-@pytest.mark.soak
 def test_every_code_cell_ran_and_only_those_that_should_fail_did(notebook: Any) -> None:
     assert len(code_of(notebook)) > 70
     assert failed_unexpectedly(notebook) == set()
 
 
-def test_where_values_are_refused_only_the_cells_fail_that_should(tmp_path: Path) -> None:
-    notebook = executed(tmp_path, NAME, CHECKED)
-
+def test_values_are_refused_where_the_text_says_so(notebook: Any) -> None:
     refused = shown(notebook, "%ros2 --seconds 30 param set")
-    assert len(refused) == 3
-    assert all("failed" in text.lower() for text in refused)
-    assert failed_unexpectedly(notebook) == set()
+    assert sum("failed" in text.lower() for text in refused) >= 3
 
 
-@pytest.mark.soak
 def test_the_plots_show_the_swings_that_the_text_names(notebook: Any) -> None:
     ranges = [re.findall(r"([\d.]+) … ([\d.]+) rad", text) for text in shown(notebook, "%plot")]
 
@@ -69,7 +61,6 @@ def test_the_plots_show_the_swings_that_the_text_names(notebook: Any) -> None:
     ]
 
 
-@pytest.mark.soak
 def test_the_queues_keep_and_age_as_the_text_says(notebook: Any) -> None:
     assert "depth 5 received [16, 17, 18, 19, 20]" in shown(notebook, "%%node burst")[0]
     deep, shallow = (
@@ -79,7 +70,6 @@ def test_the_queues_keep_and_age_as_the_text_says(notebook: Any) -> None:
     assert deep > 5 * shallow
 
 
-@pytest.mark.soak
 def test_the_log_of_the_watch_and_of_the_launch_tell_what_happened(notebook: Any) -> None:
     silent, dead = shown(notebook, "%log tilt_watch")
     assert "deadline missed" in silent

@@ -103,16 +103,14 @@ def test_a_plot_takes_a_field_an_index_or_a_whole_topic(arm: Kernel, path: str, 
     assert [line.split(":")[0] for line in picture["text/plain"].splitlines()] == curves
 
 
-def test_a_plot_is_live_where_somebody_watches_and_one_figure_where_nobody_does(
-    arm: Kernel, new_kernel: Callable[..., Kernel]
-) -> None:
+def test_a_plot_is_live_where_somebody_watches_and_one_figure_where_nobody_does(arm: Kernel) -> None:
     watched = arm.run("%plot /arm/joints/position --seconds 2.5")
     assert len(watched.pictures) == 1
     assert watched.updates >= 2
 
-    unwatched = new_kernel(SPINBOOK_EXECUTING="1")
-    unwatched.run(f"%%node arm --seconds 60 --until moving\n{ARM}")
-    shown = unwatched.run("%plot /arm/joints/position --seconds 1")
+    arm.run("import os; os.environ['SPINBOOK_EXECUTING'] = '1'")
+    shown = arm.run("%plot /arm/joints/position --seconds 1")
+    arm.run("del os.environ['SPINBOOK_EXECUTING']")
     assert len(shown.pictures) == 1
     assert shown.updates == 0
 
@@ -136,10 +134,8 @@ def test_a_plot_of_an_unknown_field_names_the_fields(arm: Kernel) -> None:
     assert "there is no field `positon`. The fields are: header, name, position, velocity, effort." in error
 
 
-def test_colcon_builds_the_package_and_ros2_run_starts_its_executable(new_kernel: Callable[..., Kernel]) -> None:
-    arm = new_kernel()
-    arm.run(f"%%node arm --seconds 60 --until moving\n{ARM}")
-    arm.run("%stop --all")
+def test_colcon_builds_the_package_and_ros2_run_starts_its_executable(arm: Kernel) -> None:
+    arm.run("%stop arm")
 
     built = arm.run("%colcon build --symlink-install")
     assert built.error == "", built.text
@@ -148,6 +144,7 @@ def test_colcon_builds_the_package_and_ros2_run_starts_its_executable(new_kernel
     assert "arm continues in the background" in arm.run("%ros2 --seconds 60 --until moving run robot arm").text
     assert "/arm\n" in arm.run("%ros2 node list").text
     assert arm.run("%stop arm").text == "arm stopped.\n"
+    arm.run("%ros2 --seconds 60 --until moving run robot arm")  # for other tests
 
 
 def test_the_turtle_runs_and_is_shown(arm: Kernel) -> None:
@@ -162,14 +159,13 @@ def test_the_turtle_runs_and_is_shown(arm: Kernel) -> None:
     assert kernel.run("%stop turtlesim_node").text == "turtlesim_node stopped.\n"
 
 
-def test_a_demo_node_runs_in_a_cell_and_is_heard_in_the_next(new_kernel: Callable[..., Kernel]) -> None:
-    kernel = new_kernel()
-    said = kernel.run("%ros2 --seconds 60 --until 'World: 1' run demo_nodes_cpp talker")
+def test_a_demo_node_runs_in_a_cell_and_is_heard_in_the_next(arm: Kernel) -> None:
+    said = arm.run("%ros2 --seconds 60 --until 'World: 1' run demo_nodes_cpp talker")
     assert "[talker]: Publishing: 'Hello World: 1'" in said.text, said.error
 
-    heard = kernel.run("%ros2 --seconds 60 --until heard run demo_nodes_py listener")
+    heard = arm.run("%ros2 --seconds 60 --until heard run demo_nodes_py listener")
     assert re.search(r"\[listener\]: I heard: \[Hello World: \d+\]", heard.text)
-    assert kernel.run("%stop --all").text == "talker stopped.\nlistener stopped.\n"
+    assert arm.run("%stop talker\n%stop listener").text == "talker stopped.\nlistener stopped.\n"
 
 
 def test_ros2_is_a_command_of_the_shell_too_though_the_environment_is_not_activated(
@@ -180,14 +176,13 @@ def test_ros2_is_a_command_of_the_shell_too_though_the_environment_is_not_activa
     assert "The daemon is not running" in kernel.run("%%bash\nros2 daemon status").text
 
 
-def test_a_second_instance_under_another_name_runs_beside_the_first(new_kernel: Callable[..., Kernel]) -> None:
-    kernel = new_kernel()
+def test_a_second_instance_under_another_name_runs_beside_the_first(arm: Kernel) -> None:
     for words in ("", " --ros-args -r __node:=second"):
-        assert not kernel.run(f"%ros2 --seconds 60 --until Spawning run turtlesim turtlesim_node{words}").error
-    listed = kernel.run("%nodes").text
+        assert not arm.run(f"%ros2 --seconds 60 --until Spawning run turtlesim turtlesim_node{words}").error
+    listed = arm.run("%nodes").text
     assert re.search(r"^turtlesim_node +running", listed, re.MULTILINE)
     assert re.search(r"^second +running", listed, re.MULTILINE)
-    kernel.run("%stop --all")
+    arm.run("%stop turtlesim_node\n%stop second")
 
 
 def test_a_timeline_has_what_happened_on_topics_and_services_while_other_cells_ran(arm: Kernel) -> None:

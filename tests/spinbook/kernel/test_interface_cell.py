@@ -15,7 +15,7 @@ NODE = (
 )
 
 
-def test_a_definition_is_compiled_once_and_a_changed_one_says_what_to_restart(
+def test_a_definition_is_compiled_once_a_changed_one_says_what_to_restart_and_another_notebook_finds_it(
     new_kernel: Callable[..., Kernel],
 ) -> None:
     kernel = new_kernel()
@@ -38,17 +38,10 @@ def test_a_definition_is_compiled_once_and_a_changed_one_says_what_to_restart(
     ).read_text() == "string name\nfloat64 upper\n"
     assert (kernel.folder / "robot_ws/src/robot_interfaces/CMakeLists.txt").exists()
 
-
-def test_another_notebook_in_the_same_folder_finds_them(new_kernel: Callable[..., Kernel]) -> None:
-    first = new_kernel()
-    first.run(MESSAGE)
-
     second = new_kernel()
-    second.run(f"import os; os.chdir({str(first.folder)!r})\n%chapter two --package robot --workspace robot_ws")
-
-    assert second.run("from robot_interfaces.msg import Limits; print(Limits())").text.startswith(
-        "robot_interfaces.msg.Limits"
-    )
+    second.run(f"import os; os.chdir({str(kernel.folder)!r})\n%chapter two --package robot --workspace robot_ws")
+    found = second.run("from robot_interfaces.msg import Limits; print(Limits())").text
+    assert found == "robot_interfaces.msg.Limits(name='', upper=0.0)\n"
 
 
 @pytest.mark.parametrize(
