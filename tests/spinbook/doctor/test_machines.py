@@ -14,7 +14,7 @@ from running import doctor, finding_of
 
 from grader.sandbox import isolation
 from ros_in_python.ros2.executables import GUARD
-from spinbook.doctor import machine, python_build, sandbox
+from spinbook.doctor import machine, middleware, python_build, ros, sandbox
 from spinbook.doctor.diagnosis import State
 from spinbook.doctor.ros import wheels_installed
 
@@ -27,12 +27,6 @@ def program(folder: Path, name: str, text: str) -> str:
     file.write_text(f"#!/bin/sh\n{text}\n")
     file.chmod(0o755)
     return f"{folder}:{os.environ['PATH']}"
-
-
-def test_a_message_really_goes_from_one_process_to_another() -> None:
-    finding = finding_of("message")
-    assert finding["state"] == "ok"
-    assert "arrived from another process in" in finding["found"]
 
 
 def test_a_middleware_that_is_not_installed_is_named_and_what_needs_it_is_not_tried() -> None:
@@ -94,31 +88,38 @@ def test_a_sourced_ros_that_is_too_old_is_a_fault(tmp_path: Path) -> None:
         ("ROS_DISCOVERY_SERVER", "10.0.0.1:11811", "unset ROS_DISCOVERY_SERVER"),
     ],
 )
-def test_settings_that_surprise_are_warned_of(variable: str, value: str, fix: str) -> None:
-    finding = finding_of("environment", **{variable: value})
-    assert finding["state"] == "warning"
-    assert variable in finding["found"]
-    assert fix in finding["fix"]
+def test_settings_that_surprise_are_warned_of(
+    monkeypatch: pytest.MonkeyPatch, variable: str, value: str, fix: str
+) -> None:
+    monkeypatch.setenv(variable, value)
+    finding = ros.examine_ros_settings()
+    assert finding.state is State.WARNING
+    assert variable in finding.found
+    assert fix in finding.fix
 
 
-def test_a_log_folder_that_can_not_be_written_is_a_fault() -> None:
-    finding = finding_of("logs", ROS_LOG_DIR="/proc/nowhere")
-    assert finding["state"] == "missing"
-    assert "/proc/nowhere" in finding["found"]
+def test_a_log_folder_that_can_not_be_written_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_LOG_DIR", "/proc/nowhere")
+    finding = middleware.examine_log_folder()
+    assert finding.state is State.MISSING
+    assert "/proc/nowhere" in finding.found
 
 
-def test_without_a_home_there_is_another_place_for_logs() -> None:
-    finding = finding_of("logs", HOME=None, ROS_LOG_DIR=None, ROS_HOME=None)
-    assert finding["state"] == "warning"
-    assert "ROS_LOG_DIR" in finding["fix"]
+def test_without_a_home_there_is_another_place_for_logs(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("HOME", "ROS_LOG_DIR", "ROS_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    finding = middleware.examine_log_folder()
+    assert finding.state is State.WARNING
+    assert "ROS_LOG_DIR" in finding.fix
 
 
-def test_a_course_in_a_folder_with_a_space_is_a_fault(tmp_path: Path) -> None:
+def test_a_course_in_a_folder_with_a_space_is_a_fault(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     course = tmp_path / "My Course"
     course.mkdir()
-    finding = finding_of("folder", folder=course)
-    assert finding["state"] == "missing"
-    assert os.fspath(course) in finding["found"]
+    monkeypatch.chdir(course)
+    finding = machine.examine_folder()
+    assert finding.state is State.MISSING
+    assert os.fspath(course) in finding.found
 
 
 def test_a_newer_setuptools_that_copies_in_place_of_linking_is_warned_of(tmp_path: Path) -> None:
@@ -130,33 +131,39 @@ def test_a_newer_setuptools_that_copies_in_place_of_linking_is_warned_of(tmp_pat
     assert "setuptools 80.9.0" in finding["found"]
 
 
-def test_a_missing_compiler_is_a_warning_with_what_to_install(tmp_path: Path) -> None:
+def test_a_missing_compiler_is_a_warning_with_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     program(tmp_path, "apt-get", "exit 0")
-    finding = finding_of("compiler", PATH=os.fspath(tmp_path))
-    assert finding["state"] == "warning"
-    assert finding["found"] == "not found: gcc, g++"
-    assert "sudo apt-get install g++" in finding["fix"]
+    monkeypatch.setenv("PATH", os.fspath(tmp_path))
+    finding = machine.examine_compiler()
+    assert finding.state is State.WARNING
+    assert finding.found == "not found: gcc, g++"
+    assert "sudo apt-get install g++" in finding.fix
 
 
-def test_namespaces_that_are_not_allowed_are_a_warning_with_the_kernels_own_words(tmp_path: Path) -> None:
-    path = program(tmp_path, "unshare", "echo 'unshare: unshare failed: Operation not permitted' >&2; exit 1")
-    finding = finding_of("namespaces", PATH=path)
-    assert finding["state"] == "warning"
-    assert "user: unshare failed: Operation not permitted" in finding["found"]
+def test_namespaces_that_are_not_allowed_are_a_warning_with_the_kernels_own_words(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    refuses = "echo 'unshare: unshare failed: Operation not permitted' >&2; exit 1"
+    monkeypatch.setenv("PATH", program(tmp_path, "unshare", refuses))
+    finding = sandbox.examine_namespaces()
+    assert finding.state is State.WARNING
+    assert "user: unshare failed: Operation not permitted" in finding.found
 
 
 @pytest.mark.parametrize("text", ["exit 1", "echo 'bwrap: No permissions to create new namespace' >&2; exit 1"])
-def test_a_bubblewrap_that_fails_is_a_warning(tmp_path: Path, text: str) -> None:
-    assert finding_of("bubblewrap", PATH=program(tmp_path, "bwrap", text))["state"] == "warning"
+def test_a_bubblewrap_that_fails_is_a_warning(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+    monkeypatch.setenv("PATH", program(tmp_path, "bwrap", text))
+    assert sandbox.examine_bubblewrap().state is State.WARNING
 
 
-def test_a_browser_is_one_that_shows_a_page(tmp_path: Path) -> None:
-    shows = program(tmp_path, "chromium", 'for last; do :; done; echo "${last#data:text/html,}"')
-    assert finding_of("browser", PATH=shows)["state"] == "ok"
-    breaks = program(tmp_path, "chromium", "echo 'error while loading shared libraries: libnss3.so' >&2; exit 127")
-    finding = finding_of("browser", PATH=breaks)
-    assert finding["state"] == "warning"
-    assert "libnss3.so" in finding["found"]
+def test_a_browser_is_one_that_shows_a_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shows = 'for last; do :; done; echo "${last#data:text/html,}"'
+    monkeypatch.setenv("PATH", program(tmp_path, "chromium", shows))
+    assert machine.examine_browser().state is State.OK
+    program(tmp_path, "chromium", "echo 'error while loading shared libraries: libnss3.so' >&2; exit 127")
+    finding = machine.examine_browser()
+    assert finding.state is State.WARNING
+    assert "libnss3.so" in finding.found
 
 
 @pytest.mark.parametrize(
