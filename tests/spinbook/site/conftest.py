@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from course_folder import CourseFolder
 from playwright.sync_api import Browser, BrowserContext
-from program_chapters import PIECES, TERMINALS
+from program_chapters import LONGER, PIECES, TERMINALS
 from small_course import ROOT, SmallCourse, served, write_course
 
 
@@ -34,8 +34,8 @@ def address(built: SmallCourse) -> Iterator[str]:
 
 @pytest.fixture(scope="session")
 def programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """Where a site of two chapters is served. Nothing ran when it was made: tests run it."""
-    folder = CourseFolder(tmp_path_factory.mktemp("programs")).write(pieces=PIECES, terminals=TERMINALS)
+    """Where a site of three chapters is served. Nothing ran when it was made: tests run it."""
+    folder = CourseFolder(tmp_path_factory.mktemp("programs")).write(longer=LONGER, pieces=PIECES, terminals=TERMINALS)
     settings = folder.root / "course.toml"
     settings.write_text(f"run = []\n{settings.read_text()}")
     made = folder.spinbook("site")

@@ -1,6 +1,8 @@
-"""Two chapters of programs and commands, for pages in which they are run."""
+"""Chapters of programs and commands, for pages in which they are run and shown."""
 
 from __future__ import annotations
+
+from small_course import TALKER
 
 _TALKER = """
 ```python title="talker.py"
@@ -68,6 +70,26 @@ ros2 launch robot talkers.launch.py rate:=sideways
 ```
 
 {_TALKER.format(version="three").replace("talker.py", "better_talker.py")}
+"""
+
+#: Two nodes with the same main(), a command and a line of code that are longer than a window, and housekeeping.
+LONGER = f"""\
+# Longer
+
+{TALKER.replace("talker.py", "speaker.py")}
+```python title="listener.py"
+class Listener(Node):
+    TOPICS = [{", ".join(f"'/topic_{number}'" for number in range(20))}]
+
+
+def main{TALKER.partition("def main")[2].replace("Talker", "Listener")}
+```bash
+ros2 topic pub --rate 2 /joint_commands sensor_msgs/msg/JointState "{{name: [left_elbow], position: [{"0.5, " * 30}]}}"
+```
+
+```python
+%stop --all
+```
 """
 
 PIECES = """\

@@ -32,32 +32,7 @@ name = "small_robot"
 workspace = "small_ws"
 """
 
-_TALK = '''\
----
-title: Talk
-summary: One node that talks.
----
-
-# Talk
-
-A publisher sends messages. Another publisher does so too; see [the next chapter](02-more.md) and the
-[task](../exercises/joint_velocity/task.md), or [the course's file](../course.toml).
-
-> [!WARNING]
-> Mind the angle $\\omega = \\frac{v}{r}$.
-
-$$r = \\frac{v}{\\omega}$$
-
-```mermaid
-flowchart LR
-    A(["left toe"]) --> T["/left_foot/toe"]
-    T --> B(["controller"])
-```
-
-<!-- Ask them: is NOTE_OF_THE_CHAPTER a number? -->
-
-## A node
-
+TALKER = '''\
 ```python title="talker.py" seconds=20 until="number 3"
 """Talks."""
 
@@ -92,7 +67,35 @@ def main():
 if __name__ == '__main__':
     main()
 ```
+'''
 
+_TALK = f"""\
+---
+title: Talk
+summary: One node that talks.
+---
+
+# Talk
+
+A publisher sends messages. Another publisher does so too; see [the next chapter](02-more.md) and the
+[task](../exercises/joint_velocity/task.md), or [the course's file](../course.toml).
+
+> [!WARNING]
+> Mind the angle $\\omega = \\frac{{v}}{{r}}$.
+
+$$r = \\frac{{v}}{{\\omega}}$$
+
+```mermaid
+flowchart LR
+    A(["left toe"]) --> T["/left_foot/toe"]
+    T --> B(["controller"])
+```
+
+<!-- Ask them: is NOTE_OF_THE_CHAPTER a number? -->
+
+## A node
+
+{TALKER}
 ```python raises
 1 / 0
 ```
@@ -100,9 +103,17 @@ if __name__ == '__main__':
 ## Draw
 
 ```python
+import base64
+import io
 import matplotlib.pyplot as plt
+from IPython.display import display
 plt.plot([0, 1, 0])
+still = io.BytesIO()
+plt.savefig(still)
 plt.show()
+moving = '<svg xmlns="http://www.w3.org/2000/svg" width="42" height="24"></svg>'
+png = base64.b64encode(still.getvalue()).decode()
+display({{'image/svg+xml': moving, 'image/png': png, 'text/plain': 'A curve.'}}, raw=True)
 ```
 
 | Joint | Highest |
@@ -119,7 +130,7 @@ It is forty-two.
 ## Practice
 
 <!-- exercise: joint_velocity -->
-'''
+"""
 
 _MORE = """\
 ---

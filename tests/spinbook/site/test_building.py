@@ -25,9 +25,10 @@ def test_nothing_is_made_where_nothing_has_changed(course: SmallCourse) -> None:
     assert snapshot(course.site) == before
 
 
-def test_a_change_of_prose_runs_nothing_and_leaves_other_chapters_alone(course: SmallCourse) -> None:
+def test_a_change_of_prose_runs_nothing_spares_other_chapters_and_its_faults_have_a_line(course: SmallCourse) -> None:
     before = snapshot(course.site)
     course.change("chapters/02-more.md", "Words only.", "Other words.")
+    course.change("chapters/02-more.md", "Good-bye.", "See [nothing](#not-here).")
 
     said = course.spinbook_site()
 
@@ -38,6 +39,10 @@ def test_a_change_of_prose_runs_nothing_and_leaves_other_chapters_alone(course: 
     changed = {name for name in after if before.get(name) != after[name]}
     assert "chapters/02-more.html" in changed
     assert not {"chapters/01-talk.html", "about.html", "glossary.html"} & changed
+    line = (course.root / "chapters/02-more.md").read_text().split("\n").index("See [nothing](#not-here).") + 1
+    assert re.search(rf"^chapters/02-more\.md:{line}: warning: .*not-here", said.stdout, re.MULTILINE)
+    assert "Traceback" not in said.stdout + said.stderr
+    assert "#not-here" in (course.site / "downloads" / "02-more.ipynb").read_text(), "the notebook is the chapter's"
 
 
 @pytest.mark.soak
@@ -50,17 +55,6 @@ def test_a_chapter_that_is_taken_out_leaves_nothing(course: SmallCourse) -> None
     assert said.returncode == 0, said.stdout + said.stderr
     assert not [name for name in snapshot(course.root / "build" / "site") if "02-more" in name]
     assert not [name for name in snapshot(course.root / "build" / "launch") if "02-more" in name]
-
-
-def test_what_is_wrong_is_reported_by_the_chapter_s_line(course: SmallCourse) -> None:
-    course.change("chapters/02-more.md", "Good-bye.", "See [nothing](#not-here).")
-
-    said = course.spinbook_site("--no-run")
-
-    line = (course.root / "chapters/02-more.md").read_text().split("\n").index("See [nothing](#not-here).") + 1
-    assert re.search(rf"^chapters/02-more\.md:{line}: warning: .*not-here", said.stdout, re.MULTILINE)
-    assert "Traceback" not in said.stdout + said.stderr
-    assert "#not-here" in (course.site / "downloads" / "02-more.ipynb").read_text(), "the notebook is the chapter's"
 
 
 def test_what_students_must_not_see_is_not_published(course: SmallCourse) -> None:

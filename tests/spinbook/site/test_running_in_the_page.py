@@ -66,14 +66,9 @@ def test_a_page_runs_its_nodes(reader: BrowserContext, address: str) -> None:
         expect(cell.get_by_role("status")).to_have_text("talker ended with 0.", timeout=DEADLINE_MS)
         expect(bar).to_be_hidden()
 
-        page.reload()
-        page.get_by_role("button", name="Run talker.py").click()
-        expect(log).to_contain_text("[talker]: edited 3", timeout=DEADLINE_MS)
         choose(cell, "Reset")
         assert code_in(cell) == before
         expect(cell.locator(".cell_output")).to_be_visible()
-        page.get_by_role("button", name="Stop all nodes").click()
-        expect(bar).to_be_hidden(timeout=DEADLINE_MS)
 
         failing = page.locator(".cell-snippet").first
         failing.get_by_role("button", name="Run cell 2", exact=True).click()
