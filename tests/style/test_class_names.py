@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 from collections import defaultdict
 
 from tree import ROOT
@@ -33,6 +34,7 @@ def test_each_exception_is_needed() -> None:
     assert [name for name in EXCEPTIONS if len(places[name]) < 2] == []
 
 
+@functools.cache
 def _classes() -> dict[str, list[str]]:
     """Return the files in which each class name is defined, at the top of a module."""
     places: dict[str, list[str]] = defaultdict(list)

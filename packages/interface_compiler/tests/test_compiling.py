@@ -6,6 +6,7 @@ import io
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -21,6 +22,13 @@ from interface_compiler.store import CompiledPackages, ensure, find
 from interface_compiler.wheel import wheel
 
 POINT = definition("msg/Point.msg", "float64 x 1.5\n", "small_interfaces")
+
+
+@pytest.fixture(scope="module")
+def point(tmp_path_factory: pytest.TempPathFactory) -> CompiledPackages:
+    """The compiled point, in a store of its own."""
+    return ensure([POINT], tmp_path_factory.mktemp("store"))
+
 
 USE = """
 from robot_interfaces.msg import JointLimits
@@ -61,25 +69,22 @@ def test_the_package_is_known_to_ament_with_its_definitions(robot_interfaces: Co
     assert prefixes.definitions_of("robot_interfaces", prefix) == {item.path: item.text for item in robot()}
 
 
-def test_nothing_changed_nothing_is_compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    first = ensure([POINT], tmp_path)
+def test_nothing_changed_nothing_is_compiled(point: CompiledPackages, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")  # so that no compiler can be found
 
-    again = ensure([POINT], tmp_path)
+    again = ensure([POINT], point.prefix.parent)
 
-    assert first.fresh
+    assert point.fresh
     assert not again.fresh
-    assert again.prefix == first.prefix
-    assert find([POINT], tmp_path) == again
+    assert again.prefix == point.prefix
+    assert find([POINT], point.prefix.parent) == again
 
 
-def test_another_text_is_another_package_and_the_former_one_stays(tmp_path: Path) -> None:
-    first = ensure([POINT], tmp_path)
-
-    second = ensure([definition("msg/Point.msg", "float64 y\n", "small_interfaces")], tmp_path)
+def test_another_text_is_another_package_and_the_former_one_stays(point: CompiledPackages) -> None:
+    second = ensure([definition("msg/Point.msg", "float64 y\n", "small_interfaces")], point.prefix.parent)
 
     assert "y=0.0" in run("from small_interfaces.msg import Point; print(Point())", second)
-    assert "x=1.5" in run("from small_interfaces.msg import Point; print(Point())", first)
+    assert "x=1.5" in run("from small_interfaces.msg import Point; print(Point())", point)
 
 
 def test_a_package_may_use_another_ones_messages(tmp_path: Path) -> None:
@@ -96,10 +101,11 @@ def test_a_package_may_use_another_ones_messages(tmp_path: Path) -> None:
     assert run(code, compiled) == "True\n"
 
 
-def test_the_same_definitions_give_the_same_wheel_wherever_it_is_made(tmp_path: Path) -> None:
-    first, second = (wheel("small_interfaces", ensure([POINT], tmp_path / name).prefix) for name in ("one", "two"))
+def test_the_same_definitions_give_the_same_wheel_wherever_it_is_made(point: CompiledPackages, tmp_path: Path) -> None:
+    again = ensure([POINT], tmp_path)
 
-    assert first == second
+    assert again.fresh
+    assert wheel("small_interfaces", again.prefix) == wheel("small_interfaces", point.prefix)
 
 
 def test_one_wheel_fits_every_python_from_3_10_on(robot_interfaces: CompiledPackages) -> None:
@@ -173,13 +179,13 @@ def test_a_compiler_that_fails_is_reported_in_its_own_words(tmp_path: Path, monk
     assert find([POINT], tmp_path / "store") is None
 
 
-def test_old_prefixes_do_not_pile_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_old_prefixes_do_not_pile_up(point: CompiledPackages, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(store, "_KEPT", 1)
-    first = ensure([POINT], tmp_path)
+    first = shutil.copytree(point.prefix, tmp_path / point.key)
 
     second = ensure([definition("msg/Point.msg", "float64 y\n", "small_interfaces")], tmp_path)
 
-    assert not first.prefix.exists()
+    assert not first.exists()
     assert second.prefix.exists()
 
 

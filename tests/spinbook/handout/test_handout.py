@@ -179,13 +179,8 @@ def test_the_wheel_holds_every_package_of_ours_that_its_modules_import() -> None
     assert name.startswith("spinbook-")
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         files = archive.namelist()
-        trees = [ast.parse(archive.read(file)) for file in files if file.endswith(".py")]
-    imported = {
-        module.partition(".")[0]
-        for tree in trees
-        for node in ast.walk(tree)
-        for module in ([node.module or ""] if isinstance(node, ast.ImportFrom) else imported_by(node))
-    }
+        code = "\n".join(archive.read(file).decode() for file in files if file.endswith(".py"))
+    imported = set(re.findall(r"^\s*(?:from|import) (\w+)", code, re.MULTILINE))
     ours = {file.parent.name for file in (*ROOT.glob("*/__init__.py"), *ROOT.glob("packages/*/*/__init__.py"))}
     assert imported & ours >= {"spinbook", "grader", "rmw_lockstep"}
     assert {package for package in imported & ours if f"{package}/__init__.py" not in files} == set()
@@ -215,11 +210,6 @@ def test_the_wheel_is_built_once_and_again_when_a_file_has_changed(
     with zipfile.ZipFile(io.BytesIO(spinbook_wheel()[1])) as archive:
         assert "spinbook/second.py" in archive.namelist()
     assert len(list((tmp_path / "cache" / "wheels").iterdir())) == 1, "the older one is not kept"
-
-
-def imported_by(node: ast.AST) -> list[str]:
-    """Return the modules of an `import` statement."""
-    return [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
 
 
 def test_the_students_exercise_is_the_authors_without_what_is_not_for_them(real: HandedOut) -> None:
