@@ -258,8 +258,10 @@ def _listen(commands: queue.SimpleQueue[str]) -> None:
     commands.put("end")
 
 
-def observe(commands: queue.SimpleQueue[str]) -> None:
-    """Follow the commands, until "end"."""
+def observe() -> None:
+    """Follow the commands on standard input, until it ends."""
+    commands: queue.SimpleQueue[str] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(commands,), daemon=True).start()
     command = commands.get()
     while command != "end":
         os.environ["ROS_DOMAIN_ID"] = command.removeprefix("domain ")
@@ -279,20 +281,13 @@ def _watch_domain(watcher: GraphWatcher, commands: queue.SimpleQueue[str]) -> st
     return command
 
 
-def observe_standard_input() -> None:
-    """Follow the commands on standard input, until it ends."""
-    commands: queue.SimpleQueue[str] = queue.SimpleQueue()
-    threading.Thread(target=_listen, args=(commands,), daemon=True).start()
-    observe(commands)
-
-
 def main(how: str = "", seconds: str = "0") -> None:
     """Print the graph once, or follow the commands on standard input."""
     try:
         if how == "now":
             print(graph_now(float(seconds)).to_json())
         else:
-            observe_standard_input()
+            observe()
     except CommandError as error:
         sys.exit(error.format_message())
 

@@ -46,6 +46,9 @@ LATER = {
             "numpy",
             "rclpy.action",
             "rclpy.parameter_client",
+            "rosidl_generator_py",
+            "sensor_msgs.msg",
+            "std_msgs.msg",
         ),
     ),
 }

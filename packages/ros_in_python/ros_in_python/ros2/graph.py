@@ -10,7 +10,6 @@ from types import TracebackType
 from typing import Any
 
 import rclpy
-from rclpy.action import get_action_names_and_types
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor, TimeoutException
 from rclpy.node import Node
@@ -158,6 +157,8 @@ class GraphView:
 
     def actions(self) -> list[TypedName]:
         """Return every action, including hidden ones."""
+        from rclpy.action import get_action_names_and_types  # with numpy: half a start of `ros2`, for actions alone
+
         return [TypedName(name, tuple(types)) for name, types in get_action_names_and_types(self.node)]
 
     def _others(self, ends: Iterable[TopicEndpointInfo]) -> list[TopicEndpointInfo]:

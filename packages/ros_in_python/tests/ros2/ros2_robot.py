@@ -31,7 +31,7 @@ from test_msgs.action import Fibonacci
 
 
 def publisher() -> Node:
-    """Run `/joint_commands` at 50 Hz, and parameters."""
+    """Run `/joint_commands` at 20 Hz, and parameters."""
     node = Node("joint_publisher")
     limits = ParameterDescriptor(
         description="messages a second", floating_point_range=[FloatingPointRange(from_value=-100.0, to_value=100.0)]
@@ -45,7 +45,7 @@ def publisher() -> Node:
         message.header.stamp = node.get_clock().now().to_msg()
         topic.publish(message)
 
-    node.create_timer(0.02, publish)
+    node.create_timer(0.05, publish)
     return node
 
 
@@ -74,7 +74,7 @@ def counter() -> Node:
         hidden.publish(Int32(data=count))
 
     node.create_subscription(String, "/cmd", obey, 10)
-    node.create_timer(0.02, publish)
+    node.create_timer(0.05, publish)
     return node
 
 

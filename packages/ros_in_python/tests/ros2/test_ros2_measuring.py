@@ -74,7 +74,7 @@ def test_bandwidth_needs_two_messages() -> None:
 
 
 def test_hz(standing: Robot, terminal: Terminal) -> None:
-    standing("publisher")
+    standing("publisher", "counter", "latched")
     hz = terminal.start("topic", "hz", "/joint_commands")
     average, spread = hz.lines(2)
     assert re.fullmatch(r"average rate: \d+\.\d{3}", average)
@@ -91,7 +91,7 @@ def test_hz_waits_for_a_topic_with_a_warning(robot: Robot, terminal: Terminal) -
 
 
 def test_bw(standing: Robot, terminal: Terminal) -> None:
-    standing("publisher")
+    standing("publisher", "counter", "latched")
     bw = terminal.start("topic", "bw", "/joint_commands")
     subscribed, rate, sizes = bw.lines(3)
     assert subscribed == "Subscribed to [/joint_commands]"
@@ -100,7 +100,7 @@ def test_bw(standing: Robot, terminal: Terminal) -> None:
 
 
 def test_delay(standing: Robot, terminal: Terminal) -> None:
-    standing("publisher")
+    standing("publisher", "counter", "latched")
     delay = terminal.start("topic", "delay", "/joint_commands")
     average, spread = delay.lines(2)
     assert re.fullmatch(r"average delay: \d+\.\d{3}", average)
@@ -108,6 +108,6 @@ def test_delay(standing: Robot, terminal: Terminal) -> None:
 
 
 def test_delay_needs_a_header(standing: Robot, terminal: Terminal) -> None:
-    standing("counter")
+    standing("publisher", "counter", "latched")
     answer = terminal.ros2("topic", "delay", "/count")
     assert (answer.code, answer.err.splitlines()[0]) == (1, "msg does not have header")
