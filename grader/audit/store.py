@@ -27,7 +27,7 @@ from grader.recording.recording import Recording, from_json, to_json
 from grader.scenario.scenario import Scenario
 from grader.submission.submission import Submission
 from grader.workers.pool import Worker
-from groundwork.files import write_if_changed
+from groundwork.files import keep, read_kept
 from groundwork.plain_data import restored
 
 #: The parts of the grader that decide what a recording contains.
@@ -72,12 +72,10 @@ class RecordedRuns:
         interface = (exercise.topics, exercise.endpoints, exercise.parameters, exercise.programs, exercise.node_name)
         key = (submission.digest, scenario.digest, interface, exercise.reference_node, *made_by)
         file = self._folder / f"{hashlib.sha256(repr(key).encode()).hexdigest()[:32]}.run.gz"
-        try:
-            kept = from_json(gzip.decompress(file.read_bytes()).decode())[scenario.name]
-            file.touch()
+        kept = read_kept(file, lambda content: from_json(gzip.decompress(content))[scenario.name])
+        if kept:
+            _used(file)
             return kept
-        except (OSError, EOFError, ValueError, KeyError, TypeError):
-            pass
         recording: Recording | None = process.do(runner.job(submission, scenario, turn), self.stopped)
         if recording is None:
             raise AuditStopped
@@ -91,10 +89,10 @@ def audit_folder(exercise: str) -> Path:
     return cache_folder().parent / "audit" / exercise
 
 
-def keep(file: Path, content: bytes) -> None:
-    """Write a whole file. If it can't be written, its content is made again each time."""
+def _used(file: Path) -> None:
+    """Note that a file is still of use: see `tidy`."""
     with contextlib.suppress(OSError):
-        write_if_changed(file, content)
+        file.touch()
 
 
 def tidy(exercise: str) -> None:
@@ -140,15 +138,13 @@ class Store:
         """Return the trial for `key`, stored or made now."""
         text = json.dumps({**self._common, **key}, sort_keys=True)
         file = self._folder / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.json"
-        try:
-            trial = restored(Trial, json.loads(file.read_text(encoding="utf-8")))
-            file.touch()
-            known = True
-        except (OSError, ValueError, KeyError, TypeError):
-            trial = make()
-            keep(file, json.dumps(dataclasses.asdict(trial)).encode())
-            known = False
+        kept = read_kept(file, lambda content: restored(Trial, json.loads(content)))
         with self._lock:
-            self.kept += known
-            self.made += not known
+            self.kept += bool(kept)
+            self.made += not kept
+        if kept:
+            _used(file)
+            return kept
+        trial = make()
+        keep(file, json.dumps(dataclasses.asdict(trial)))
         return trial

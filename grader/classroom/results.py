@@ -9,7 +9,6 @@ import hashlib
 import json
 import os
 import tempfile
-import zlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
@@ -30,7 +29,7 @@ from grader.recording.recording import to_json as recordings_to_json
 from grader.report.as_json import STUDENTS, folder_of, read_grade, to_json
 from grader.report.feedback import feedback_page
 from grader.submission.submission import Submission
-from groundwork.files import remove_parts, try_lock, write_if_changed
+from groundwork.files import read_kept, remove_parts, try_lock, write_if_changed
 
 #: The recordings in a student's folder: a line with their key and the name of the file, next to `students/`, with the
 #: solution's recordings; then JSON.
@@ -81,23 +80,16 @@ class Results:
 
     def plot(self, student: str) -> str | None:
         """Return the stored plot of a student's run."""
-        try:
-            return (folder_of(self.folder, student) / "plot.svg").read_text(encoding="utf-8")
-        except (OSError, ValueError):
-            return None
+        return read_kept(folder_of(self.folder, student) / "plot.svg", bytes.decode)
 
     def stored(self, student: str) -> StoredRun | None:
         """Return the stored recordings of a student's run; None if there are none."""
-        try:
-            first, recordings = _read_recordings(folder_of(self.folder, student) / RECORDINGS)
-        except UNREADABLE:
+        stored = read_kept(folder_of(self.folder, student) / RECORDINGS, _recordings_in)
+        if stored is None:
             return None
-        key, _, reference = first.partition(" ")
-        try:
-            references = _read_recordings(self.folder / Path(reference).name)[1] if reference else {}
-        except UNREADABLE:
-            references = {}
-        return StoredRun(key, recordings, references)
+        key, _, reference = stored[0].partition(" ")
+        references = read_kept(self.folder / Path(reference).name, _recordings_in)
+        return StoredRun(key, stored[1], references[1] if references else {})
 
     def keep_recordings(self, student: str, key: str, grade: Grade) -> None:
         """Store the recordings of a student's run, for changed checks and for questions about the grade."""
@@ -166,10 +158,6 @@ class Results:
         os.close(self._lock)
 
 
-#: What reading a damaged file can raise.
-UNREADABLE = (OSError, EOFError, zlib.error, ValueError, KeyError, TypeError)
-
-
 @dataclass(frozen=True)
 class StoredRun:
     """The recordings of a student's run and of the solution's, by scenario; `key` is what they depend on."""
@@ -179,8 +167,8 @@ class StoredRun:
     references: dict[str, Recording]
 
 
-def _read_recordings(file: Path) -> tuple[str, dict[str, Recording]]:
-    first, _, text = gzip.decompress(file.read_bytes()).decode().partition("\n")
+def _recordings_in(content: bytes) -> tuple[str, dict[str, Recording]]:
+    first, _, text = gzip.decompress(content).decode().partition("\n")
     return first, recordings_from_json(text)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import hashlib
 import json
@@ -14,7 +13,7 @@ from grader.exercise.mistakes import Mistake, mistakes_of
 from grader.grading.grading import Grading
 from grader.grading.reference import cache_folder, reference_key
 from grader.submission.reader import of_source
-from groundwork.files import write_if_changed
+from groundwork.files import keep, read_kept
 
 #: How many mistakes are graded at once. Each grading already runs several scenarios at once.
 AT_ONCE = 2
@@ -59,18 +58,12 @@ def _failures(mistake: Mistake, grading: Grading) -> dict[str, Failure]:
     exercise = grading.runner.exercise
     digest = hashlib.sha256(reference_key(grading.runner).encode() + code).hexdigest()
     kept = cache_folder().parent / "mistakes" / f"{exercise.name}-{mistake.name}-{digest[:24]}.json"
-    try:
-        entries = json.loads(kept.read_text(encoding="utf-8"))
-        return {name: Failure(**failure) for name, failure in entries.items()}
-    except (OSError, ValueError, TypeError, AttributeError):
-        pass
+    stored = read_kept(kept, lambda content: {name: Failure(**one) for name, one in json.loads(content).items()})
+    if stored is not None:
+        return stored
     grade = grading.grade(of_source(f"{mistake.name}.py", code, exercise))
     failures = failures_of(grade)
     if grade.has_score:
-        with contextlib.suppress(OSError):  # if nothing can be stored, it is graded again each time
-            write_if_changed(
-                kept,
-                json.dumps({name: dataclasses.asdict(failure) for name, failure in failures.items()}),
-                durable=True,
-            )
+        entries = {name: dataclasses.asdict(failure) for name, failure in failures.items()}
+        keep(kept, json.dumps(entries), durable=True)
     return failures

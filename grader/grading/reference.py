@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import json
 import platform
@@ -21,7 +20,7 @@ from grader.grading.scenario_runner import ScenarioRunner
 from grader.recording.recording import Recording, from_json, to_json
 from grader.submission.reader import of_source
 from grader.workers.pool import HostFault
-from groundwork.files import cached, write_if_changed
+from groundwork.files import cached, keep, read_kept
 from interface_compiler import activation
 from rmw_lockstep.library import SOURCES, sources
 
@@ -74,10 +73,8 @@ def reference(runner: ScenarioRunner) -> dict[str, Recording]:
     """
     of_exercise = f"{runner.exercise.name}-{reference_key(runner)[:24]}"
     kept = cache_folder() / f"{of_exercise}-{machine_key(runner.isolation)[:12]}.json"
-    try:
-        return from_json(kept.read_text(encoding="utf-8"))
-    except (OSError, ValueError, KeyError, TypeError):
-        pass
+    if stored := read_kept(kept, from_json):
+        return stored
     try:
         recordings = _made(runner)
         _prove(runner, recordings)
@@ -89,8 +86,7 @@ def reference(runner: ScenarioRunner) -> dict[str, Recording]:
             f"{error.problem.problem}. Python, its packages, the sandbox or the machine have changed since: "
             "run spinbook doctor"
         ) from None
-    with contextlib.suppress(OSError):  # if nothing can be stored, they are made again each time
-        write_if_changed(kept, to_json(recordings))
+    keep(kept, to_json(recordings))
     return recordings
 
 

@@ -199,7 +199,7 @@ class RecordingEncoder(ArrayEncoder):
         return super().default(value) if isinstance(value, LongArray) else _fields_of(value)
 
 
-def from_json(text: str) -> dict[str, Recording]:
+def from_json(text: str | bytes) -> dict[str, Recording]:
     """Return the recordings that `to_json` wrote. Raises ValueError, KeyError or TypeError for any other text."""
     return from_plain(json.loads(text, object_hook=read_arrays()))
 

@@ -17,6 +17,7 @@ from grader.recording.arrays import LongArray
 from grader.report.checks import ShownCheck, shown_checks
 from grader.report.feedback import tail
 from grader.report.printable import printable
+from groundwork.files import read_kept
 from groundwork.plain_data import restored
 
 
@@ -74,16 +75,17 @@ def read_grade(file: Path) -> tuple[Entry, str] | None:
     """Return the entry and the key of what `to_json` wrote into this file; None if it is missing or holds anything
     else.
     """
-    try:
-        entries = json.loads(file.read_text(encoding="utf-8"))
-        key = str(entries.pop("key"))
-        # What follows from the rest is there for other programs.
-        del entries["final"]
-        for verdict in entries["grade"]["verdicts"]:
-            del verdict["earned"]
-        return restored(Entry, entries), key
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return None
+    return read_kept(file, _grade_in)
+
+
+def _grade_in(content: bytes) -> tuple[Entry, str]:
+    entries = json.loads(content)
+    key = str(entries.pop("key"))
+    # What follows from the rest is there for other programs.
+    del entries["final"]
+    for verdict in entries["grade"]["verdicts"]:
+        del verdict["earned"]
+    return restored(Entry, entries), key
 
 
 LONGEST_TEXT = 20_000

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.exercise.exercise import Exercise
 from grader.report.checks import first_hints
-from groundwork.files import write_if_changed
+from groundwork.files import json_object, write_if_changed
 
 if TYPE_CHECKING:
     from grader.grading.grade import Grade
@@ -75,9 +75,4 @@ def _counts(entries: Any) -> dict[str, int]:
 
 def _read(folder: Path) -> dict[str, Any]:
     """Return what the file has; nothing if there is none, or one that somebody else wrote."""
-    try:
-        entries = json.loads((folder / FILE).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    pairs = entries.items() if isinstance(entries, dict) else ()
-    return {str(name): entry for name, entry in pairs if isinstance(entry, dict)}
+    return {name: entry for name, entry in json_object(folder / FILE).items() if isinstance(entry, dict)}

@@ -24,7 +24,7 @@ from grader.sandbox import filesystem, landlock
 from grader.sandbox.environment import RUNTIME_VARIABLES, for_trusted
 from grader.sandbox.program import IN_DOCKER, OPEN_FILES, Isolation, Limits, SandboxUnavailable
 from groundwork.clean_environment import module_command
-from groundwork.files import cached, write_if_changed
+from groundwork.files import cached, keep
 
 #: A trial takes a second of CPU. If a busy machine ended it, a weaker level would be chosen (s).
 _TRIAL_S = 240.0
@@ -137,7 +137,7 @@ def _reason_against(level: Isolation) -> str | None:
         return None
     reason = _tried(level)
     if reason is None:
-        _keep(level)
+        keep(_file(level), "")
     return reason
 
 
@@ -168,12 +168,6 @@ def has_worked(level: Isolation) -> bool:
         return _file(level).stat().st_uid == os.geteuid()
     except OSError:  # not tried yet, or another user's folder
         return False
-
-
-def _keep(level: Isolation) -> None:
-    """Remember that a trial has worked."""
-    with contextlib.suppress(OSError):  # if nothing can be stored, try each time
-        write_if_changed(_file(level), "")
 
 
 def forget() -> None:

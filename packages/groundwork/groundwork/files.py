@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import fcntl
 import json
 import os
 import tempfile
-from collections.abc import Iterable, Mapping
+import zlib
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 # To read the umask is to change it for a moment, in which no other thread may create a file: so it is read once.
 _UMASK = os.umask(0o077)
@@ -62,6 +64,23 @@ def write_folder(folder: Path, files: Mapping[str, str | bytes]) -> None:
             entry.rmdir()
     for path, content in files.items():
         write_if_changed(folder / path, content)
+
+
+Kept = TypeVar("Kept")
+
+
+def read_kept(file: Path, decoded: Callable[[bytes], Kept]) -> Kept | None:
+    """Return what is kept in a file, `decoded`; None if it is missing or damaged, and so has to be made again."""
+    try:
+        return decoded(file.read_bytes())
+    except (OSError, EOFError, zlib.error, ValueError, KeyError, TypeError, AttributeError):
+        return None
+
+
+def keep(file: Path, content: str | bytes, *, durable: bool = False) -> None:
+    """Write a file whole, for `read_kept`. If it can't be written, its content is made again each time."""
+    with contextlib.suppress(OSError):
+        write_if_changed(file, content, durable=durable)
 
 
 def json_object(file: Path) -> dict[str, Any]:

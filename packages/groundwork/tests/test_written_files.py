@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import os
 import subprocess
 import sys
@@ -9,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from groundwork.files import cached, json_object, write_folder
+from groundwork.files import cached, json_object, keep, read_kept, write_folder
 
 
 @pytest.mark.parametrize("mask", [0o077, 0o022, 0o027, 0o002])
@@ -44,3 +45,16 @@ def test_a_file_without_a_json_object_is_an_empty_one(tmp_path: Path, content: s
     assert json_object(file) == {}
     file.write_text('{"key": 1}')
     assert json_object(file) == {"key": 1}
+
+
+def test_what_is_kept_is_read_and_what_is_missing_damaged_or_can_not_be_written_is_made_again(tmp_path: Path) -> None:
+    file = tmp_path / "kept.gz"
+    whole = gzip.compress(b"kept" * 1000)
+    assert read_kept(file, gzip.decompress) is None
+    for damaged in (b"", whole[:30], whole[:15] + b"\xff" * 20):
+        keep(file, damaged)
+        assert not read_kept(file, gzip.decompress)
+
+    keep(file, whole)
+    assert read_kept(file, gzip.decompress) == b"kept" * 1000
+    keep(file / "below a file", whole)
