@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 import sys
 from pathlib import Path
@@ -12,12 +11,12 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bars
 
+from groundwork.files import from_here
 from groundwork.problem import Problem
-from groundwork.words import counted
+from groundwork.words import counted, did_you_mean
 from spinbook.build.execution import DEADLINE_S, ExecutionResult, NotebookJob, NotebookProgress, execute
-from spinbook.build.notebooks import BuildResult, build_notebooks
+from spinbook.build.notebooks import BuildResult, build_notebooks, report
 from spinbook.course.course import FILE, Course, find_course
-from spinbook.course.obstacles import ranked
 from spinbook.interfaces.definitions import compile_course
 from spinbook.problem import SpinbookError
 
@@ -75,7 +74,8 @@ def build(
         except KeyboardInterrupt:
             console.print("Interrupted: the notebooks that were running have been ended; finished ones are kept.")
             sys.exit(130)
-    console.print(f"Notebooks: {_shown(course, 'executed' if run else 'notebooks')}", markup=False)
+    folder = course.build_folder / ("executed" if run else "notebooks")
+    console.print(f"Notebooks: {from_here(folder)}/", markup=False)
     if broken:
         console.print(f"Failed: {', '.join(broken)}. The reasons are above.", markup=False, style="red")
     sys.exit(1 if failed or broken else 0)
@@ -95,11 +95,6 @@ def _compile_interfaces(console: Console, course: Course) -> bool:
     return True
 
 
-def _shown(course: Course, folder: str) -> str:
-    path = course.build_folder / folder
-    return f"{path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path}/"
-
-
 def _is_chosen(item: BuildResult, chapters: tuple[str, ...]) -> bool:
     return not chapters or any(name in {item.name, item.chapter.stem, *_paths(item.chapter)} for name in chapters)
 
@@ -112,22 +107,16 @@ def _paths(chapter: Path) -> set[str]:
 def _without_match(built: list[BuildResult], chapters: tuple[str, ...]) -> list[Problem]:
     """Return the names that do not belong to any chapter."""
     known = [item.name for item in built]
-    problems = []
-    for name in chapters:
-        if not any(_is_chosen(item, (name,)) for item in built):
-            close = difflib.get_close_matches(name, known, n=1)
-            fix = f"Did you mean `{close[0]}`?" if close else f"The chapters are: {', '.join(known)}."
-            problems.append(Problem(FILE, None, f"there is no chapter `{name}`.", fix))
-    return problems
+    unknown = [name for name in chapters if not any(_is_chosen(item, (name,)) for item in built)]
+    otherwise = f"The chapters are: {', '.join(known)}."
+    return [
+        Problem(FILE, None, f"there is no chapter `{name}`.", did_you_mean(name, known, otherwise, "`{}`"))
+        for name in unknown
+    ]
 
 
 def _report_built(console: Console, built: list[BuildResult]) -> None:
-    problems = [problem for item in built for problem in item.problems]
-    for problem in problems:
-        if problem.is_error or not problem.group:
-            console.print(str(problem), markup=False, style="red" if problem.is_error else None)
-    for line in ranked([problem for problem in problems if not problem.is_error]):
-        console.print(line, markup=False)
+    report(console, built)
     made = sum(item.fresh and not item.failed for item in built)
     broken = sum(item.failed for item in built)
     console.print(

@@ -176,12 +176,10 @@ def _follow(
 ) -> dict[str, Any]:
     """Report the progress of the notebook's process until it ends, or has to be ended."""
     deadline = time.monotonic() + job.deadline_s + _TO_SAY_SO_S
-    cells, done, ended, rest, output = 0, 0, {"crashed": ""}, "", ""
+    cells, done, ended, output = 0, 0, {"crashed": ""}, ""
     try:
         while True:
-            data, _ = process.read()
-            *lines, rest = (rest + data.decode(errors="replace")).split("\n")
-            for line in lines:
+            for line in process.read_lines():
                 if not line.startswith("{"):
                     output += f"{line}\n"
                     continue

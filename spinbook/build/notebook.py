@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import mimetypes
+import posixpath
 import re
 import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -70,7 +71,8 @@ class Location:
             return f"attachment:{name}"
         if not self.repository:
             return quote(f"../../{file.as_posix()}") + anchor if file else None
-        path = file.as_posix() if file else _joined(self.folder, split(target)[0])
+        # Above the course's root is nothing that the repository's pages show.
+        path = file.as_posix() if file else posixpath.normpath(f"/{self.folder}/{split(target)[0]}").lstrip("/")
         return f"{self.repository}/{'raw' if is_image else 'blob'}/main/{quote(path)}{anchor}"
 
     def _attached(self, file: Path) -> str:
@@ -121,16 +123,6 @@ def _in_words(role: re.Match[str]) -> str:
     if name in {"term", "abbr", "eq", "cite", "download"}:
         return content.partition(" <")[0]
     return f"`{content.lstrip('~!')}`"
-
-
-def _joined(folder: str, path: str) -> str:
-    parts: list[str] = []
-    for part in f"{folder}/{path}".split("/"):
-        if part == ".." and parts:
-            parts.pop()
-        elif part not in {"", ".", ".."}:
-            parts.append(part)
-    return "/".join(parts)
 
 
 def _plain(lines: list[str]) -> list[str]:
@@ -233,30 +225,26 @@ def _notebook(chapter: Chapter, course: Course) -> dict[str, Any]:
             "title": chapter.title,
             "spinbook": {"chapter": chapter.file.as_posix()},
         },
-        "cells": list(_cells(chapter, course)),
+        "cells": _cells(chapter, course),
     }
 
 
-def _cells(chapter: Chapter, course: Course) -> Iterator[dict[str, Any]]:
+def _cells(chapter: Chapter, course: Course) -> list[dict[str, Any]]:
     setup = _SETUP.format(name=chapter.name, package=course.package.name, workspace=course.package.workspace)
     setup_cell = _code("spinbook-setup", setup, {"kind": "setup", "line": 1})
     folder = chapter.file.parent.as_posix()
     location = Location(course.root, folder, course.names, course.repository, {}, chapter.file, chapter.references)
-    waiting = True
+    made: list[dict[str, Any]] = []
     for cell in chapter.cells:
-        # The chapter's heading comes first, then what makes its cells work.
-        if waiting and cell.kind is not CellKind.PROSE:
-            waiting = False
-            yield setup_cell
         if cell.kind is CellKind.PROSE:
-            yield _prose(cell.id, cell.source, cell.line, location)
+            made.append(_prose(cell.id, cell.source, cell.line, location))
         elif cell.kind is CellKind.EXERCISE:
-            yield from _exercise(cell, course)
+            made += _exercise(cell, course)
         else:
-            yield _runnable(cell)
-        if waiting:
-            waiting = False
-            yield setup_cell
+            made.append(_runnable(cell))
+    # The chapter's heading comes first, then what makes its cells work.
+    above = bool(made) and chapter.cells[0].kind is CellKind.PROSE
+    return [*made[:above], setup_cell, *made[above:]]
 
 
 def _runnable(cell: ChapterCell) -> dict[str, Any]:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rich.console import Console
+
 from grader.exercise.exercise import ExerciseError
 from groundwork.files import json_object, write_if_changed
 from groundwork.problem import Problem
@@ -19,7 +21,7 @@ from spinbook.chapter.read import read_chapter
 from spinbook.chapter.surroundings import Surroundings
 from spinbook.chapters import surroundings
 from spinbook.course.course import Course
-from spinbook.course.obstacles import strict
+from spinbook.course.obstacles import ranked, strict
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,16 @@ def build_notebooks(course: Course, *, is_strict: bool = False) -> Iterator[Buil
         (folder / name).unlink(missing_ok=True)
         (course.build_folder / "executed" / name).unlink(missing_ok=True)
     write_if_changed(record, json.dumps(after, indent=1, sort_keys=True) + "\n")
+
+
+def report(console: Console, built: Sequence[BuildResult]) -> None:
+    """Print what is wrong in the chapters: one by one, then what keeps many cells from running."""
+    problems = [problem for item in built for problem in item.problems]
+    for problem in problems:
+        if problem.is_error or not problem.group:
+            console.print(str(problem), markup=False, style="red" if problem.is_error else None)
+    for line in ranked([problem for problem in problems if not problem.is_error]):
+        console.print(line, markup=False)
 
 
 def _build(course: Course, chapter: Path, notebook: Path, known: Surroundings, is_strict: bool) -> BuildResult:

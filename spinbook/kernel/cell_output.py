@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 import sys
 import time
@@ -107,6 +108,8 @@ class OutputPrinter:
         self._count = 0
         self._part = ""
         self._lost = False
+        # A character may arrive in two pieces, too.
+        self._decoder = codecs.getincrementaldecoder("utf-8")("replace")
         self._frames = ReaderFrames()
         self._left_out = 0
         self.seen = ""
@@ -120,10 +123,10 @@ class OutputPrinter:
     def add(self, data: bytes, dropped: int = 0) -> None:
         """Add output; `dropped` bytes before it were lost."""
         self._lost = self._lost or dropped > 0
-        text = self._part + data.decode(errors="replace")
+        text = self._decoder.decode(data)
         # A text that arrives in two pieces is found, too.
-        self.seen = self.seen[-1000:] + data.decode(errors="replace")
-        *lines, self._part = text.split("\n")
+        self.seen = self.seen[-1000:] + text
+        *lines, self._part = (self._part + text).split("\n")
         shown = list(self._frames.shown(lines))
         self._left_out += len(lines) - len(shown)
         for line in shown:

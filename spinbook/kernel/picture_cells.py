@@ -129,13 +129,10 @@ def _follow(
 ) -> Any:
     watched = EXECUTING not in os.environ
     handle: Any = None
-    rest = ""
     drawn = 0.0
     try:
         while True:
-            data, _ = process.read()
-            *lines, rest = (rest + data.decode(errors="replace")).split("\n")
-            recording.take(lines)
+            recording.take(process.read_lines())
             now = time.monotonic()
             if recording.error or not process.status.running or recording_time.is_over(recording, now):
                 return handle

@@ -49,7 +49,7 @@ class KeptProcess:
             )
         self._control = ours
         self._answers = ours.makefile("rb")
-        self._offset = 0
+        self._offset, self._begun = 0, b""
         self.status = Status(None, None, 0)
         self._ask({"start": {"argv": list(argv), "env": dict(env), "cwd": os.fspath(cwd)}})
 
@@ -62,6 +62,11 @@ class KeptProcess:
         """Return (output since the last call, number of bytes dropped before it), and update `status`."""
         data, dropped, self._offset = self.read_from(self._offset)
         return data, dropped
+
+    def read_lines(self) -> list[str]:
+        """Return the complete lines since the last call, and update `status`."""
+        *lines, self._begun = (self._begun + self.read()[0]).split(b"\n")
+        return [line.decode(errors="replace") for line in lines]
 
     def read_all(self) -> tuple[bytes, int]:
         """Return (all output that was kept, number of bytes missing in the middle)."""

@@ -30,7 +30,6 @@ class TimelineProcess:
         self.names = names
         self._process = KeptProcess(argv, os.environ, Path.cwd())
         self._happenings = RecordedEvents()
-        self._rest = ""
 
     def wait_for_all(self) -> list[str]:
         """Wait until every name has been found. Return those that were not. Raises CellFailed if it fails."""
@@ -47,9 +46,7 @@ class TimelineProcess:
         return [name for name in self.names if name not in self._happenings.kinds]
 
     def _read(self) -> None:
-        data, _ = self._process.read()
-        *complete, self._rest = (self._rest + data.decode(errors="replace")).split("\n")
-        self._happenings.take(complete)
+        self._happenings.take(self._process.read_lines())
 
     def end(self) -> RecordedEvents:
         """Stop recording. Return what has happened, in the order of the names."""

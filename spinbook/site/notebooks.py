@@ -14,9 +14,8 @@ from urllib.parse import quote
 from rich.console import Console
 
 from spinbook.build.execution import NotebookJob, execute
-from spinbook.build.notebooks import BuildResult, build_notebooks
+from spinbook.build.notebooks import BuildResult, build_notebooks, report
 from spinbook.course.course import FILE, Course
-from spinbook.course.obstacles import ranked
 from spinbook.interfaces.definitions import compile_course
 from spinbook.problem import SpinbookError
 from spinbook.site.page import Repository
@@ -34,12 +33,7 @@ def bring_up_to_date(course: Course, console: Console, *, is_strict: bool, run: 
         console.print(str(error), markup=False)
         return False
     built = list(build_notebooks(course, is_strict=is_strict))
-    problems = [problem for item in built for problem in item.problems]
-    for problem in problems:
-        if problem.is_error or not problem.group:
-            console.print(str(problem), markup=False)
-    for line in ranked([problem for problem in problems if not problem.is_error]):
-        console.print(line, markup=False)
+    report(console, built)
     if any(item.failed for item in built):
         return False
     return not run or _run_changed(course, console, built, is_strict=is_strict)

@@ -9,8 +9,10 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+import pytest
+
 from ros_in_python.ros2.domain import participants, participates
-from spinbook.kernel.cell_output import Countdown, DisplayLimit
+from spinbook.kernel.cell_output import Countdown, DisplayLimit, OutputPrinter
 from spinbook.kernel.process import KeptProcess
 
 
@@ -31,6 +33,13 @@ def test_the_seconds_count_from_the_first_line_however_late_it_comes() -> None:
     for now, printed, over in ((9.0, False, False), (10.0, True, False), (12.9, True, False), (13.0, True, True)):
         machine.now = now
         assert countdown.is_over(printed) is over
+
+
+def test_a_character_that_arrives_in_two_pieces_is_one_character(capsys: pytest.CaptureFixture[str]) -> None:
+    shown = OutputPrinter()
+    for byte in "Größe: 3 µm\n".encode():
+        shown.add(bytes([byte]))
+    assert (capsys.readouterr().out, shown.seen) == ("Größe: 3 µm\n", "Größe: 3 µm\n")
 
 
 def test_a_silent_node_is_shown_from_when_it_joined_for_at_least_as_long_as_it_took_to_start() -> None:
