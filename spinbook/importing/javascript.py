@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
+
+import yaml
 
 _TOKEN = re.compile(
     r"""\s+|//[^\n]*|/\*.*?\*/|(?P<string>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|`(?:\\.|[^`\\])*`)|(?P<mark>[{}\[\],:])"""
@@ -17,61 +20,39 @@ _OBJECT = re.compile(r"(?:=|\bexport\s+default)\s*(?=\{)")
 def objects_in(text: str) -> Iterator[Any]:
     """Yield the objects that a file assigns or exports."""
     for match in _OBJECT.finditer(text):
-        tokens = list(_tokens(text[match.end() :]))
-        value, _ = _value(tokens, 0)
-        yield value
+        yield value_in(text[match.end() :])
 
 
 def value_in(text: str) -> Any:
-    """Return the value with which a text begins; None for anything but a literal."""
-    return _value(list(_tokens(text)), 0)[0]
+    """Return the object or list with which a text begins, whatever follows it; None if it isn't a literal.
+
+    Expressions in it are None.
+    """
+    try:
+        return yaml.safe_load(_as_yaml(text))
+    except yaml.YAMLError:
+        return None
 
 
-def _tokens(text: str) -> Iterator[tuple[str, str]]:
-    depth = 0
+def _as_yaml(text: str) -> str:
+    """Return the object or list with which a text begins as YAML, which also has commas before the last bracket."""
+    flow, tokens, depth, after_colon = "", [], 0, False
     for match in _TOKEN.finditer(text):
-        kind = match.lastgroup
-        if kind is None:
+        mark = match["mark"]
+        if not mark or (mark == ":" and after_colon):  # also the colon of CONDITION ? ONE : OTHER
+            tokens += [match[0]] if match.lastgroup else []
             continue
-        yield kind, match[0][1:-1] if kind == "string" else match[0]
-        depth += (match[0] in "{[") - (match[0] in "}]") if kind == "mark" else 0
+        flow += f"{_scalar(tokens, is_key=mark == ':')}{mark} "
+        tokens, after_colon = [], mark == ":"
+        depth += (mark in "{[") - (mark in "}]")
         if depth == 0:
-            return
+            break
+    return flow
 
 
-def _value(tokens: list[tuple[str, str]], at: int) -> tuple[Any, int]:
-    """Return the value that begins at a token, and the index after it. Anything but a literal is None."""
-    kind, text = tokens[at] if at < len(tokens) else ("mark", "}")
-    if (kind, text) == ("mark", "{"):
-        return _object(tokens, at + 1)
-    if (kind, text) == ("mark", "["):
-        return _list(tokens, at + 1)
-    if kind == "string":
-        return text, at + 1
-    words = ""
-    while at < len(tokens) and not (tokens[at][0] == "mark" and tokens[at][1] in ",}]"):
-        words += tokens[at][1]
-        at += 1
-    return {"true": True, "false": False}.get(words), at
-
-
-def _object(tokens: list[tuple[str, str]], at: int) -> tuple[dict[str, Any], int]:
-    found: dict[str, Any] = {}
-    while at < len(tokens) and tokens[at] != ("mark", "}"):
-        key, at = tokens[at][1], at + 1
-        if at < len(tokens) and tokens[at] == ("mark", ":"):
-            found[key], at = _value(tokens, at + 1)
-    return found, at + 1
-
-
-def _list(tokens: list[tuple[str, str]], at: int) -> tuple[list[Any], int]:
-    found: list[Any] = []
-    while at < len(tokens) and tokens[at] != ("mark", "]"):
-        if tokens[at] == ("mark", ","):
-            at += 1
-            continue
-        before = at
-        value, at = _value(tokens, at)
-        found.append(value)
-        at += at == before
-    return found, at + 1
+def _scalar(tokens: Sequence[str], *, is_key: bool) -> str:
+    """Return a text, a key, true or false as YAML; an expression is null."""
+    is_text = len(tokens) == 1 and tokens[0][0] in "\"'`"
+    if is_text or (is_key and tokens):
+        return json.dumps(tokens[0][1:-1] if tokens[0][0] in "\"'`" else tokens[0])
+    return tokens[0] if tokens in (["true"], ["false"]) else "null" if tokens else ""
