@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from typing import Any
+
+from groundwork.plain_data import restored
 
 
 @dataclass(frozen=True, order=True)
@@ -64,8 +65,8 @@ class NodeGraph:
     Hidden nodes and what every node has (/rosout …) are left out.
     """
 
-    nodes: tuple[GraphNode, ...] = ()
-    topics: tuple[GraphTopic, ...] = ()
+    nodes: tuple[GraphNode, ...]
+    topics: tuple[GraphTopic, ...]
 
     def to_json(self) -> str:
         """Return the graph as indented JSON; the same for the same graph."""
@@ -79,15 +80,6 @@ class NodeGraph:
             ValueError: if the text is not such a graph.
         """
         try:
-            message = json.loads(text)
-            return cls(
-                tuple(GraphNode(**node) for node in message["nodes"]),
-                tuple(_topic(topic) for topic in message["topics"]),
-            )
+            return restored(cls, json.loads(text))
         except (KeyError, TypeError, AttributeError) as error:
             raise ValueError(f"not a node graph: {error!r}") from error
-
-
-def _topic(text: dict[str, Any]) -> GraphTopic:
-    ends = [tuple(GraphEndpoint(**end) for end in text[side]) for side in ("publishers", "subscriptions")]
-    return GraphTopic(text["name"], ends[0], ends[1], text["rate_hz"])
