@@ -5,6 +5,7 @@ They are read from `ros2 pkg create`, a `setup.py` in the chapter, file paths, a
 
 from __future__ import annotations
 
+import argparse
 import itertools
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -12,6 +13,7 @@ from dataclasses import dataclass, field
 
 from markdown_it import MarkdownIt
 
+from ros_in_python.ros2.create import reader
 from spinbook.chapter.block import HOLDS_FILE, Block, BlockKind
 from spinbook.chapter.fence import Fence
 from spinbook.chapter.terminal import programs_of
@@ -26,16 +28,6 @@ _MARKDOWN = MarkdownIt("commonmark")
 _FILE_COMMENT = re.compile(r"""^\s*(?:#+|\"\"\"|''')\s*(?:[Ff]ile(?:name)?\s*:?\s*)?`?([\w./~-]+\.py)\b""")
 _PY_FILE = re.compile(r"[\w./~-]*\w\.py\b", re.ASCII)
 _EDITORS = frozenset({"touch", "nano", "vim", "vi", "gedit", "code", "cat"})
-#: Options of `ros2 pkg create` that take one value, and those that take several.
-_ONE = frozenset(
-    {"--build-type", "--license", "--description", "--maintainer-name", "--maintainer-email", "--node-name"}
-) | {
-    "--library-name",
-    "--destination-directory",
-    "--package-format",
-}
-_SEVERAL = frozenset({"--dependencies"})
-CREATE_OPTIONS = _ONE | _SEVERAL
 #: Files of a package that are not programs.
 _NOT_PROGRAMS = frozenset({"setup.py", "__init__.py", "conftest.py"})
 
@@ -73,45 +65,39 @@ def is_setup_excerpt(code: str) -> bool:
     return bool(_HAS_ENTRIES.search(code) or _ENTRY.search(code)) and "rclpy" not in code
 
 
-def created_package(words: Sequence[str]) -> tuple[str, str]:
-    """Return (name, build type) of `ros2 pkg create …`; the name is "" if there is none."""
-    name, build_type, skip = "", "ament_cmake", ""
-    for word in words[3:]:
-        if word.startswith("--"):
-            option, _, value = word.partition("=")
-            build_type = value if option == "--build-type" and value else build_type
-            skip = option if not value and option in _ONE | _SEVERAL else ""
-        elif skip:
-            build_type = word if skip == "--build-type" else build_type
-            skip = skip if skip in _SEVERAL else ""
-        elif not name:
-            name = word
-    if not name and "--dependencies" in words:
-        # After the dependencies, the name is the last word.
-        name = words[-1]
-    return name, build_type
+@dataclass(frozen=True)
+class NewPackage:
+    """What `ros2 pkg create …` makes; `name` is "" if the command can't run, `node` if it makes none.
+
+    `unknown` are the words that are no options of it.
+    """
+
+    name: str = ""
+    build_type: str = "ament_python"
+    node: str = ""
+    unknown: tuple[str, ...] = ()
 
 
-def unknown_option(words: Sequence[str]) -> str:
-    """Return the first option that `ros2 pkg create` does not have; "" if there is none."""
-    options = (word.partition("=")[0] for word in words[3:] if word.startswith("--"))
-    return next((option for option in options if option not in CREATE_OPTIONS), "")
+def create_options() -> list[str]:
+    """Return the options of `ros2 pkg create`."""
+    return sorted(re.findall(r"--[\w-]+", reader().format_usage()))
 
 
-def created_node(words: Sequence[str]) -> str:
-    """Return the node that `ros2 pkg create --node-name NODE …` makes, which says hello; "" if it makes none."""
-    for word, after in itertools.pairwise([*words, ""]):
-        if word == "--node-name" or word.startswith("--node-name="):
-            return word.partition("=")[2] or after
-    return ""
+def new_package(words: Sequence[str]) -> NewPackage:
+    """Read `ros2 pkg create …` as it reads itself."""
+    try:
+        options, unknown = reader(exit_on_error=False).parse_known_args(words[3:])
+    except argparse.ArgumentError:
+        return NewPackage()
+    return NewPackage(options.package_name, options.build_type, options.node_name, tuple(unknown))
 
 
 def _created(code: str) -> Iterator[tuple[str, str]]:
     for words in programs_of(code):
         if words[:3] == ("ros2", "pkg", "create"):
-            name, build_type = created_package(words)
-            if re.fullmatch(r"[a-z][a-z0-9_]*", name):
-                yield name, build_type
+            package = new_package(words)
+            if re.fullmatch(r"[a-z][a-z0-9_]*", package.name):
+                yield package.name, package.build_type
 
 
 def _with_package(code: str, names: set[str]) -> str:

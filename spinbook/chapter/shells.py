@@ -25,7 +25,7 @@ from spinbook.chapter.foreign_commands import (
 from spinbook.chapter.imports import IN_ROS, ros_packages
 from spinbook.chapter.launch_files import NotSupportedError
 from spinbook.chapter.launches import Launches, launch_words
-from spinbook.chapter.own_packages import CREATE_OPTIONS, OwnPackages, created_node, created_package, unknown_option
+from spinbook.chapter.own_packages import OwnPackages, create_options, new_package
 from spinbook.chapter.program_names import ProgramNames
 from spinbook.chapter.terminal import Command, CommandKind, is_placeholder, note
 from spinbook.chapter.values_in_commands import wrong_values
@@ -318,18 +318,21 @@ class Shells:
     def _compiled_here(self, command: Command) -> Command:
         """Return a comment in place of a command that makes or builds packages whose interfaces the chapters define."""
         packages = {name.partition("/")[0] for name in self.interfaces}
-        makes = command.words[1:3] == ("pkg", "create") and created_package(command.words)[0] in packages
+        makes = command.words[1:3] == ("pkg", "create") and new_package(command.words).name in packages
         chosen = _selected(command.words) if command.kind is CommandKind.COLCON else []
         if makes or (chosen and packages.issuperset(chosen)):
             return note(command.text, command.line)
         return command
 
     def _create(self, command: Command) -> Reason | None:
-        name, build_type = created_package(command.words)
-        if unknown := unknown_option(command.words):
-            fix = did_you_mean(unknown, CREATE_OPTIONS, f"Its options: {', '.join(sorted(CREATE_OPTIONS))}.", "`{}`")
+        package = new_package(command.words)
+        name = package.name
+        if package.unknown:
+            known = create_options()
+            unknown = package.unknown[0].partition("=")[0]
+            fix = did_you_mean(unknown, known, f"Its options: {', '.join(known)}.", "`{}`")
             return Reason(f"`ros2 pkg create` has no option `{unknown}`", fix, "")
-        if build_type != "ament_python":
+        if package.build_type != "ament_python":
             fix = "Python packages have --build-type ament_python."
             return Reason("it makes a package for C++", fix, "C++ packages")
         if name and is_placeholder(name):
@@ -337,7 +340,7 @@ class Shells:
         if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
             return Reason("it does not name a package", "Write: ros2 pkg create --build-type ament_python NAME", "")
         self._created.add(name)
-        self._hello.add((name, created_node(command.words)))
+        self._hello.add((name, package.node))
         return None
 
     def _colcon(self, command: Command, out: Sequence[ClassifiedFence]) -> Reason | None:

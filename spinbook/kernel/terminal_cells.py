@@ -10,7 +10,7 @@ from pathlib import Path
 
 from interface_compiler import toolchain
 from ros_in_python.ros2 import create
-from spinbook.chapter.own_packages import created_node, created_package
+from spinbook.chapter.own_packages import new_package
 from spinbook.kernel.cell_output import DisplayLimit
 from spinbook.kernel.session import NodeStart, Session
 from spinbook.package.cell_line import CellFailed
@@ -79,14 +79,15 @@ def _launch(session: Session, words: list[str], bound: DisplayLimit) -> None:
 
 def _create_package(session: Session, words: list[str]) -> None:
     """Run `ros2 pkg create … NAME`: make an empty package in the workspace, for the chapter's nodes."""
-    name, _ = created_package(["ros2", *words])
+    package = new_package(["ros2", *words])
+    name = package.name
     if not name:
         raise CellFailed("Write: ros2 pkg create --build-type ament_python NAME")
     if name != session.package.name and (session.workspace / "src" / name).exists():
         print(f"The package {name} already exists.")
         return
     folder = write_package(session.workspace, replace(session.package, name=name), [])
-    if node := created_node(["ros2", *words]):
+    if node := package.node:
         session.save_node(node, create.NODE.format(package=name), NodeStart(known_as=(f"{name}/{node}",)))
     print(f"Created the package {name} in {folder.relative_to(Path.cwd())}")
 

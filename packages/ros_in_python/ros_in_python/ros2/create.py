@@ -38,7 +38,9 @@ def create(words: tuple[str, ...]) -> None:
     Also: --license, --description, --maintainer-name, --maintainer-email, --destination-directory. To build a package
     of C++ takes a ROS 2 installation; one of messages, services and actions alone is compiled without.
     """
-    options = _read(words)
+    options = reader().parse_args(list(words))
+    if not options.package_name:
+        reader().error("the following arguments are required: package_name")
     if options.build_type not in ("ament_cmake", "ament_python"):
         raise CommandError(f"There is no build type '{options.build_type}' here: ament_cmake, ament_python.")
     if options.library_name and options.build_type == "ament_python":
@@ -57,9 +59,12 @@ def create(words: tuple[str, ...]) -> None:
     _write_new(folder, options)
 
 
-def _read(words: tuple[str, ...]) -> argparse.Namespace:
-    reader = argparse.ArgumentParser(prog="ros2 pkg create", add_help=False, allow_abbrev=False)
-    reader.add_argument("package_name")
+def reader(*, exit_on_error: bool = True) -> argparse.ArgumentParser:
+    """Return what reads the words of `ros2 pkg create`; the name is "" if there is none."""
+    reader = argparse.ArgumentParser(
+        prog="ros2 pkg create", add_help=False, allow_abbrev=False, exit_on_error=exit_on_error
+    )
+    reader.add_argument("package_name", nargs="?", default="")
     reader.add_argument("--build-type", default="ament_cmake")
     reader.add_argument("--package-format", default="3")
     reader.add_argument("--dependencies", nargs="+", default=[])
@@ -70,7 +75,7 @@ def _read(words: tuple[str, ...]) -> argparse.Namespace:
     reader.add_argument("--maintainer-name", default="TODO")
     reader.add_argument("--maintainer-email", default="todo@todo.todo")
     reader.add_argument("--destination-directory", default=".")
-    return reader.parse_args(list(words))
+    return reader
 
 
 def _write_new(folder: Path, options: argparse.Namespace) -> None:
