@@ -24,8 +24,6 @@ from grader.scenario.scenario import Scenario
 from grader.submission.submission import Submission
 from grader.workers.pool import HostFault, WorkerPool
 
-_INSTRUCTOR_INSTALLS = "Instructors: pip install 'spinbook[notebooks]', or name it in exercise.toml (packages)."
-
 
 @dataclass(frozen=True)
 class Grading:
@@ -62,7 +60,8 @@ class Grading:
             return self._grade(submission, recordings, verdicts, "host-error", text, began)
         missing = filter(None, (lacks_a_notebooks_module(recording.ending) for recording in recordings.values()))
         if module := next(missing, None):
-            text = f"This is not your fault: {module}, which notebooks have, is missing here. {_INSTRUCTOR_INSTALLS}"
+            text = f"This is not your fault: {module}, which notebooks have, is missing here. "
+            text += "Instructors: pip install 'spinbook[notebooks]', or name it in exercise.toml (packages)."
             return self._grade(submission, recordings, verdicts, "host-error", text, began)
         first = recordings[self.runner.scenarios[0].name].ending
         outcome: Outcome = "graded" if first.outcome == "completed" else first.outcome

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 from grader.exercise.computing_limit import computing_limit
 from grader.recording.events import Truth
@@ -45,24 +46,26 @@ class RunningWorld:
     def _step(self, now: int) -> None:
         """Handle what arrived since the last step, step the world, and publish its state."""
         heard, self._heard = in_canonical_order(self._heard, unordered_sources(self._heard)), []
-        for number, one in heard:
-            topic, type_name = self._topics[number]
-            message = deserialized(one.cdr, message_class(type_name))
-            self._ask(partial(self._model.hear, topic, message))
-        self._ask(partial(self._model.step, self._world.period))
-        if truth := getattr(self._model, "truth", None):
-            self._ask(lambda: self.truth.append(Truth(now, json.loads(json.dumps(truth())))))
-        for topic, fields in self._state().items():
-            self._publish(Message(now, topic, self._model.publishes[topic], fields))
+        arrived = [(*self._topics[number], one.cdr) for number, one in heard]
+        messages = [(topic, deserialized(cdr, message_class(type_name))) for topic, type_name, cdr in arrived]
+
+        def advance() -> dict[str, dict[str, object]]:
+            for topic, message in messages:
+                self._model.hear(topic, message)
+            self._model.step(self._world.period)
+            if truth := getattr(self._model, "truth", None):
+                self.truth.append(Truth(now, json.loads(json.dumps(truth()))))
+            return dict(self._model.state())
+
+        for topic, fields in self._checked(self._ask(advance)).items():
+            self._publish(Message(now, topic, self._model.publishes[topic], fields, line=0))
         self._schedule.plan(now + self._period, self._step)
 
     def do(self, step: ToWorld) -> None:
         """Call the method that a step names."""
         self._ask(lambda: getattr(self._model, step.method)(**step.arguments))
 
-    def _state(self) -> dict[str, dict[str, object]]:
-        state: dict[str, dict[str, object]] = {}
-        self._ask(lambda: state.update(self._model.state()))
+    def _checked(self, state: dict[str, dict[str, object]]) -> dict[str, dict[str, object]]:
         for topic, fields in state.items():
             type_name = self._model.publishes.get(topic, "")
             if not type_name:
@@ -73,9 +76,9 @@ class RunningWorld:
                 raise AuthorFault(f"{self._world.code.name}.state(), {topic}: {error.problem}. {error.fix}") from None
         return state
 
-    def _ask(self, act: Callable[[], object]) -> None:
+    def _ask(self, act: Callable[[], Any]) -> Any:
         try:
             with computing_limit():
-                act()
+                return act()
         except Exception as error:
             raise AuthorFault(f"the world {self._world.code.name}: {type(error).__name__}: {error}") from error

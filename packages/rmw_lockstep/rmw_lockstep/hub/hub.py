@@ -185,10 +185,11 @@ class Hub:
         even if a connection has no end, because its other end is in a message that nobody has received.
         """
         self._accept()
-        with self._use.cpu():
-            for link in tuple(self.links):
-                while link in self.links and self._read(link, socket.MSG_DONTWAIT):
-                    pass
+        self._use.begin_taking()
+        for link in tuple(self.links):
+            while link in self.links and self._read(link, socket.MSG_DONTWAIT):
+                pass
+        self._use.look_at_cpu()
 
     def close(self) -> None:
         """Disconnect every process, and stop listening."""
@@ -351,11 +352,12 @@ class Hub:
     def _take(self) -> None:
         """Wait at most 20 ms for something to arrive, and take it. Raises `Violation`, and what `on_tick` raises."""
         links = self.links
-        with self._use.cpu():
-            if len(links) == 1 and not self._awaited and not links[0].unsent:
-                self._read(links[0], 0)
-            else:
-                self._take_from_any()
+        self._use.begin_taking()
+        if len(links) == 1 and not self._awaited and not links[0].unsent:
+            self._read(links[0], 0)
+        else:
+            self._take_from_any()
+        self._use.look_at_cpu()
         now = time.monotonic()
         if now >= self._due:
             self._due = now + TICK_S

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal
 
@@ -96,7 +94,7 @@ class HubUsage:
         self.frames += 1
         _check("frames", "frames", self.frames, self.limits.frames)
         if not self.frames % FRAMES_PER_LOOK:
-            self._look_at_cpu()
+            self.look_at_cpu()
 
     def data(self, size: int) -> None:
         """Count a message of `size` bytes."""
@@ -117,14 +115,12 @@ class HubUsage:
         self.wake_ups += 1
         _check("wake-ups", "wake-ups", self.wake_ups, self.limits.wake_ups)
 
-    @contextmanager
-    def cpu(self) -> Iterator[None]:
-        """Count the CPU time of this thread inside the `with` block, in which frames are taken."""
+    def begin_taking(self) -> None:
+        """Count the CPU time of this thread from here on, in which frames are taken, until `look_at_cpu`."""
         self._since = time.thread_time()
-        yield
-        self._look_at_cpu()
 
-    def _look_at_cpu(self) -> None:
+    def look_at_cpu(self) -> None:
+        """Check the CPU time in which frames have been taken."""
         now = time.thread_time()
         self.cpu_s, self._since = self.cpu_s + now - self._since, now
         _check("cpu", "CPU seconds of the hub", self.cpu_s, self.limits.cpu_s)
