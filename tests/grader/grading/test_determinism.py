@@ -68,20 +68,6 @@ def test_beside_busy_loops_the_grade_is_the_same(short: Grading, name: str) -> N
     assert recorded(alone) == recorded(beside), "to the last bit of every message"
 
 
-@pytest.mark.soak
-@pytest.mark.timeout(7200)
-@pytest.mark.parametrize("name", SUBMISSIONS)
-def test_graded_two_hundred_times_half_of_them_beside_busy_loops_it_is_the_same(grading: Grading, name: str) -> None:
-    submission = submission_of(name, grading.runner.exercise)
-    first = grading.grade(submission)
-    for loops in (0, 8):
-        with busy(loops):
-            for number in range(100):
-                grade = grading.grade(submission)
-                assert grade == first, f"grade {number} beside {loops} busy loops"
-                assert recorded(grade) == recorded(first), f"recordings of grade {number} beside {loops} busy loops"
-
-
 #: What is replaced in the solution, and by what, for another way to make the node or to spin it.
 WAYS = {
     "no parameter services": {

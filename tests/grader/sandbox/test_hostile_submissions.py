@@ -7,11 +7,9 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import psutil
 import pytest
@@ -40,18 +38,13 @@ EVERYWHERE = {
     *("raises_its_limits", "reads_proc_of_others", "remembers_between_runs", "stops_itself", "writes_everywhere"),
     *("writes_to_every_descriptor",),
 }
-# One of each kind, for every `make test`, besides those at every level. `make soak` runs all.
+# One of each kind, for every `make test`; test_nothing_is_left.py kills all that it can at every level.
+# `make soak` runs all.
 ALWAYS = {
     *("disk_in_many_files", "escapes_by_namespaces", "fork_bomb_in_the_callback"),
     *("log_1_gb", "memory_10_gb", "network_access"),
     *("outlives_by_double_fork", "random_packets", "remembers_between_runs", "writes_everywhere"),
 }
-ALWAYS_EVERYWHERE = {"kills_everything"}
-
-
-def size(names: Iterable[str], always: set[str]) -> list[Any]:
-    """Return the parameters of a test, most of them for `make soak` only."""
-    return [pytest.param(name, marks=() if name in always else pytest.mark.soak) for name in sorted(names)]
 
 
 @dataclass(frozen=True)
@@ -117,7 +110,9 @@ def spin_and_look(runner: Runner, name: str) -> Spun:
     return spun
 
 
-@pytest.mark.parametrize("name", size(SUBMISSIONS, ALWAYS))
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in ALWAYS else pytest.mark.soak) for name in sorted(SUBMISSIONS)]
+)
 def test_a_hostile_submission_is_contained(strongest_runner: Runner, name: str) -> None:
     spun = spin_and_look(strongest_runner, name)
 
@@ -126,6 +121,7 @@ def test_a_hostile_submission_is_contained(strongest_runner: Runner, name: str) 
         assert spun.answers > 0, spun.text
 
 
-@pytest.mark.parametrize("name", size(EVERYWHERE, ALWAYS_EVERYWHERE))
+@pytest.mark.soak
+@pytest.mark.parametrize("name", sorted(EVERYWHERE))
 def test_an_attack_on_the_machine_is_contained_at_every_level(confined_runner: Runner, name: str) -> None:
     spin_and_look(confined_runner, name)
