@@ -114,12 +114,15 @@ def play(bag_path: Path, rate: float, loop: bool, topics: tuple[str, ...]) -> No
     with reading(bag_path) as reader, open_graph() as graph:
         from ros_in_python.ros2 import bag_qos
 
-        connections = [one for one in reader.connections if not topics or one.topic in topics]
+        recorded = {connection.topic for connection in reader.connections}
+        if missing := sorted(set(topics) - recorded):
+            raise CommandError(f"The bag has no topic {missing[0]}.", f"It has: {', '.join(sorted(recorded))}.")
+        connections = [each for each in reader.connections if not topics or each.topic in topics]
         publishers = {
-            one.topic: graph.node.create_publisher(
-                interfaces.message_class(one.msgtype), one.topic, bag_qos.to_profile(one.ext.offered_qos_profiles)
+            each.topic: graph.node.create_publisher(
+                interfaces.message_class(each.msgtype), each.topic, bag_qos.to_profile(each.ext.offered_qos_profiles)
             )
-            for one in connections
+            for each in connections
         }
         graph.settle(lambda: any(publisher.get_subscription_count() for publisher in publishers.values()))
         while True:
@@ -157,10 +160,9 @@ def info(bag_path: Path) -> None:
         for name, value in rows:
             click.echo(f"{name + ':':<19}{value}")
         title = "Topic information: "
-        for one in sorted(reader.connections, key=lambda one: one.topic):
-            click.echo(
-                f"{title}Topic: {one.topic} | Type: {one.msgtype} | Count: {one.msgcount} | Serialization Format: cdr"
-            )
+        for each in sorted(reader.connections, key=lambda connection: connection.topic):
+            about = f"Type: {each.msgtype} | Count: {each.msgcount} | Serialization Format: cdr"
+            click.echo(f"{title}Topic: {each.topic} | {about}")
             title = " " * len(title)
 
 

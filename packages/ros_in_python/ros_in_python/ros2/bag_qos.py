@@ -35,9 +35,9 @@ def to_profile(offered: Sequence[Qos]) -> QoSProfile:
     profile = QoSProfile(depth=_DEPTH, history=HistoryPolicy.KEEP_LAST)
     if not offered:
         return profile
-    if any(one.reliability is QosReliability.BEST_EFFORT for one in offered):
+    if any(qos.reliability is QosReliability.BEST_EFFORT for qos in offered):
         profile.reliability = ReliabilityPolicy.BEST_EFFORT
-    if all(one.durability is QosDurability.TRANSIENT_LOCAL for one in offered):
+    if all(qos.durability is QosDurability.TRANSIENT_LOCAL for qos in offered):
         profile.durability = DurabilityPolicy.TRANSIENT_LOCAL
-        profile.depth = max(one.depth for one in offered) or _DEPTH
+        profile.depth = max(qos.depth for qos in offered) or _DEPTH
     return profile

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -96,23 +95,18 @@ def know_type(types: Any, kind: str) -> None:
         return
     package, _, name = kind.split("/")
     text = (interfaces.folder_of(package) / "msg" / f"{name}.msg").read_text(encoding="utf-8")
-    found = get_types_from_msg(text, kind)
-    for used in _named(found):
-        if used not in found:
+    definitions = get_types_from_msg(text, kind)
+    for used in _types_used(definitions):
+        if used not in definitions:
             know_type(types, used)
-    types.register({one: fields for one, fields in found.items() if one not in types.types})
+    types.register({name: fields for name, fields in definitions.items() if name not in types.types})
 
 
-def _named(found: Any) -> list[str]:
-    """Return the message types of these definitions' fields."""
-    names: list[str] = []
-    take: Callable[[Any], None] = lambda part: names.append(part[1]) if part[0].name == "NAME" else None  # noqa: E731
-    for _, fields in found.values():
-        for _, (node, detail) in fields:
-            take((node, detail))
-            if node.name in ("ARRAY", "SEQUENCE"):
-                take(detail[0])
-    return names
+def _types_used(definitions: Any) -> list[str]:
+    """Return the message types of these definitions' fields, and of the elements of those that are arrays."""
+    fields = [field for _, fields in definitions.values() for _, field in fields]
+    elements = [detail[0] for node, detail in fields if node.name in ("ARRAY", "SEQUENCE")]
+    return [detail for node, detail in (*fields, *elements) if node.name == "NAME"]
 
 
 def stored_files(bag: Path) -> tuple[str, list[Path]]:

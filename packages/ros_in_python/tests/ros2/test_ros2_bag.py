@@ -32,6 +32,8 @@ def test_what_was_recorded_is_reported_and_played_again(
     assert played.code == 0, played.err
     assert listener.lines(1) == ["header:"]
     listener.stop()
+    misspelt = terminal.ros2("bag", "play", "swing", "--topics", "/joint_comands")
+    assert misspelt.err == "The bag has no topic /joint_comands.\nIt has: /joint_commands.\n"
 
     again = terminal.ros2("bag", "record", "-o", "swing", "-a")
     assert (again.code, "already exists" in again.err) == (1, True)

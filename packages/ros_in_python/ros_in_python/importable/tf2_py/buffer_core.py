@@ -34,7 +34,10 @@ _UNIT_TOLERANCE = 1e-6
 
 
 class BufferCore:
-    """Keeps the transforms of the last `cache_time` (10 s), and answers from them. May be used from several threads."""
+    """Keeps the transforms of the last `cache_time` (10 s), and answers from them. May be used from several threads.
+
+    A time is rclpy's or a message; None, or 0, is the newest that is known.
+    """
 
     def __init__(self, cache_time: Duration | None = None) -> None:
         self._keep = cache_time.nanoseconds if cache_time else round(DEFAULT_CACHE_TIME * SECOND)
@@ -86,7 +89,7 @@ class BufferCore:
         """
         with self._lock:
             self._check(target_frame, source_frame, function="lookup_transform")
-            moment = time.nanoseconds or self._newest_common(target_frame, source_frame)
+            moment = _nanoseconds(time) or self._newest_common(target_frame, source_frame)
             motion = self._motion(target_frame, source_frame, moment)
         return _message(motion, target_frame, source_frame, moment)
 
@@ -99,8 +102,8 @@ class BufferCore:
         """
         with self._lock:
             self._check(target_frame, source_frame, fixed_frame, function="lookup_transform_full")
-            then = source_time.nanoseconds or self._newest_common(fixed_frame, source_frame)
-            now = target_time.nanoseconds or self._newest_common(target_frame, fixed_frame)
+            then = _nanoseconds(source_time) or self._newest_common(fixed_frame, source_frame)
+            now = _nanoseconds(target_time) or self._newest_common(target_frame, fixed_frame)
             motion = self._motion(fixed_frame, source_frame, then).then(self._motion(target_frame, fixed_frame, now))
         return _message(motion, target_frame, source_frame, now)
 
@@ -244,8 +247,12 @@ def _attempt(lookup: Callable[[], TransformStamped]) -> tuple[bool, str]:
     return True, ""
 
 
-def _nanoseconds(stamp: TimeMessage) -> int:
-    return int(stamp.sec) * SECOND + int(stamp.nanosec)
+def _nanoseconds(time: Time | TimeMessage | None) -> int:
+    if time is None:
+        return 0
+    if isinstance(time, Time):
+        return int(time.nanoseconds)
+    return int(time.sec) * SECOND + int(time.nanosec)
 
 
 def _motion_of(transform: Transform) -> RigidMotion:

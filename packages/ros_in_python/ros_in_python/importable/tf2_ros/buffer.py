@@ -60,7 +60,7 @@ class Buffer(BufferCore, BufferInterface):  # type: ignore[misc]
         """
         if timeout:
             self.can_transform(target_frame, source_frame, time, timeout)
-        return self.lookup_transform_core(target_frame, source_frame, _as_time(time))
+        return self.lookup_transform_core(target_frame, source_frame, time)
 
     def lookup_transform_full(
         self,
@@ -74,9 +74,7 @@ class Buffer(BufferCore, BufferInterface):  # type: ignore[misc]
         """Return where `source_frame` was at `source_time`, in `target_frame` as that is at `target_time`."""
         if timeout:
             self.can_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
-        return self.lookup_transform_full_core(
-            target_frame, _as_time(target_time), source_frame, _as_time(source_time), fixed_frame
-        )
+        return self.lookup_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
 
     def can_transform(
         self,
@@ -87,7 +85,7 @@ class Buffer(BufferCore, BufferInterface):  # type: ignore[misc]
         return_debug_tuple: bool = False,
     ) -> Any:
         """Return whether there is a transform, after waiting up to `timeout`; as a tuple, also why not."""
-        answer = self._wait(lambda: self.can_transform_core(target_frame, source_frame, _as_time(time)), timeout)
+        answer = self._wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
         return answer if return_debug_tuple else answer[0]
 
     def can_transform_full(
@@ -102,9 +100,7 @@ class Buffer(BufferCore, BufferInterface):  # type: ignore[misc]
     ) -> Any:
         """Return whether there is a transform between two times, after waiting up to `timeout`."""
         answer = self._wait(
-            lambda: self.can_transform_full_core(
-                target_frame, _as_time(target_time), source_frame, _as_time(source_time), fixed_frame
-            ),
+            lambda: self.can_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame),
             timeout,
         )
         return answer if return_debug_tuple else answer[0]
@@ -139,16 +135,14 @@ class Buffer(BufferCore, BufferInterface):  # type: ignore[misc]
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Time) -> Future:
         """Return a future that gets the transform when it can be looked up."""
-        return self._future(lambda: self.lookup_transform_core(target_frame, source_frame, _as_time(time)))
+        return self._future(lambda: self.lookup_transform_core(target_frame, source_frame, time))
 
     def wait_for_transform_full_async(
         self, target_frame: str, target_time: Time, source_frame: str, source_time: Time, fixed_frame: str
     ) -> Future:
         """Return a future that gets the transform between two times when it can be looked up."""
         return self._future(
-            lambda: self.lookup_transform_full_core(
-                target_frame, _as_time(target_time), source_frame, _as_time(source_time), fixed_frame
-            )
+            lambda: self.lookup_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
         )
 
     def _future(self, look: Callable[[], TransformStamped]) -> Future:
@@ -171,13 +165,6 @@ class Buffer(BufferCore, BufferInterface):  # type: ignore[misc]
                 future.set_result(answer)
             with self._waiting_lock:
                 self._waiting.pop(future, None)
-
-
-def _as_time(time: Any) -> Time:
-    """Return a time that may be a message, or None for the newest, as an rclpy Time."""
-    if time is None:
-        return Time()
-    return time if isinstance(time, Time) else Time.from_msg(time)
 
 
 def _frames_service(node: Node, buffer: BufferCore) -> Any:
