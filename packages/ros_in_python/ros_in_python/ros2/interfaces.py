@@ -65,17 +65,13 @@ def _nested_type(line: str, package: str) -> str | None:
     return f"{(owner or package).split('/')[0]}/msg/{name}"
 
 
+#: A line up to its comment; a '#' in a quoted default does not begin one.
+_CODE = re.compile(r"""(?:[^#"']|"[^"]*"?|'[^']*'?)*""")
+
+
 def _without_comment(line: str) -> str:
-    """Return the line up to its comment; a '#' in a quoted default does not begin one."""
-    quote = None
-    for place, letter in enumerate(line):
-        if quote:
-            quote = None if letter == quote else quote
-        elif letter in "\"'":
-            quote = letter
-        elif letter == "#":
-            return line[:place].strip()
-    return line.strip()
+    code = _CODE.match(line)
+    return code[0].strip() if code else ""
 
 
 Kind = Literal["msg", "srv", "action"]

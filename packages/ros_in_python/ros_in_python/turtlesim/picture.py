@@ -5,26 +5,21 @@ from __future__ import annotations
 import io
 import math
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
-import rclpy
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Affine2D
-from rclpy.context import Context
 from rclpy.exceptions import InvalidServiceNameException
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import Trigger
 
 from groundwork.files import write_if_changed
+from ros_in_python.ros2.opening import open_graph
 from ros_in_python.turtlesim.events import DT, PIXELS_PER_UNIT, SIDE, Pen
 from ros_in_python.turtlesim.messages import Pose
 from ros_in_python.turtlesim.moving import moving_svg
@@ -201,50 +196,27 @@ def fetch(timeout_s: float = TIMEOUT_S, listen_s: float = LISTEN_S, node: str = 
 
     Raises:
         NoPictureError: if nothing is found or heard.
+        CommandError: if rclpy can't work in this environment.
     """
     namespace = node.rpartition("/")[0]
-    with _spinning() as (executor, ears):
-        heard = PoseListener(ears, f"{namespace}/turtle1/pose")
+    with open_graph(node_name="turtle_picture") as graph:
+        heard = PoseListener(graph.node, f"{namespace}/turtle1/pose")
         try:
-            client = ears.create_client(Trigger, f"{node}/picture")
+            client = graph.node.create_client(Trigger, f"{node}/picture")
         except InvalidServiceNameException as error:
             raise NoPictureError(f"{node!r} is not a valid node name: give one such as {NODE}") from error
+
+        def look(is_over: bool = False) -> bool:
+            heard.look()
+            return is_over
+
         start = time.monotonic()
-        while not client.service_is_ready() and time.monotonic() < start + timeout_s:
-            heard.look()
-            executor.spin_once(timeout_sec=0.02)
-        if client.service_is_ready():
+        if graph.spin_until(lambda: look(client.service_is_ready()), timeout_s):
             answer = client.call_async(Trigger.Request())
-            executor.spin_until_future_complete(answer, timeout_sec=_ANSWER_S)
+            graph.spin_until(answer.done, _ANSWER_S)
             return _read(node, answer.result() if answer.done() else None)
-        while time.monotonic() < start + listen_s:
-            heard.look()
-            executor.spin_once(timeout_sec=0.02)
+        graph.spin_until(look, start + listen_s - time.monotonic())
         return _heard(heard, node, time.monotonic() - start)
-
-
-@contextmanager
-def _spinning() -> Iterator[tuple[SingleThreadedExecutor, Node]]:
-    """Make a node with a context of its own."""
-    context = Context()
-    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
-    try:
-        ears = Node(
-            "turtle_picture",
-            context=context,
-            use_global_arguments=False,
-            start_parameter_services=False,
-            enable_rosout=False,
-        )
-        executor = SingleThreadedExecutor(context=context)
-        executor.add_node(ears)
-        try:
-            yield executor, ears
-        finally:
-            executor.shutdown()
-            ears.destroy_node()
-    finally:
-        context.try_shutdown()
 
 
 def _read(node: str, answer: Trigger.Response | None) -> WorldPicture:
