@@ -37,12 +37,12 @@ def middleware_wheel() -> tuple[str, bytes]:
     `MiddlewareUnavailable` if there is no middleware here, or colcon has built it for the ROS 2 that is sourced.
     """
     require_middleware()
-    found = library()
-    if not isinstance(found, Library) or not (found.folder / DESCRIPTION).is_file():
+    built = library()
+    if not isinstance(built, Library) or not (built.folder / DESCRIPTION).is_file():
         reason = "The grader's middleware was built by colcon, so it fits no other computer."
         raise MiddlewareUnavailable(f"{reason} Compile it for other computers: python -m rmw_lockstep.build")
     # Links are followed: a wheel has none.
-    files = {file.relative_to(found.folder).as_posix(): file.read_bytes() for file in _files(found.folder)}
+    files = {file.relative_to(built.folder).as_posix(): file.read_bytes() for file in _files(built.folder)}
     content = {f"{PREBUILT}/{name}": data for name, data in files.items()} | {f"{PREBUILT}/__init__.py": _INIT}
     version = f"{_VERSION}+{sources_digest()[:16]}"
     return wheel_file(PREBUILT.replace("_", "-"), version, _SUMMARY, "py3-none", content, {})

@@ -30,9 +30,9 @@ def argument_slips(name: str, function: Callable[..., Any], call: ast.Call) -> I
         return
     signature = inspect.signature(function)
     try:
-        bound = signature.bind(None, *call.args, **{str(one.arg): one.value for one in call.keywords})
+        bound = signature.bind(None, *call.args, **{str(keyword.arg): keyword.value for keyword in call.keywords})
     except TypeError as error:
-        takes = ", ".join(_shown(one) for one in list(signature.parameters.values())[1:])
+        takes = ", ".join(_shown(parameter) for parameter in list(signature.parameters.values())[1:])
         yield f"{name}: {error}", f"It is {name}({takes})."
         return
     for key, argument in bound.arguments.items():

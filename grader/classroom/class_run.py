@@ -63,16 +63,16 @@ def grade_class(exercise: Exercise, class_request: ClassRequest, console: Consol
         if to_decide and not class_request.skip:
             return QUESTIONS
         collected = replace(
-            collected, handed_in=tuple(one for one in collected.handed_in if one.student.id in submissions)
+            collected, handed_in=tuple(each for each in collected.handed_in if each.student.id in submissions)
         )
         with Results(class_request.out) as results, WorkerPool(Path(unpacked)) as workers:
             results.check_exercise(exercise.name)
             grading = grading_of(exercise, class_request.options, workers)
             with _backend(grading, class_request, partial(say, console)) as backend:
                 class_grading = ClassGrading(exercise, backend, results, adjuster, grading)
-                for one, error in unreadable:
-                    grade = replace(no_grade(grading.runner, "host-error", ""), submission=one.file.name)
-                    class_grading.give_up(Entry(one.student, one.file.name, grade), f"reading it: {error}")
+                for handed_in, error in unreadable:
+                    grade = replace(no_grade(grading.runner, "host-error", ""), submission=handed_in.file.name)
+                    class_grading.give_up(Entry(handed_in.student, handed_in.file.name, grade), f"reading it: {error}")
                 code = _graded(class_grading, grading, collected, submissions, class_request, console)
                 return code or (QUESTIONS if to_decide else DONE)
 

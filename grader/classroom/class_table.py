@@ -52,7 +52,7 @@ def by_row(
     questions = [
         Question(student, (skip.file,), "absent", skip.why) for student, skip in absent if student.id not in uploads
     ]
-    return [one for theirs in uploads.values() for one in _attempts(theirs)], skipped, questions
+    return [upload for theirs in uploads.values() for upload in _attempts(theirs)], skipped, questions
 
 
 def _time(row: dict[str, str], path: Path, place: str, zone: tzinfo | None) -> Time:

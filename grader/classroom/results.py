@@ -295,12 +295,13 @@ class ClassGrading:
         self, waiting: dict[str, StudentSubmission], done: dict[str, GradedSubmission], submissions: Mapping[str, Tries]
     ) -> Iterator[Entry]:
         """Store and yield the entries of students whose attempts are all graded; drop grades no longer needed."""
-        for one in [one for one in waiting.values() if all(str(file.path) in done for file in one.files)]:
-            del waiting[one.student.id]
-            graded = self._best(one, [done[str(file.path)] for file in one.files])
-            store = partial(self.keep, one, graded, submissions[one.student.id])
-            yield self._stored(Entry(one.student, one.file.name, graded.grade), store)
-        needed = {str(file.path) for one in waiting.values() for file in one.files}
+        ready = [each for each in waiting.values() if all(str(file.path) in done for file in each.files)]
+        for handed_in in ready:
+            del waiting[handed_in.student.id]
+            graded = self._best(handed_in, [done[str(file.path)] for file in handed_in.files])
+            store = partial(self.keep, handed_in, graded, submissions[handed_in.student.id])
+            yield self._stored(Entry(handed_in.student, handed_in.file.name, graded.grade), store)
+        needed = {str(file.path) for handed_in in waiting.values() for file in handed_in.files}
         for path in done.keys() - needed:
             del done[path]
 

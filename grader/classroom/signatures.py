@@ -58,7 +58,9 @@ def _failures(mistake: Mistake, grading: Grading) -> dict[str, Failure]:
     exercise = grading.runner.exercise
     digest = hashlib.sha256(reference_key(grading.runner).encode() + code).hexdigest()
     kept = cache_folder().parent / "mistakes" / f"{exercise.name}-{mistake.name}-{digest[:24]}.json"
-    stored = read_kept(kept, lambda content: {name: Failure(**one) for name, one in json.loads(content).items()})
+    stored = read_kept(
+        kept, lambda content: {name: Failure(**failure) for name, failure in json.loads(content).items()}
+    )
     if stored is not None:
         return stored
     grade = grading.grade(of_source(f"{mistake.name}.py", code, exercise))

@@ -72,7 +72,7 @@ def drawn_quantity(exercise: Exercise, grade: Grade, scenario: str) -> Quantity 
         if mine != its:
             for field, unit in topic.units.items():
                 return Quantity(field, unit, "value", "name", "", topic.name)
-    text = next((one.text for one in findings(grade, scenario)), "")
+    text = next((finding.text for finding in findings(grade, scenario)), "")
     runs = [of[scenario] for of in (grade.references, grade.recordings) if scenario in of]
     named = [topic for topic in exercise.outputs if topic.name in text]
     served = [

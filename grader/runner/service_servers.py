@@ -124,9 +124,9 @@ class ServiceServer:
 
 def unserved(ends: GraderSide, exercise: Exercise) -> tuple[Call, ...]:
     """Return the student's requests for which there was no server, of the services that the exercise declares."""
-    types = {one.name: one.type for one in exercise.of_role("client")}
+    types = {client.name: client.type for client in exercise.of_role("client")}
     everything = requests_in_order(ends.hub.unserved)
-    found = [asked for asked in everything if types.get(asked.client.name) == asked.client.type]
+    declared = [asked for asked in everything if types.get(asked.client.name) == asked.client.type]
     return tuple(
         Call(
             ends.at(asked.moment),
@@ -137,5 +137,5 @@ def unserved(ends: GraderSide, exercise: Exercise) -> tuple[Call, ...]:
             node=asked.node,
             served=False,
         )
-        for asked in found
+        for asked in declared
     )

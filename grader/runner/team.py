@@ -88,19 +88,19 @@ class Team:
 
     def output(self) -> str:
         """Return what all programs printed, one after another."""
-        return "".join(one.output() for one in (*self._stopped, *self._running.values()))
+        return "".join(program.output() for program in (*self._stopped, *self._running.values()))
 
     def poll(self) -> ProcessExit | None:
         """Return how a student's program ended by itself; once they were asked to end, how the last one did."""
         self._see_companions()
-        found: ProcessExit | None = None
+        first: ProcessExit | None = None
         for name, student in self._running.items():
             exit_ = student.poll()
             if exit_ is None and self._interrupted:
                 return None
-            if exit_ is not None and not found:
-                found, self.ended = exit_, name
-        return found
+            if exit_ is not None and not first:
+                first, self.ended = exit_, name
+        return first
 
     def wait(self, timeout_s: float) -> ProcessExit | None:
         """Wait for the end of the first program."""
@@ -123,9 +123,9 @@ class Team:
 
     def kill(self) -> ProcessExit:
         """Kill all; return the exit of the program that had ended by itself, or of the first."""
-        exits = {name: one.kill() for name, one in self._running.items()}
-        for one in self._companions:
-            one.kill()
+        exits = {name: program.kill() for name, program in self._running.items()}
+        for program in self._companions:
+            program.kill()
         if self.ended in exits:
             return exits[self.ended]
         return next(iter(exits.values()), None) or self._stopped[0].kill()

@@ -106,8 +106,8 @@ class Monitor:
         """Return the program's processes."""
         if self.dead.is_set():
             return set()
-        found = processes.descendants(self._init) | processes.descendants(self.pid)
-        return (found | ({self.pid} if self.exit is None else set())) - self._own_processes
+        everything = processes.descendants(self._init) | processes.descendants(self.pid)
+        return (everything | ({self.pid} if self.exit is None else set())) - self._own_processes
 
     def cpu_seconds(self) -> float:
         """Return the CPU seconds of all processes, including those that have ended."""
@@ -215,9 +215,9 @@ class Monitor:
         used = [processes.usage(pid) for pid in members]
         if time.monotonic() - self._since_s > self._limits.wall_s:
             self._kill("wall")
-        elif sum(one.threads for one in used) >= self._limits.processes:
+        elif sum(use.threads for use in used) >= self._limits.processes:
             self._kill("processes")
-        elif sum(one.resident_bytes for one in used) > self._limits.memory_bytes and self._memory_is_too_much(members):
+        elif sum(use.resident_bytes for use in used) > self._limits.memory_bytes and self._memory_is_too_much(members):
             self._kill("memory")
         elif self.cpu_seconds() > self._limits.cpu_s:
             self._kill("cpu")

@@ -151,26 +151,26 @@ class Resolver:
 
     # --- types
 
-    def _typed(self, given: Typed, name: str, kind: str, declared: str | None, table: str) -> Typed:
-        """Return `given` with its type, which is of this kind."""
-        type_name = given.type or declared
+    def _typed(self, step: Typed, name: str, kind: str, declared: str | None, table: str) -> Typed:
+        """Return `step` with its type, which is of this kind."""
+        type_name = step.type or declared
         if not type_name:
             fix = f"Declare it in exercise.toml under [[{table}]], or write its type after its name."
-            self._fault(given.line, f"the type of {name} is not known", fix)
-        found = _TYPE.fullmatch(type_name)
-        if not found:
+            self._fault(step.line, f"the type of {name} is not known", fix)
+        match = _TYPE.fullmatch(type_name)
+        if not match:
             fix = f"Write a type as {_EXAMPLES[kind]!r}."
-            self._fault(given.line, f"{type_name!r} is not the name of a {_KINDS[kind]} type", fix)
-        if found["kind"] != kind:
+            self._fault(step.line, f"{type_name!r} is not the name of a {_KINDS[kind]} type", fix)
+        if match["kind"] != kind:
             fix = f"Write a type as {_EXAMPLES[kind]!r}."
-            article = "an" if found["kind"] == "action" else "a"
-            text = f"{type_name!r} is the type of {article} {_KINDS[found['kind']]}, but {name} needs that of a "
-            self._fault(given.line, text + _KINDS[kind], fix)
+            article = "an" if match["kind"] == "action" else "a"
+            text = f"{type_name!r} is the type of {article} {_KINDS[match['kind']]}, but {name} needs that of a "
+            self._fault(step.line, text + _KINDS[kind], fix)
         package, _, rest = type_name.partition("/")
         if rest not in self._interfaces_of(package):
             fix = "Check its name. If the course has just defined it, run: spinbook build"
-            self._fault(given.line, f"there is no type {type_name} here", fix)
-        return replace(given, type=type_name)
+            self._fault(step.line, f"there is no type {type_name} here", fix)
+        return replace(step, type=type_name)
 
     def _interfaces_of(self, package: str) -> frozenset[str]:
         """Return the package's types; cached for all messages of a scenario, because this reads files."""
@@ -223,9 +223,11 @@ class Resolver:
 
     def _request(self, step: Request) -> Request:
         declared = self._type_of(step.service, self._exercise.of_role("service"))
-        found = self._typed(step, step.service, "srv", declared, "service")
-        kind = message_class(found.type).Request
-        return replace(found, fields=self._check(step.line, step.service, kind, step.fields, f"{found.type}_Request"))
+        request = self._typed(step, step.service, "srv", declared, "service")
+        kind = message_class(request.type).Request
+        return replace(
+            request, fields=self._check(step.line, step.service, kind, step.fields, f"{request.type}_Request")
+        )
 
     def _transition(self, step: Transition) -> Request:
         if step.name not in TRANSITIONS:
@@ -236,9 +238,9 @@ class Resolver:
 
     def _goal(self, step: SendGoal) -> SendGoal:
         declared = self._type_of(step.action, self._exercise.of_role("action"))
-        found = self._typed(step, step.action, "action", declared, "action")
-        kind = message_class(found.type).Goal
-        return replace(found, fields=self._check(step.line, step.action, kind, step.fields, f"{found.type}_Goal"))
+        goal = self._typed(step, step.action, "action", declared, "action")
+        kind = message_class(goal.type).Goal
+        return replace(goal, fields=self._check(step.line, step.action, kind, step.fields, f"{goal.type}_Goal"))
 
     def _see_goal(self, step: CancelGoal) -> None:
         before = [one for one in self._scenario.steps if isinstance(one, SendGoal) and one.at <= step.at]
@@ -284,7 +286,7 @@ class Resolver:
     def _see_peer(self, step: Leave | ComeBack) -> None:
         known = [message.topic for message in self._scenario.messages]
         known += [server.name for server in self._scenario.servers]
-        known += [one.name for one in self._scenario.steps if isinstance(one, Subscribe)]
+        known += [subscriber.name for subscriber in self._scenario.steps if isinstance(subscriber, Subscribe)]
         if step.name not in known:
             fix = f"There are: {', '.join(dict.fromkeys(known)) or 'none'}."
             self._fault(step.line, f"nothing here is called {step.name!r}", fix)

@@ -54,14 +54,14 @@ def ensure(definitions: Sequence[Definition], store: Path) -> CompiledPackages:
     If two processes need the same packages, one waits for the other. Raises `DefinitionError` if a definition is wrong,
     and `CompileError` if this machine can't compile.
     """
-    found = keys(definitions)
-    prefix = _prefix(found, store)
-    packages = tuple(found)
+    package_keys = keys(definitions)
+    prefix = _prefix(package_keys, store)
+    packages = tuple(package_keys)
     if not prefix.is_dir():
         _check(definitions)
         with _locked(store):
             if not prefix.is_dir():
-                _compile(definitions, found, prefix)
+                _compile(definitions, package_keys, prefix)
                 _prune(store, prefix)
                 return CompiledPackages(prefix, packages, fresh=True)
     return CompiledPackages(prefix, packages)

@@ -67,17 +67,17 @@ def build(announce: Callable[[], None] = lambda: None) -> Library | UnavailableL
     Of several processes one compiles, and the others wait for it. `announce` is called before that. Raises `BuildError`
     if the compiler or the linker fails.
     """
-    found = library()
+    available = library()
     ros = installed_ros()
-    if isinstance(found, Library) or ros is None or ros.lacks_middleware or not sources() or compiler() is None:
-        return found
+    if isinstance(available, Library) or ros is None or ros.lacks_middleware or not sources() or compiler() is None:
+        return available
     root = next((root for root in library_folders() if _writable(root)), None)
     if root is None:
         return UnavailableLibrary("no folder for it is writable", "Set HOME to a folder of your own.")
     announce()
     with _build_lock(root):
-        found = library()  # another process may have compiled it meanwhile
-        return found if isinstance(found, Library) else Library(_compiled(ros, root), ros.prefix)
+        available = library()  # another process may have compiled it meanwhile
+        return available if isinstance(available, Library) else Library(_compiled(ros, root), ros.prefix)
 
 
 def compile_into(folder: Path, ros: Ros) -> None:
