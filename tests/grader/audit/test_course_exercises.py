@@ -34,28 +34,12 @@ def to_fix(result: Audit) -> str:
 @pytest.mark.soak
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize("folder", EXERCISES, ids=lambda folder: folder.name)
-def test_each_mistake_loses_exactly_the_checks_that_it_names(
-    folder: Path, workers_with_interfaces: WorkerPool, cache: Path
-) -> None:
-    """All of them, both ways; right solutions get full marks, and the starter nothing: `spinbook audit --solutions`."""
-    result = audit(load(folder), Options(), workers_with_interfaces, Silence(), most=0, seeds=1)
-    assert not result.problems, to_fix(result)
-
-
-@pytest.mark.soak
-@pytest.mark.timeout(3600)
-@pytest.mark.parametrize("folder", EXERCISES, ids=lambda folder: folder.name)
 def test_the_whole_audit_finds_nothing_to_fix(folder: Path, workers_with_interfaces: WorkerPool, cache: Path) -> None:
+    """Right solutions get full marks, the starter nothing, and each mistake loses exactly the checks that it names."""
     result = audit(load(folder), Options(), workers_with_interfaces, Silence())
     assert not result.problems, to_fix(result)
     assert result.score >= 0.95
-
-
-@pytest.mark.soak
-@pytest.mark.timeout(3600)
-def test_joint_velocity_has_enough_mutants(workers_with_interfaces: WorkerPool, cache: Path) -> None:
-    result = audit(load(ROOT / "exercises" / "joint_velocity"), Options(), workers_with_interfaces, Silence())
-    assert result.different >= 150
+    assert result.different >= (150 if folder.name == "joint_velocity" else 1)
 
 
 #: Check of joint_velocity -> its file, and a mistake that no other check catches.
