@@ -10,6 +10,7 @@ from itertools import zip_longest
 from pathlib import Path
 
 from grader.classroom.submissions import SubmissionsError
+from grader.report.pages import points
 from grader.report.printable import printable
 
 Cell = str | float | None
@@ -90,7 +91,7 @@ def _by_column(
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
-    """Return header and rows as CSV (RFC 4180): quoted if needed, numbers formatted by `number`, None as an empty cell.
+    """Return header and rows as CSV (RFC 4180): quoted if needed, numbers formatted by `points`, None as an empty cell.
 
     A text that a spreadsheet would treat as a formula gets an apostrophe in front. Control characters are replaced.
     """
@@ -98,14 +99,9 @@ def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
     writer = csv.writer(out)
     writer.writerow([_text(name) for name in header])
     writer.writerows(
-        [[number(cell) if isinstance(cell, (int, float)) else _text(cell) for cell in row] for row in rows]
+        [[points(cell) if isinstance(cell, (int, float)) else _text(cell) for cell in row] for row in rows]
     )
     return out.getvalue()
-
-
-def number(value: float) -> str:
-    """Return points with at most two decimals, as learning platforms store them: 81, 80.5, 33.33."""
-    return f"{value:.2f}".rstrip("0").rstrip(".")
 
 
 def _text(cell: str | None) -> str:

@@ -85,8 +85,8 @@ def _allowed(text: str) -> str:
 
 
 def points(value: float) -> str:
-    """Return points without needless digits: 81, 80.5, 33.33."""
-    return f"{round(value, 2):.2f}".rstrip("0").rstrip(".")
+    """Return points with at most two decimals, as learning platforms store them: 81, 80.5, 33.33."""
+    return f"{value:.2f}".rstrip("0").rstrip(".")
 
 
 def moment(value: datetime | None) -> str:

@@ -15,10 +15,11 @@ from html import escape
 
 from grader.classroom.formats.format import Export, ExportTable, Format, Interpretation, Parts, UploadedFile, person
 from grader.classroom.formats.moodle_languages import COLUMNS, LANGUAGE, LANGUAGES
-from grader.classroom.tables import Cell, csv_text, number
+from grader.classroom.tables import Cell, csv_text
 from grader.exercise.exercise import Exercise
 from grader.grading.grade import Entry, Student
 from grader.report.checks import shown_checks
+from grader.report.pages import points
 
 NAME = re.compile(r"(?P<name>.+?)(?:_(?P<number>\d+))?_assignsubmission_(?P<kind>[a-z]+)(?:_(?P<file>.*))?", re.DOTALL)
 WORKSHEET = ("Identifier", "Full name")
@@ -66,7 +67,7 @@ def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = N
     language = next((one for entry in entries if (one := entry.student.lms.get(LANGUAGE))), "")
     rows: list[list[Cell]] = []
     for entry in entries:
-        final, points = entry.final, entry.grade.points
+        final, most = entry.final, entry.grade.points
         cells: dict[str, Cell] = {
             "Identifier": "",
             "Full name": entry.student.name,
@@ -76,8 +77,8 @@ def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = N
             "Last modified (submission)": "-",
             "Last modified (grade)": "-",
             **{name: value for name, value in entry.student.lms.items() if name in COLUMNS},
-            "Grade": None if final is None else min(final, points),
-            "Maximum Grade": points,
+            "Grade": None if final is None else min(final, most),
+            "Maximum Grade": most,
             "Feedback comments": _comment(entry),
         }
         rows.append([cells[column] for column in COLUMNS])
@@ -94,7 +95,7 @@ def _comment(entry: Entry) -> str:
     grade, final = entry.grade, entry.final
     if final is None:
         return ""
-    lines = [f"{number(final)} of {number(grade.points)} points."]
+    lines = [f"{points(final)} of {points(grade.points)} points."]
     lines += [f"{a.points:+g}: {a.reason}" for a in entry.adjustments]
     if grade.message:
         lines.append(grade.message[:500])
