@@ -31,16 +31,15 @@ class Stroke:
     _length: float = field(default=0.0, repr=False)
     _door: SwingDoor = field(default_factory=lambda: SwingDoor([TOLERANCE / math.sqrt(2)] * 2), repr=False)
 
+    def __post_init__(self) -> None:
+        self._door.replaces_latest(self._length, self.points[-1])
+
     def extend(self, point: Point) -> None:
         """Continue to `point` in a straight line."""
-        before = self._length
         self._length += math.dist(self.points[-1], point)
-        if len(self.points) > 1 and self._door.may_end(self._length, point):
-            self.points[-1] = point
-        else:
-            self._door.open(before, self.points[-1])
-            self.points.append(point)
-        self._door.passes(self._length, point)
+        if self._door.replaces_latest(self._length, point):
+            self.points.pop()
+        self.points.append(point)
 
 
 class Trail:
@@ -114,16 +113,10 @@ class Track:
             before = self.samples[-1].theta
             theta = before + math.remainder(theta - before, 2 * math.pi)
         sample = TrackSample(tick, x, y, theta, None if pen is None or pen.off else pen)
-        values = (x, y, theta)
-        if len(self.samples) > 1 and sample.pen == self.samples[-1].pen and self._door.may_end(tick, values):
-            self.samples[-1] = sample
-        else:
-            if self.samples:
-                last = self.samples[-1]
-                self._door.open(last.tick, (last.x, last.y, last.theta))
-            self.samples.append(sample)
-        if len(self.samples) > 1:
-            self._door.passes(tick, values)
+        has_other_pen = bool(self.samples) and sample.pen != self.samples[-1].pen
+        if self._door.replaces_latest(tick, (x, y, theta), is_corner=has_other_pen):
+            self.samples.pop()
+        self.samples.append(sample)
         if len(self.samples) > MAX_SAMPLES:
             del self.samples[:_TRACK_FORGET]
             self.forgotten = True
