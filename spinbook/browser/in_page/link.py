@@ -12,14 +12,15 @@ import time
 from collections.abc import Iterator
 from typing import Any, SupportsFloat
 
-from rcl_python.link import Frame
+from rcl_python import participant
+from rcl_python.link import Frame, LocalLink
 from spinbook.browser.in_page import threads
 
 #: A program that never waits lets the page run after this time (s).
 _YIELD_AFTER_S = 0.02
 
 
-class PageLink:
+class PageLink(LocalLink):
     """The link of one worker. `page` is the worker's JavaScript side (worker.js)."""
 
     def __init__(self, page: Any) -> None:
@@ -56,18 +57,8 @@ class PageLink:
             self.wait(0)
         return 0
 
-    def steady(self) -> int:
-        """Return the steady clock (ns)."""
-        return time.monotonic_ns()
-
-    def system(self) -> int:
-        """Return the system clock (ns since the epoch)."""
-        return time.time_ns()
-
     def sleep(self, seconds: SupportsFloat) -> None:
         """Sleep as time.sleep does; a signal whose handler raises ends it."""
-        from rcl_python import participant
-
         until = time.monotonic() + float(seconds)
         while (left := until - time.monotonic()) > 0:
             self._pause(int(left * 1e9))
@@ -75,7 +66,5 @@ class PageLink:
 
     def deliver_signals(self) -> None:
         """Handle the signals that have arrived."""
-        from rcl_python import participant
-
         while (name := self._page.signal()) is not None:
             participant.current().on_signal(name)

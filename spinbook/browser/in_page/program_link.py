@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 import threading
 from collections.abc import Callable, Iterator
+from dataclasses import fields
 from typing import SupportsFloat
 
 from rcl_python import participant
@@ -52,14 +53,13 @@ class ProgramLink:
             return
         thread = self.scheduler.number()
         self._activity += 1
-        for kind, payload in _encoded(frame, data, (self._connection.handled, self._now, thread)):
-            try:
-                self._handle(kind, payload)
-            except Exception as fault:
-                # The hub's thread raises it; the program ends here.
-                self._turns.fault = fault
-                self._turns.let_hub_go_on()
-                self.deliver_signals()
+        try:
+            self._handle(*_encoded(frame, data, (self._connection.handled, self._now, thread)))
+        except Exception as fault:
+            # The hub's thread raises it; the program ends here.
+            self._turns.fault = fault
+            self._turns.let_hub_go_on()
+            self.deliver_signals()
 
     def keep(self, sender: EndpointInfo) -> None:
         """Count a message that stays inside the program; report to the hub when there are too many."""
@@ -202,28 +202,27 @@ class ProgramLink:
 # --- frames
 
 
-def _encoded(frame: Frame, data: bytes, moment: tuple[int, int, int]) -> Iterator[tuple[str, bytes]]:
-    """Yield kind and payload of each frame for the hub. `moment` has the handled frames, the time, and the thread."""
+def _encoded(frame: Frame, data: bytes, moment: tuple[int, int, int]) -> tuple[str, bytes]:
+    """Return kind and payload of a frame for the hub. `moment` has the handled frames, the time, and the thread."""
     op = frame["op"]
     if op == "hello":
-        yield "J", b""
-    elif op == "node":
-        yield "N", frames.to_node(frames.NodeFrame(_id(frame["key"]), frame["name"], frame["namespace"]))[_HEADER:]
-    elif op == "endpoint":
-        yield "E", frames.to_endpoint(_endpoint(frame))[_HEADER:]
-    elif op == "node_gone":
-        yield "n", frames.to_gone(b"n", _id(frame["key"]))[_HEADER:]
-    elif op == "endpoint_gone":
-        yield "e", frames.to_gone(b"e", _id(frame["gid"]))[_HEADER:]
-    elif op == "message":
+        return "J", b""
+    if op == "node":
+        return "N", frames.to_node(frames.NodeFrame(_id(frame["key"]), frame["name"], frame["namespace"]))[_HEADER:]
+    if op == "endpoint":
+        return "E", frames.to_endpoint(_endpoint(frame))[_HEADER:]
+    if op == "node_gone":
+        return "n", frames.to_gone(b"n", _id(frame["key"]))[_HEADER:]
+    if op == "endpoint_gone":
+        return "e", frames.to_gone(b"e", _id(frame["gid"]))[_HEADER:]
+    if op == "message":
         only = _id(frame["to"][0]) if len(frame["to"]) == 1 else 0
-        yield "D", frames.DATA.pack(_id(frame["from"]), only, frame["sent"], *moment) + data
-    elif op == "kept":
-        yield "K", frames.KEPT.pack(_id(frame["from"]), frame["n"], *moment)
-    elif op == "request":
-        yield "Q", frames.CALL.pack(_id(frame["from"]), frame["n"], frame["sent"], *moment) + data
-    elif op == "response":
-        yield "R", frames.CALL.pack(_id(frame["to"][0]), frame["n"], frame["sent"], *moment) + data
+        return "D", frames.DATA.pack(_id(frame["from"]), only, frame["sent"], *moment) + data
+    if op == "kept":
+        return "K", frames.KEPT.pack(_id(frame["from"]), frame["n"], *moment)
+    if op == "request":
+        return "Q", frames.CALL.pack(_id(frame["from"]), frame["n"], frame["sent"], *moment) + data
+    return "R", frames.CALL.pack(_id(frame["to"][0]), frame["n"], frame["sent"], *moment) + data
 
 
 def _id(key: str) -> int:
@@ -235,22 +234,21 @@ def _key(number: int) -> str:
     return f"{number >> 32}.{number & 0xFFFFFFFF}"
 
 
+#: What a profile means that does not say it.
+_UNSAID = {
+    "history": KEEP_LAST,
+    "liveliness": AUTOMATIC,
+    "deadline": INFINITE,
+    "lifespan": INFINITE,
+    "lease": INFINITE,
+}
+
+
 def _endpoint(frame: Frame) -> frames.EndpointFrame:
-    declared = frame["qos"]
-    qos = QosPolicies(
-        declared["history"] or KEEP_LAST,
-        declared["depth"],
-        declared["reliability"],
-        declared["durability"],
-        declared["liveliness"] or AUTOMATIC,
-        declared["deadline"] or INFINITE,
-        declared["lifespan"] or INFINITE,
-        declared["lease"] or INFINITE,
-    )
-    kind = _KINDS.index(frame["kind"])
-    return frames.EndpointFrame(
-        _id(frame["gid"]), kind, _id(frame["node"]), frame["topic"], frame["type"], NO_HASH, qos
-    )  # fmt: skip
+    names = [policy.name for policy in fields(QosPolicies)]
+    qos = QosPolicies(**{name: frame["qos"][name] or _UNSAID.get(name, 0) for name in names})
+    gid, kind, node = _id(frame["gid"]), _KINDS.index(frame["kind"]), _id(frame["node"])
+    return frames.EndpointFrame(gid, kind, node, frame["topic"], frame["type"], NO_HASH, qos)
 
 
 def _decoded(kind: int, payload: bytes, number: int) -> tuple[Frame, bytes] | None:
