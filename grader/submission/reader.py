@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -105,19 +106,13 @@ def of_content(name: str, content: bytes, exercise: Exercise) -> Submission:
     """Return the submission in a file with this name and content."""
     if kind_of_content(content, kind_of(name)) == "archive":
         return of_upload(name, content, exercise)
-    try:
-        return of_code(name, code_of(name, content, exercise), exercise, _digest(content))
-    except (Unreadable, AmbiguousProgram) as error:
-        return _without_program(name, _digest(content), exercise, error)
+    return _read(name, _digest(content), exercise, lambda: code_of(name, content, exercise))
 
 
 def of_source(name: str, code: bytes, exercise: Exercise) -> Submission:
     """Return the submission of this Python source. It always runs under the exercise's file name."""
-    try:
-        return of_code(name, code_of_python(code, exercise), exercise, _digest(code))
-    except Unreadable as error:
-        source = code.decode("utf-8", errors="replace")
-        return replace(_without_program(name, _digest(code), exercise, error), source=source)
+    submission = _read(name, _digest(code), exercise, lambda: code_of_python(code, exercise))
+    return submission if submission.program else replace(submission, source=code.decode("utf-8", errors="replace"))
 
 
 def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:
@@ -126,16 +121,15 @@ def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:
         upload = unpack(content)
     except Unreadable as error:
         return _without_program(name, _digest(content), exercise, error)
-    warning = _warning(upload, exercise)
-    try:
-        read = of_code(name, _code(upload, exercise), exercise, _digest(content))
-    except (Unreadable, AmbiguousProgram) as error:
-        return replace(_without_program(name, _digest(content), exercise, error), warning=warning)
+    read = _read(name, _digest(content), exercise, lambda: _code(upload, exercise))
+    read = replace(read, warning=_warning(upload, exercise))
+    if not read.program:
+        return read
     versions = upload.record.get("versions")
     python = versions.get("python", "") if isinstance(versions, dict) else ""
     newer = newer_than_this(python) if isinstance(python, str) else ""
     notes = (*read.notes, *_hints_taken(upload, exercise))
-    return replace(read, warning=warning, notes=notes, newer_python=newer or read.newer_python)
+    return replace(read, notes=notes, newer_python=newer or read.newer_python)
 
 
 def _hints_taken(upload: Upload, exercise: Exercise) -> tuple[str, ...]:
@@ -177,11 +171,15 @@ def _folder(place: str, path: Path, exercise: Exercise) -> Submission:
     total = hashlib.sha256()
     for name, data in sorted(contents.files.items()):
         total.update(f"{name}\0{len(data)}\0".encode(errors="replace") + data)
+    return _read(place, total.hexdigest(), exercise, lambda: code_of_files(contents, exercise, path.resolve().name))
+
+
+def _read(name: str, digest: str, exercise: Exercise, code: Callable[[], Code]) -> Submission:
+    """Return the submission of the program that `code` reads, or of none, with what is wrong."""
     try:
-        code = code_of_files(contents, exercise, path.resolve().name)
-        return of_code(place, code, exercise, total.hexdigest())
+        return of_code(name, code(), exercise, digest)
     except (Unreadable, AmbiguousProgram) as error:
-        return _without_program(place, total.hexdigest(), exercise, error)
+        return _without_program(name, digest, exercise, error)
 
 
 def of_code(name: str, code: Code, exercise: Exercise, digest: str = "") -> Submission:

@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 from grader.exercise.exercise import Exercise, ExerciseError
-from grader.exercise.loading import NoExercise, find, load
+from grader.exercise.loading import find, load
 from grader.exercise.starter import starter
 from grader.grading.grade import Grade
 from grader.grading.grading import grade_submission
@@ -22,7 +22,7 @@ from grader.report.hint_steps import taken, taken_in_page
 from grader.sandbox.program import SandboxUnavailable
 from grader.submission.file_kinds import can_be_read, kind_of
 from grader.submission.launch_program import is_called
-from grader.submission.reader import NoSubmission, read
+from grader.submission.reader import read
 from grader.submission.submission import Submission
 from grader.submission.upload import pack
 from grader.workers.pool import HostFault
@@ -204,20 +204,14 @@ def remember_student(name: str, folder: Path) -> str:
 
 def exercise_named(name: str) -> Exercise:
     """Return the exercise `name` of the course in this folder. Raises `UsageError` and `ExerciseError`."""
-    try:
-        return load(find(name, Path.cwd()))
-    except NoExercise as error:
-        raise click.UsageError(str(error)) from None
+    return load(find(name, Path.cwd()))
 
 
 def candidate_in(file: Path, exercise: Exercise) -> HandInCandidate:
     """Return the code in the file that the student named. Raises `UsageError` and `SpinbookError`."""
     if not os.path.lexists(file) and not can_be_read(file.name):
         raise click.UsageError(f"{file}: give a notebook (.ipynb), a Python file (.py), an archive or a folder.")
-    try:
-        submission = read(str(file), exercise)
-    except NoSubmission as error:
-        raise click.UsageError(str(error)) from None
+    submission = read(str(file), exercise)
     if submission.program is None:
         raise SpinbookError(_no_program(file, submission))
     return HandInCandidate(file, submission, file.name)
