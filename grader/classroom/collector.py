@@ -12,7 +12,7 @@ from pathlib import Path
 
 from grader.classroom.archive import unpacked, walk
 from grader.classroom.class_table import by_row
-from grader.classroom.formats.format import UploadedFile
+from grader.classroom.formats.format import Export, UploadedFile
 from grader.classroom.formats.per_student import without_suffix
 from grader.classroom.formats.registry import PLAIN
 from grader.classroom.groups import Attempt, Group, Unit, in_groups
@@ -85,7 +85,7 @@ def _found(source: Path, exercise: Exercise, unpack_into: Path, options: Collect
     if not files:
         return ClassFiles("", (), left_out)
     root = source.resolve().name if source.is_dir() else without_suffix(source.name)
-    recognition = Recogniser(files, root, exercise, options.zone).recognise(options.format)
+    recognition = Recogniser(Export(files, root, exercise, options.zone)).recognise(options.format)
     if not source.is_dir() and len(files) == 1 and recognition.form is PLAIN:
         _refuse_class_within(source.name, next(iter(files.values())), exercise, unpack_into / "within")
     folder = f", in {'/'.join(recognition.inside)}/" if recognition.inside else ""
@@ -112,7 +112,7 @@ def _refuse_class_within(around: str, only: File, exercise: Exercise, unpack_int
     unpack_into.mkdir()
     try:
         inner = {tuple(one.name.split("/")): one for one in unpacked(only.path, unpack_into) if isinstance(one, File)}
-        recognition = Recogniser(inner, without_suffix(only.name), exercise, None).recognise()
+        recognition = Recogniser(Export(inner, without_suffix(only.name), exercise, None)).recognise()
     except SubmissionsError:
         return  # one student's, then, who gets a row that says what is wrong with it
     if len(recognition.fits) > 1:

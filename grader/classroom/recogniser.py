@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from datetime import tzinfo
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 from grader.classroom.formats.format import Export, Format, Parts, UploadedFile
 from grader.classroom.formats.registry import FORMATS, PLAIN, PLATFORMS
 from grader.classroom.submissions import File, SubmissionsError
-from grader.exercise.exercise import Exercise
 from grader.submission.file_kinds import kind_of
 
 #: The kinds of files that can be submissions.
@@ -56,12 +54,9 @@ class Recognition:
 
 @dataclass(frozen=True)
 class Recogniser:
-    """Recognises the format of a class's files, given by path in a folder or zip called `root`; see `Export`."""
+    """Recognises the format of a class's files, which are those of an export in some format."""
 
-    files: Mapping[Parts, File]
-    root: str
-    exercise: Exercise
-    zone: tzinfo | None
+    export: Export
 
     def recognise(self, name: str = "") -> Recognition:
         """Return the files as understood by the format `name`, or by the one that fits nearly all of them.
@@ -96,14 +91,14 @@ class Recogniser:
 
     def _read(self, form: Format, inside: Parts) -> Recognition | None:
         skip = len(inside)
-        below = {parts[skip:]: file for parts, file in self.files.items() if parts[:skip] == inside}
-        root = inside[-1] if inside else self.root
-        understand = form.read(Export(below, root, self.exercise, self.zone))
+        below = {parts[skip:]: file for parts, file in self.export.files.items() if parts[:skip] == inside}
+        root = inside[-1] if inside else self.export.root
+        understand = form.read(replace(self.export, files=below, root=root))
         if not understand:
             return None
         places = [(parts, file, understand(parts)) for parts, file in below.items()]
         misfits = [(parts[0], file) for parts, file, place in places if place is None]
-        outside = [(parts, file) for parts, file in self.files.items() if parts[:skip] != inside]
+        outside = [(parts, file) for parts, file in self.export.files.items() if parts[:skip] != inside]
         tops = [(parts[:skip][-1], file) for parts, file in outside]
         misfits += [(top, file) for top, file in tops if top not in form.next_to]
         others = tuple(file for top, file in tops if top in form.next_to)
@@ -122,20 +117,22 @@ class Recogniser:
         inside: Parts = ()
         while True:
             yield inside
-            entries = {one for one in self._entries(inside) if (*inside, one) not in self.files or can_be_graded(one)}
-            if len(entries) != 1 or (*inside, *entries) in self.files:
+            entries = {
+                top for top in self._entries(inside) if (*inside, top) not in self.export.files or can_be_graded(top)
+            }
+            if len(entries) != 1 or (*inside, *entries) in self.export.files:
                 return
             inside = (*inside, *entries)
 
     def _entries(self, inside: Parts) -> set[str]:
-        return {parts[len(inside)] for parts in self.files if parts[: len(inside)] == inside}
+        return {parts[len(inside)] for parts in self.export.files if parts[: len(inside)] == inside}
 
     def _class_folder(self) -> Parts:
         """Return the lone folder around a whole class; a lone folder around one student's work does not count."""
         deepest = list(self._lone_folders())[-1]
         skip = len(deepest)
-        with_work = {parts[skip] for parts in self.files if len(parts) > skip and can_be_graded(parts[-1])}
-        is_package = any(parts[-1] in PACKAGE for parts in self.files)
+        with_work = {parts[skip] for parts in self.export.files if len(parts) > skip and can_be_graded(parts[-1])}
+        is_package = any(parts[-1] in PACKAGE for parts in self.export.files)
         return deepest if len(with_work) > 1 and not is_package else ()
 
 
