@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from grader.submission.notebook import read_notebook
 from grader.submission.problems import Unreadable
 from groundwork.problem import Problem
 from interface_compiler.definition import Definition
-from spinbook.chapter.chapter import ChapterCell
+from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.complete_program import join
 from spinbook.chapter.fence import interface_path
 from spinbook.chapter.python_code import CodeError
@@ -172,24 +172,7 @@ def _of_notebooks(folder: Path) -> PackageSources:
 
 def course_modules(course: Course) -> list[Module]:
     """Return every node cell of the course as a module. Raises SpinbookError if two chapters' modules clash."""
-    first: dict[str, tuple[Path, ChapterCell]] = {}
-    problems: list[Problem] = []
-    for reading in read_all(course):
-        problems += [problem for problem in reading.problems if problem.is_error]
-        for cell in reading.chapter.nodes if reading.chapter else ():
-            assert cell.name is not None
-            assert reading.chapter is not None
-            file, known = first.setdefault(cell.name, (reading.chapter.file, cell))
-            if file == reading.chapter.file:
-                # The chapter shows the file several times: the last version counts.
-                first[cell.name] = (file, cell)
-            elif known.whole != cell.whole:
-                found = f"the node `{cell.name}` is also defined in {file}:{known.line}, with other code."
-                fix = "Give one of them another file name: the package can hold only one module with each name."
-                problems.append(Problem(reading.chapter.file, cell.line, found, fix))
-    if problems:
-        raise SpinbookError(*problems)
-    return [Module(name, cell.whole) for name, (_, cell) in sorted(first.items())]
+    return [Module(name, code) for name, code in _texts(course, "node", lambda chapter: chapter.nodes).items()]
 
 
 def course_files(course: Course) -> dict[str, str]:
@@ -197,15 +180,26 @@ def course_files(course: Course) -> dict[str, str]:
 
     Raises SpinbookError if two chapters' files clash.
     """
+    texts = _texts(course, "file", lambda chapter: chapter.files)
+    return {name: text.rstrip("\n") + "\n" for name, text in texts.items()}
+
+
+def _texts(course: Course, what: str, cells_of: Callable[[Chapter], Iterable[ChapterCell]]) -> dict[str, str]:
+    """Return the texts of these cells of the course by their names, sorted. Raises SpinbookError."""
     first: dict[str, tuple[Path, ChapterCell]] = {}
-    for reading in read_all(course):
-        for cell in reading.chapter.files if reading.chapter else ():
-            assert cell.name is not None
-            assert reading.chapter is not None
-            file, known = first.setdefault(cell.name, (reading.chapter.file, cell))
-            if file == reading.chapter.file:
-                first[cell.name] = (file, cell)
-            elif known.source != cell.source:
-                found = f"the file `{cell.name}` is also defined in {file}:{known.line}, with other text."
-                raise SpinbookError(Problem(reading.chapter.file, cell.line, found, "Give one of them another name."))
-    return {name: cell.source.rstrip("\n") + "\n" for name, (_, cell) in sorted(first.items())}
+    readings = list(read_all(course))
+    problems = [problem for reading in readings for problem in reading.problems if problem.is_error]
+    for chapter in (reading.chapter for reading in readings if reading.chapter):
+        for cell in cells_of(chapter):
+            name = cell.name or ""
+            file, known = first.setdefault(name, (chapter.file, cell))
+            if file == chapter.file:
+                # The chapter shows the file several times: the last version counts.
+                first[name] = (file, cell)
+            elif known.whole != cell.whole:
+                problem = f"the {what} `{name}` is also defined in {file}:{known.line}, with other text."
+                fix = "Give one of them another name: the package can hold only one file with each name."
+                problems.append(Problem(chapter.file, cell.line, problem, fix))
+    if problems:
+        raise SpinbookError(*problems)
+    return {name: cell.whole for name, (_, cell) in sorted(first.items())}

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from xml.sax.saxutils import escape, quoteattr
+from dataclasses import dataclass, replace
 
 from interface_compiler.checks import dependencies
 from interface_compiler.definition import Definition
 from ros_in_python.ros2 import ament_python
-from ros_in_python.ros2.ament_python import Manifest
+from ros_in_python.ros2.ament_python import Manifest, package_xml
 from spinbook.chapter.imports import ros_packages
 from spinbook.chapter.python_code import facts_of
 from spinbook.course.course import Package
@@ -91,6 +90,15 @@ def interface_package_files(course: Package, definitions: Sequence[Definition]) 
     }
 
 
+def _interface_package_xml(course: Package, name: str, needed: Sequence[str]) -> str:
+    description = f"Messages, services and actions of {course.name}"
+    manifest = replace(
+        _manifest(course, ["rosidl_default_runtime"]), name=name, description=description, depends=needed
+    )
+    buildtools = ("ament_cmake", "rosidl_default_generators")
+    return package_xml(manifest, "ament_cmake", buildtools=buildtools, groups=["rosidl_interface_packages"])
+
+
 def _cmake(name: str, paths: Sequence[str], needed: Sequence[str]) -> str:
     find = "".join(f"find_package({package} REQUIRED)\n" for package in needed)
     interfaces = "".join(f'  "{path}"\n' for path in paths)
@@ -105,30 +113,4 @@ def _cmake(name: str, paths: Sequence[str], needed: Sequence[str]) -> str:
         f"{interfaces}{depends})\n\n"
         "ament_export_dependencies(rosidl_default_runtime)\n"
         "ament_package()\n"
-    )
-
-
-def _interface_package_xml(course: Package, name: str, needed: Sequence[str]) -> str:
-    tags: Mapping[str, Sequence[str]] = {
-        "buildtool_depend": ("ament_cmake", "rosidl_default_generators"),
-        "depend": needed,
-        "exec_depend": ("rosidl_default_runtime",),
-        "member_of_group": ("rosidl_interface_packages",),
-    }
-    lines = "".join(f"  <{tag}>{value}</{tag}>\n" for tag, values in tags.items() for value in values)
-    return (
-        '<?xml version="1.0"?>\n'
-        '<?xml-model href="http://download.ros.org/schema/package_format3.xsd" '
-        'schematypens="http://www.w3.org/2001/XMLSchema"?>\n'
-        '<package format="3">\n'
-        f"  <name>{name}</name>\n"
-        f"  <version>{escape(course.version)}</version>\n"
-        f"  <description>Messages, services and actions of {escape(course.name)}</description>\n"
-        f"  <maintainer email={quoteattr(course.email)}>{escape(course.maintainer)}</maintainer>\n"
-        f"  <license>{escape(course.license)}</license>\n"
-        f"\n{lines}\n"
-        "  <export>\n"
-        "    <build_type>ament_cmake</build_type>\n"
-        "  </export>\n"
-        "</package>\n"
     )

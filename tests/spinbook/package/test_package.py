@@ -123,7 +123,7 @@ def test_two_chapters_with_different_code_of_one_name_are_refused(course: Course
     said = course.spinbook("package")
 
     assert said.returncode == 1
-    clash = "chapters/two.md:4: error: the node `hello` is also defined in chapters/one.md:4, with other code"
+    clash = "chapters/two.md:4: error: the node `hello` is also defined in chapters/one.md:4, with other text"
     assert clash in said.stderr
     assert not (course.root / "robot_ws").exists()
 

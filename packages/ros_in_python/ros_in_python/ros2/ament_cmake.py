@@ -100,7 +100,7 @@ def cmake_files(manifest: Manifest, depends: Sequence[str], node: str, library: 
     if node:
         text += _NODE.format(node=node, needs=_needs(node, depends))
         files[f"src/{node}.cpp"] = _MAIN.format(name=name)
-    xml = package_xml(manifest, "ament_cmake", _TEST_DEPENDENCIES, buildtool="ament_cmake")
+    xml = package_xml(manifest, "ament_cmake", _TEST_DEPENDENCIES, buildtools=["ament_cmake"])
     return {"package.xml": xml, "CMakeLists.txt": text + _TAIL, **files}
 
 

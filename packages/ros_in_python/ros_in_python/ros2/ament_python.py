@@ -84,12 +84,19 @@ def package_files(
     }
 
 
-def package_xml(manifest: Manifest, build_type: str, test_dependencies: Sequence[str], buildtool: str = "") -> str:
-    """Return the text of package.xml for a package of this build type."""
+def package_xml(
+    manifest: Manifest,
+    build_type: str,
+    test_dependencies: Sequence[str] = (),
+    buildtools: Sequence[str] = (),
+    groups: Sequence[str] = (),
+) -> str:
+    """Return the text of package.xml for a package of this build type. `groups` are those to which it belongs."""
     needs = {
-        "buildtool_depend": [buildtool] if buildtool else [],
+        "buildtool_depend": buildtools,
         "exec_depend": manifest.exec_depends,
         "depend": manifest.depends,
+        "member_of_group": groups,
     }
     depends = "".join(f"  <{tag}>{name}</{tag}>\n" for tag, names in needs.items() for name in names)
     tests = "".join(f"  <test_depend>{name}</test_depend>\n" for name in test_dependencies)
