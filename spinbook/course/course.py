@@ -73,6 +73,10 @@ class Course:
         return frozenset(p.parent.name for p in folder.glob("*/exercise.toml"))
 
 
+def _wrong(problem: str, fix: str) -> Problem:
+    return Problem(FILE, None, problem, fix)
+
+
 def names_of(chapters: Sequence[Path]) -> dict[Path, str]:
     """Map each file to a unique name: its own, with as many of its folders as that takes."""
     names = {chapter: _name(chapter, 0) for chapter in chapters}
@@ -93,11 +97,16 @@ def _name(chapter: Path, folders: int) -> str:
 
 def find_course(start: Path) -> Course:
     """Read the course.toml of this folder or of the nearest one above it. Raises SpinbookError."""
-    for folder in (start.resolve(), *start.resolve().parents):
-        if (folder / FILE).is_file():
-            return read_course(folder)
+    if folder := course_folder(start):
+        return read_course(folder)
     problem = f"there is no course.toml in {start.resolve()} or in any folder above it."
-    raise SpinbookError(Problem(FILE, None, problem, "Go into a course's folder, or name it: spinbook --help"))
+    raise SpinbookError(_wrong(problem, "Go into a course's folder, or name it: spinbook --help"))
+
+
+def course_folder(start: Path) -> Path | None:
+    """Return this folder or the nearest one above it that has a course.toml; None if there is none."""
+    folder = start.resolve()
+    return next((place for place in (folder, *folder.parents) if (place / FILE).is_file()), None)
 
 
 def read_course(root: Path) -> Course:
@@ -105,7 +114,7 @@ def read_course(root: Path) -> Course:
     try:
         text = (root / FILE).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        raise SpinbookError(Problem(FILE, None, f"it can't be read: {error}.", "Save it as UTF-8.")) from None
+        raise SpinbookError(_wrong(f"it can't be read: {error}.", "Save it as UTF-8.")) from None
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -117,16 +126,14 @@ def read_course(root: Path) -> Course:
     title = _text(data, "title", problems)
     chapters = data.get("chapters")
     if not isinstance(chapters, list) or not chapters or not all(isinstance(c, str) for c in chapters):
-        problem = "`chapters` is not a list of files."
-        problems.append(Problem(FILE, None, problem, 'Write for example: chapters = ["chapters/01-start.md"]'))
+        fix = 'Write for example: chapters = ["chapters/01-start.md"]'
+        problems.append(_wrong("`chapters` is not a list of files.", fix))
         chapters = []
     for name in {c for c in chapters if chapters.count(c) > 1}:
-        problems.append(Problem(FILE, None, f"`{name}` is listed twice.", "Remove one of them."))
+        problems.append(_wrong(f"`{name}` is listed twice.", "Remove one of them."))
     for name in chapters:
         if Path(name).is_absolute() or ".." in Path(name).parts:
-            problems.append(
-                Problem(FILE, None, f"`{name}` is outside the course.", "Name files inside the course's folder.")
-            )
+            problems.append(_wrong(f"`{name}` is outside the course.", "Name files inside the course's folder."))
     run = _chapters_to_run(data, chapters, problems)
     package = _package(data.get("package"), problems)
     if problems:
@@ -152,11 +159,10 @@ def _chapters_to_run(data: dict[str, Any], chapters: list[Any], problems: list[P
         return None
     if not isinstance(run, list):
         fix = 'Write for example: run = ["chapters/01-start.md"], or leave it out to run all.'
-        problems.append(Problem(FILE, None, "`run` is not a list of chapters.", fix))
+        problems.append(_wrong("`run` is not a list of chapters.", fix))
         return None
-    for name in run:
-        if name not in chapters:
-            problems.append(Problem(FILE, None, f"`run` names `{name}`, which is not in `chapters`.", "Correct it."))
+    absent = [name for name in run if name not in chapters]
+    problems += [_wrong(f"`run` names `{name}`, which is not in `chapters`.", "Correct it.") for name in absent]
     return tuple(Path(str(name)) for name in run)
 
 
@@ -171,34 +177,23 @@ def _site(given: str, repository: str) -> str:
 def _text(data: dict[str, Any], key: str, problems: list[Problem]) -> str:
     value = data.get(key)
     if not isinstance(value, str) or not value.strip():
-        problems.append(Problem(FILE, None, f"`{key}` is missing.", f'Write a line such as: {key} = "…"'))
+        problems.append(_wrong(f"`{key}` is missing.", f'Write a line such as: {key} = "…"'))
         return ""
     return value
 
 
 def _package(table: Any, problems: list[Problem]) -> Package | None:
     if not isinstance(table, dict) or not isinstance(table.get("name"), str):
-        problems.append(
-            Problem(
-                FILE,
-                None,
-                "the table `[package]` with a `name` is missing.",
-                'Write: [package]\\nname = "my_robot"',
-            )
-        )
+        fix = 'Write: [package]\\nname = "my_robot"'
+        problems.append(_wrong("the table `[package]` with a `name` is missing.", fix))
         return None
     name = table["name"]
     # REP 144's rule for package names.
     if not (name[:1].isalpha() and name.isidentifier() and name.islower() and "__" not in name):
-        problem = f"`{name}` can't be a ROS package's name."
-        problems.append(
-            Problem(FILE, None, problem, "Use lower-case letters, digits and single underscores, a letter first.")
-        )
-    unknown = sorted(set(table) - set(Package.__dataclass_fields__))
-    if unknown:
-        known = ", ".join(Package.__dataclass_fields__)
-        problems.append(
-            Problem(FILE, None, f"`[package]` has unknown keys: {', '.join(unknown)}.", f"Known are: {known}.")
-        )
+        fix = "Use lower-case letters, digits and single underscores, a letter first."
+        problems.append(_wrong(f"`{name}` can't be a ROS package's name.", fix))
+    if unknown := sorted(set(table) - set(Package.__dataclass_fields__)):
+        fix = f"Known are: {', '.join(Package.__dataclass_fields__)}."
+        problems.append(_wrong(f"`[package]` has unknown keys: {', '.join(unknown)}.", fix))
         return None
     return Package(**{key: str(value) for key, value in table.items()})

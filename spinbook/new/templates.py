@@ -181,9 +181,7 @@ def _put(files: Mapping[Path, str], folder: Path) -> None:
         with tempfile.TemporaryDirectory(prefix=f".{folder.name}-", dir=folder.parent) as temporary:
             whole = Path(temporary) / folder.name
             for place, text in files.items():
-                target = whole / place
-                target.parent.mkdir(parents=True, exist_ok=True)
-                target.write_text(text, encoding="utf-8")
+                write_if_changed(whole / place, text)
             shutil.move(whole, folder)
     except OSError as error:
         found = f"it can't be made: {error.strerror}."

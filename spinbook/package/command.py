@@ -18,7 +18,7 @@ from spinbook.chapter.complete_program import join
 from spinbook.chapter.fence import interface_path
 from spinbook.chapter.python_code import CodeError
 from spinbook.chapters import read_all
-from spinbook.course.course import FILE, Course, Package, find_course
+from spinbook.course.course import Course, Package, course_folder, find_course
 from spinbook.interfaces.definitions import checked
 from spinbook.package.cell_line import CellFailed, chapter_reader, node_reader, split
 from spinbook.package.files import Module
@@ -113,7 +113,7 @@ def package(start: Path, workspace: Path | None) -> None:
 
     In a handout, where there are no chapters, the nodes are those of the notebooks, as you saved them.
     """
-    made = _of_course(find_course(start)) if _is_course(start) else _of_notebooks(start)
+    made = _of_course(find_course(start)) if course_folder(start) else _of_notebooks(start)
     target = workspace or made.root / made.package.workspace
     folder = write_package(target, made.package, made.modules, made.interfaces, made.files)
     click.echo(f"{folder}: {len(made.modules)} modules")
@@ -143,11 +143,6 @@ class PackageSources:
     definitions: Sequence[Definition]
     interfaces: Sequence[str]
     files: Mapping[str, str] = field(default_factory=dict)
-
-
-def _is_course(start: Path) -> bool:
-    folder = start.resolve()
-    return any((place / FILE).is_file() for place in (folder, *folder.parents))
 
 
 def _of_course(course: Course) -> PackageSources:
