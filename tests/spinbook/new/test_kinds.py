@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from grader.checking.proofreader import problems_of
+from grader.checking.proofreader import faults
 from grader.exercise import load, starter
 from grader.exercise.mistakes import Mistake, mistakes_of
 from grader.exercise.rules import named_by, rules_of
@@ -143,7 +143,7 @@ def test_an_exercise_of_each_kind_works_by_any_name(tmp_path: Path) -> None:
     for kind, name in zip(KINDS, names, strict=False):
         write_exercise(tmp_path / kind.name, name, "Any title", kind)
         folder = tmp_path / kind.name / "exercises" / name
-        assert problems_of(folder) == ()
+        assert [*faults(folder)] == []
         assert mistakes_of(load(folder))
         for file in folder.parents[1].rglob("*.py"):
             compile(file.read_text(encoding="utf-8"), file, "exec")
