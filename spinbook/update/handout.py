@@ -9,7 +9,6 @@ import zlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path, PurePosixPath
 
-from grader.submission.upload import RECORD
 from groundwork.problem import Problem
 from spinbook.problem import SpinbookError
 
@@ -76,6 +75,8 @@ def packages(notebooks: Iterable[bytes]) -> set[str]:
 
 def _why_not(files: Files) -> str:
     """Say why this is not a handout; empty if it is one."""
+    from grader.submission.upload import RECORD  # with the grader, which `spinbook doctor` does not need 18 times
+
     if PurePosixPath(RECORD) in files:
         return "it is not a handout, but a file to hand in that `spinbook submit` wrote."
     if not any(path.suffix == ".ipynb" for path in files):

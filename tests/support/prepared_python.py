@@ -38,7 +38,7 @@ LATER = {
     "ros_in_python.ros2": (
         *(
             f"ros_in_python.ros2.{name}"
-            for name in ("action", "graph", "interfaces", "messages", "node", "param", "service")
+            for name in ("action", "graph", "interfaces", "lifecycle", "messages", "node", "param", "service")
         ),
         *(
             "ros_in_python.ros2.topic.echo",

@@ -56,7 +56,7 @@ class Running:
 
 
 #: Nouns that ask or tell other nodes something and end. The others start programs, or look at this Python itself.
-ASKING = ("action", "interface", "node", "param", "service", "topic")
+ASKING = ("action", "interface", "lifecycle", "node", "param", "service", "topic")
 
 
 class Terminal:

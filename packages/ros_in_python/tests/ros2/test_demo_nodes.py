@@ -39,8 +39,7 @@ def test_the_talker_counts_and_quotes_as_its_package_does(
     assert logged(talker, 2) == [f"[talker]: {text}" for text in first]
 
 
-@pytest.mark.parametrize("package", ["demo_nodes_cpp", "demo_nodes_py"])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(("package", "number"), [("demo_nodes_cpp", signal.SIGINT), ("demo_nodes_py", signal.SIGTERM)])
 def test_the_listener_hears_the_talker_on_a_remapped_topic_under_another_name(
     ros_domain: int, terminal: Terminal, package: str, number: int
 ) -> None:
