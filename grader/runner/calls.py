@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
+from rclpy.parameter import parameter_value_to_python
 from rclpy.serialization import serialize_message
 
 from grader.recording.events import Call, ParameterChange, ParameterReading
@@ -111,18 +113,6 @@ def _request_of(step: Request | SetParameter | GetParameter) -> bytes:
     return asked
 
 
-#: The field of rcl_interfaces/msg/ParameterValue that has the value, by the type's name.
-_FIELDS = {
-    "bool": "bool_value",
-    "integer": "integer_value",
-    "double": "double_value",
-    "string": "string_value",
-    "byte_array": "byte_array_value",
-    "bool_array": "bool_array_value",
-    "integer_array": "integer_array_value",
-    "double_array": "double_array_value",
-    "string_array": "string_array_value",
-}
 _OF_PYTHON = {bool: "bool", int: "integer", float: "double", str: "string"}
 
 
@@ -133,13 +123,11 @@ def to_parameter_value(value: Any) -> ParameterValue:
     else:
         name = _OF_PYTHON[type(value)]
     number = getattr(ParameterType, f"PARAMETER_{name.upper()}")
-    return ParameterValue(type=number, **{_FIELDS[name]: list(value) if isinstance(value, tuple) else value})
+    return ParameterValue(type=number, **{f"{name}_value": list(value) if isinstance(value, tuple) else value})
 
 
 def from_parameter_value(value: ParameterValue) -> Any:
-    """Return a parameter value as a Python value; None if it is not set."""
-    for name, field in _FIELDS.items():
-        if value.type == getattr(ParameterType, f"PARAMETER_{name.upper()}"):
-            found = getattr(value, field)
-            return list(found) if name.endswith("array") else found
+    """Return a parameter value as a Python value; None if it is not set, or of a type that does not exist."""
+    with contextlib.suppress(RuntimeError):
+        return parameter_value_to_python(value)
     return None

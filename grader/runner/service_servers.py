@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from grader.exercise.exercise import Exercise
@@ -22,17 +22,6 @@ from rmw_lockstep.hub import HubServer, PendingRequest
 MOST_CALLS, MOST_BYTES = 5_000, 8_000_000
 
 
-@dataclass
-class ServiceExchange:
-    """A request that arrived, and its answer, if any yet."""
-
-    asked: PendingRequest
-    at: int
-    request: dict[str, Any]
-    answered: int | None = None
-    response: dict[str, Any] | None = None
-
-
 class ServiceServer:
     """One reference server."""
 
@@ -42,7 +31,7 @@ class ServiceServer:
         self._kind = message_class(declared.type)
         self._answer = declared.replies.load() if isinstance(declared.replies, AuthorCode) else None
         self._server: HubServer | None = None
-        self._exchanges: list[ServiceExchange] = []
+        self._calls: list[Call] = []
         self._bytes = 0
 
     def open(self) -> None:
@@ -65,19 +54,20 @@ class ServiceServer:
         return bool(requests)
 
     def _take(self, asked: PendingRequest, now: int) -> None:
-        if len(self._exchanges) >= MOST_CALLS:
+        if len(self._calls) >= MOST_CALLS:
             raise CannotContinue("over-limit", f"Your node called {self.name} more than {MOST_CALLS:,} times.")
         request = deserialized(asked.cdr, self._kind.Request)
         at = self._ends.at(asked.moment)
-        exchange = ServiceExchange(asked, at, to_fields(request))
-        self._exchanges.append(exchange)
-        reply = self._reply(request, len(self._exchanges))
+        call = Call(at, self.name, self._declared.type, to_fields(request), "node", node=asked.node)
+        self._calls.append(call)
+        number = len(self._calls)
+        reply = self._reply(request, number)
         if reply.fields is not None:
             server = self._server
             due = max(now, at + nanoseconds(reply.after))
-            self._schedule.plan(due, lambda moment: self._respond(server, exchange, reply, moment))
+            self._schedule.plan(due, lambda moment: self._respond(server, asked, number, reply, moment))
 
-    def _respond(self, server: HubServer | None, exchange: ServiceExchange, reply: Reply, now: int) -> None:
+    def _respond(self, server: HubServer | None, asked: PendingRequest, number: int, reply: Reply, now: int) -> None:
         if server is None or server is not self._server:
             return
         fields = reply.fields or {}
@@ -86,8 +76,9 @@ class ServiceServer:
         if self._bytes > MOST_BYTES:
             text = f"Your node called {self.name} so often that the answers take more than {MOST_BYTES:,} bytes."
             raise CannotContinue("over-limit", text)
-        server.respond(exchange.asked, message)
-        exchange.answered, exchange.response = now, fields_of(message, self._kind.Response)
+        server.respond(asked, message)
+        response = fields_of(message, self._kind.Response)
+        self._calls[number - 1] = replace(self._calls[number - 1], answered_ns=now, response=response)
 
     def _reply(self, request: Any, number: int) -> Reply:
         if self._answer is not None:
@@ -114,12 +105,7 @@ class ServiceServer:
 
     def calls(self) -> tuple[Call, ...]:
         """Return every request that arrived, and its answer."""
-        return tuple(
-            Call(
-                one.at, self.name, self._declared.type, one.request, "node", one.answered, one.response, one.asked.node
-            )
-            for one in self._exchanges
-        )
+        return tuple(self._calls)
 
 
 def unserved(ends: GraderSide, exercise: Exercise) -> tuple[Call, ...]:
