@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
@@ -38,28 +38,22 @@ def _without_id(cdr: bytes) -> bytes:
 
 @dataclass
 class RunningGoal:
-    """One goal that arrived."""
+    """One goal that arrived, as it is recorded so far. `waiting` are the requests for its result."""
 
-    number: int
     id: bytes
-    at: int
     script: GoalScript
     asked: PendingRequest
-    fields: dict[str, Any]
-    accepted: bool | None = None
-    answered: int | None = None
-    states: list[GoalState] = field(default_factory=list)
-    feedback: list[Feedback] = field(default_factory=list)
-    cancels: list[Cancel] = field(default_factory=list)
+    recorded: Goal
     waiting: list[PendingRequest] = field(default_factory=list)
-    asked_result: int | None = None
-    finished: int | None = None
-    result_sent: int | None = None
 
     @property
     def state(self) -> str:
         """The goal's current state."""
-        return self.states[-1].state if self.states else "unknown"
+        return self.recorded.states[-1].state if self.recorded.states else "unknown"
+
+    def record(self, **changes: Any) -> None:
+        """Change these fields of what is recorded."""
+        self.recorded = replace(self.recorded, **changes)
 
 
 class ScriptedActionServer:
@@ -115,20 +109,21 @@ class ScriptedActionServer:
     def _goal(self, asked: PendingRequest, now: int) -> None:
         self._limit("goals", len(self._goals))
         request = deserialized(asked.cdr, self._kind.Impl.SendGoalService.Request)
-        number = len(self._goals) + 1
+        number, at = len(self._goals) + 1, self._ends.at(asked.moment)
         script = self._declared.scripts[min(number, len(self._declared.scripts)) - 1]
-        goal_id = bytes(request.goal_id.uuid)
-        goal = RunningGoal(number, goal_id, self._ends.at(asked.moment), script, asked, to_fields(request.goal))
+        fields = to_fields(request.goal)
+        recorded = Goal(number, at, self.name, self._declared.type, fields, "node", node=asked.node)
+        goal = RunningGoal(bytes(request.goal_id.uuid), script, asked, recorded)
         self._goals.append(goal)
-        self._later(goal.at + nanoseconds(script.answers_after), now, lambda moment: self._answer(goal, moment))
+        self._later(at + nanoseconds(script.answers_after), now, lambda moment: self._answer(goal, moment))
 
     def _answer(self, goal: RunningGoal, now: int) -> None:
-        goal.accepted, goal.answered = goal.script.accept, now
-        response = self._kind.Impl.SendGoalService.Response(accepted=goal.accepted)
+        goal.record(accepted=goal.script.accept, answered_ns=now)
+        response = self._kind.Impl.SendGoalService.Response(accepted=goal.script.accept)
         response.stamp.sec, response.stamp.nanosec = divmod(now, SECOND)
         assert self._servers
         self._servers[0].respond(goal.asked, serialize_message(response))
-        if not goal.accepted:
+        if not goal.script.accept:
             return
         self._enter(goal, "accepted", now)
         self._enter(goal, "executing", now)
@@ -144,7 +139,7 @@ class ScriptedActionServer:
         request = deserialized(asked.cdr, CancelService.Request)
         goal_id = bytes(request.goal_info.goal_id.uuid)
         at = self._ends.at(asked.moment)
-        goals = [one for one in self._goals if one.accepted and goal_id in (one.id, bytes(16))]
+        goals = [one for one in self._goals if one.recorded.accepted and goal_id in (one.id, bytes(16))]
         running = [one for one in goals if one.state in ("accepted", "executing")]
         taken = [one for one in running if one.script.cancel != "refuse"]
         response = CancelService.Response()
@@ -154,7 +149,8 @@ class ScriptedActionServer:
             response.return_code = refused if running else ended if goals else unknown
         response.goals_canceling = [_info(one) for one in taken]
         for one in goals:
-            one.cancels.append(Cancel(at, now, one in taken, int(response.return_code)))
+            cancel = Cancel(at, now, one in taken, int(response.return_code))
+            one.record(cancels=(*one.recorded.cancels, cancel))
         assert self._servers
         self._servers[1].respond(asked, serialize_message(response))
         for one in taken:
@@ -166,13 +162,13 @@ class ScriptedActionServer:
     def _result(self, asked: PendingRequest, now: int) -> None:
         request = deserialized(asked.cdr, self._kind.Impl.GetResultService.Request)
         goal = next((one for one in self._goals if one.id == bytes(request.goal_id.uuid)), None)
-        if goal is not None and goal.asked_result is None:
-            goal.asked_result = self._ends.at(asked.moment)
-        if goal is None or not goal.accepted:
+        if goal is not None and goal.recorded.asked_result_ns is None:
+            goal.record(asked_result_ns=self._ends.at(asked.moment))
+        if goal is None or not goal.recorded.accepted:
             self._send_result(asked, 0, {})
             return
         goal.waiting.append(asked)
-        self._give_result(goal, now)
+        self._give_result(goal)
 
     # --- what happens to a goal
 
@@ -180,7 +176,7 @@ class ScriptedActionServer:
         """Plan `act`; it is skipped if the goal has ended or the server is gone by then."""
 
         def when_due(now: int) -> None:
-            if self._servers is not None and goal.finished is None:
+            if self._servers is not None and goal.recorded.finished_ns is None:
                 act(now)
 
         self._schedule.plan(at, when_due)
@@ -195,10 +191,10 @@ class ScriptedActionServer:
         self._schedule.plan(max(at, now), when_due)
 
     def _enter(self, goal: RunningGoal, state: str, now: int) -> None:
-        goal.states.append(GoalState(now, state))
+        goal.record(states=(*goal.recorded.states, GoalState(now, state)))
         message = GoalStatusArray()
         for one in self._goals:
-            if one.states:
+            if one.recorded.states:
                 message.status_list.append(GoalStatus(goal_info=_info(one), status=STATES.index(one.state)))
         assert self._publishers
         self._publishers[1].publish(serialize_message(message))
@@ -207,21 +203,21 @@ class ScriptedActionServer:
         message = self._kind.Impl.FeedbackMessage()
         message.goal_id.uuid = list(goal.id)
         filled(message.feedback, fields)
-        goal.feedback.append(Feedback(now, to_fields(message.feedback)))
+        goal.record(feedback=(*goal.recorded.feedback, Feedback(now, to_fields(message.feedback))))
         assert self._publishers
         self._publishers[0].publish(serialize_message(message))
 
     def _end(self, goal: RunningGoal, state: str, now: int) -> None:
-        goal.finished = now
+        goal.record(finished_ns=now)
         self._enter(goal, state, now)
-        self._give_result(goal, now)
+        self._give_result(goal)
 
-    def _give_result(self, goal: RunningGoal, now: int) -> None:
-        if goal.finished is None:
+    def _give_result(self, goal: RunningGoal) -> None:
+        if goal.recorded.finished_ns is None:
             return
         for asked in goal.waiting:
             self._send_result(asked, STATES.index(goal.state), goal.script.result)
-            goal.result_sent = now if goal.result_sent is None else goal.result_sent
+            goal.record(status=goal.state, result=to_fields(filled(self._kind.Result(), goal.script.result)))
         goal.waiting.clear()
 
     def _send_result(self, asked: PendingRequest, status: int, fields: dict[str, Any]) -> None:
@@ -232,33 +228,11 @@ class ScriptedActionServer:
 
     def goals(self) -> tuple[Goal, ...]:
         """Return every goal that arrived, with its outcome."""
-        return tuple(self._recorded(one) for one in self._goals)
-
-    def _recorded(self, goal: RunningGoal) -> Goal:
-        has_result = goal.result_sent is not None
-        result = filled(self._kind.Result(), goal.script.result) if has_result else None
-        return Goal(
-            number=goal.number,
-            at_ns=goal.at,
-            action=self.name,
-            type=self._declared.type,
-            goal=goal.fields,
-            by="node",
-            accepted=goal.accepted,
-            answered_ns=goal.answered,
-            states=tuple(goal.states),
-            feedback=tuple(goal.feedback),
-            cancels=tuple(goal.cancels),
-            status=goal.state if has_result else "",
-            result=to_fields(result) if has_result else None,
-            finished_ns=goal.finished,
-            asked_result_ns=goal.asked_result,
-            node=goal.asked.node,
-        )
+        return tuple(goal.recorded for goal in self._goals)
 
 
 def _info(goal: RunningGoal) -> GoalInfo:
     info = GoalInfo()
     info.goal_id.uuid = list(goal.id)
-    info.stamp.sec, info.stamp.nanosec = divmod(goal.answered or goal.at, SECOND)
+    info.stamp.sec, info.stamp.nanosec = divmod(goal.recorded.answered_ns or goal.recorded.at_ns, SECOND)
     return info
