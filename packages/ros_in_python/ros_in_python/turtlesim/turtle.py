@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from ros_in_python.turtlesim.canvas import Canvas
@@ -31,23 +31,6 @@ _ROTATION_TOLERANCE = 0.02
 _ROTATION_SPEED = 1.0
 
 
-@dataclass(frozen=True)
-class AbsoluteTeleport:
-    """To a place (units, y up) and heading (rad)."""
-
-    x: float
-    y: float
-    theta: float
-
-
-@dataclass(frozen=True)
-class RelativeTeleport:
-    """First turn by `angular` (rad), then go `linear` units along the new heading."""
-
-    linear: float
-    angular: float
-
-
 @dataclass
 class Rotation:
     """A goal of rotate_absolute that is under way: heading to reach and at the start, in rad."""
@@ -69,7 +52,7 @@ class SimulatedTurtle:
         self.rotation: Rotation | None = None
         self._forward = self._left = self._turn = 0.0
         self._commanded_ns = 0
-        self._teleports: list[AbsoluteTeleport | RelativeTeleport] = []
+        self._jumps: list[Callable[[], None]] = []
 
     @property
     def y(self) -> float:
@@ -84,9 +67,24 @@ class SimulatedTurtle:
         self._commanded_ns = now_ns
         return self.abort_rotation("Velocity command received during rotation goal. Aborting goal")
 
-    def teleport(self, jump: AbsoluteTeleport | RelativeTeleport) -> None:
-        """Jump at the next tick."""
-        self._teleports.append(jump)
+    def teleport(self, x: float, y: float, theta: float) -> None:
+        """Jump to a place (units, y up) and heading (rad), at the next tick."""
+
+        def jump() -> None:
+            self.x, self.theta = x, theta
+            self.y_down = max(0.0, single(SIDE - y))
+
+        self._jumps.append(jump)
+
+    def teleport_by(self, linear: float, angular: float) -> None:
+        """Turn by `angular` (rad), then jump by `linear` units along the new heading, at the next tick."""
+
+        def jump() -> None:
+            self.theta += angular
+            self.x += math.cos(self.theta) * linear
+            self.y_down -= math.sin(self.theta) * linear
+
+        self._jumps.append(jump)
 
     def rotate(self, goal: int, theta: float) -> list[Event]:
         """Turn to the heading `theta` (rad), instead of any rotation that is under way."""
@@ -114,17 +112,11 @@ class SimulatedTurtle:
             self._draw(before, canvas, trail)
 
     def _jump(self, canvas: Canvas, trail: Trail) -> None:
-        for jump in self._teleports:
+        for jump in self._jumps:
             before = (self.x, self.y_down)
-            if isinstance(jump, RelativeTeleport):
-                self.theta += jump.angular
-                self.x += math.cos(self.theta) * jump.linear
-                self.y_down -= math.sin(self.theta) * jump.linear
-            else:
-                self.x, self.theta = jump.x, jump.theta
-                self.y_down = max(0.0, single(SIDE - jump.y))
+            jump()
             self._draw(before, canvas, trail)
-        self._teleports.clear()
+        self._jumps.clear()
 
     def _steer(self, now_ns: int) -> Iterator[Event]:
         """Let the rotation that is under way set the velocities."""

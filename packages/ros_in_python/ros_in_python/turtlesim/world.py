@@ -8,7 +8,7 @@ import re
 from ros_in_python.turtlesim.canvas import Canvas
 from ros_in_python.turtlesim.events import CENTRE, SIDE, Event, LogLevel, LogLine, TurtleKilled, TurtleSpawned, single
 from ros_in_python.turtlesim.trail import Track, Trail
-from ros_in_python.turtlesim.turtle import AbsoluteTeleport, RelativeTeleport, SimulatedTurtle
+from ros_in_python.turtlesim.turtle import SimulatedTurtle
 
 # A turtle's name begins the names of its topics, so it must be good for one.
 _NAME = re.compile(r"/?[A-Za-z]\w{0,40}(/[A-Za-z]\w{0,40}){0,2}", re.ASCII)
@@ -104,7 +104,7 @@ class TurtleWorld:
         x, y, theta = single(x), single(y), single(theta)
         if refusal := _refusal(f"{turtle}/teleport_absolute", x, y, theta):
             return refusal
-        self.turtles[turtle].teleport(AbsoluteTeleport(x, y, theta))
+        self.turtles[turtle].teleport(x, y, theta)
         return _outside(turtle, x, y)
 
     def teleport_relative(self, turtle: str, linear: float, angular: float) -> list[Event]:
@@ -112,7 +112,7 @@ class TurtleWorld:
         linear, angular = single(linear), single(angular)
         if refusal := _refusal(f"{turtle}/teleport_relative", linear, angular):
             return refusal
-        self.turtles[turtle].teleport(RelativeTeleport(linear, angular))
+        self.turtles[turtle].teleport_by(linear, angular)
         return []
 
     def rotate(self, turtle: str, goal: int, theta: float) -> list[Event]:
