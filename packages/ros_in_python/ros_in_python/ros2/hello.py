@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import socket
-import struct
 import time
 from collections import Counter
 from dataclasses import dataclass, field
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ros_in_python.ros2.cli import CommandError
-from ros_in_python.ros2.multicast import GROUP, PORT, receiver
+from ros_in_python.ros2.multicast import GROUP, PORT, receiver, sender
 from ros_in_python.ros2.opening import open_graph
 
 if TYPE_CHECKING:
@@ -74,7 +73,7 @@ def hello(topic: str, emit_period: float, print_period: float, ttl: int | None, 
     """
     tally = _Tally()
     try:
-        with open_graph() as graph, receiver(GROUP, PORT) as ears, _sender(ttl) as mouth:
+        with open_graph() as graph, receiver(GROUP, PORT) as ears, sender(ttl) as mouth:
             ears.setblocking(False)
             publish = _topic(graph, topic, tally)
             printed = time.monotonic()
@@ -116,13 +115,6 @@ def _topic(graph: Any, topic: str, tally: _Tally) -> Callable[[], None]:
         tally.published += 1
 
     return publish
-
-
-def _sender(ttl: int | None) -> socket.socket:
-    end = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    if ttl is not None:
-        end.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, struct.pack("b", ttl))
-    return end
 
 
 def _listen(ears: socket.socket, tally: _Tally) -> None:

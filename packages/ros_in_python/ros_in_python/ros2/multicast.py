@@ -39,6 +39,14 @@ def receiver(group: str, port: int) -> socket.socket:
     return end
 
 
+def sender(ttl: int | None) -> socket.socket:
+    """Return a socket that sends to groups, by way of `ttl` routers at most. Raises OSError."""
+    end = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    if ttl is not None:
+        end.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, ttl)
+    return end
+
+
 @multicast.command()
 @_group
 @_port
@@ -53,14 +61,14 @@ def receive(group: str, port: int, timeout: float | None) -> None:
     try:
         with receiver(group, port) as end:
             end.settimeout(timeout)
-            data, (sender, from_port) = end.recvfrom(4096)
+            data, (source, from_port) = end.recvfrom(4096)
     except TimeoutError:
         raise CommandError(
             f"Nothing arrived within {timeout:g} s: a firewall or the network keeps multicast back."
         ) from None
     except OSError as error:
         raise CommandError(f"Multicast can't be received here: {error.strerror or error}") from None
-    click.echo(f"Received from {sender}:{from_port}: {data.decode(errors='replace')!r}")
+    click.echo(f"Received from {source}:{from_port}: {data.decode(errors='replace')!r}")
 
 
 @multicast.command()
@@ -75,8 +83,7 @@ def send(group: str, port: int, ttl: int) -> None:
     """
     click.echo("Sending one UDP multicast datagram...")
     try:
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as end:
-            end.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, ttl)
+        with sender(ttl) as end:
             end.sendto(b"Hello World!", (group, port))
     except OSError as error:
         raise CommandError(f"Multicast can't be sent here: {error.strerror or error}") from None

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ros_in_python.field_path import NoSuchField, Step, fields_in, steps_of, value_at, written
 from ros_in_python.ros2 import interfaces
-from ros_in_python.ros2.cli import CommandError
+from ros_in_python.ros2.cli import CommandError, F
 from ros_in_python.ros2.names import seen
 
 if TYPE_CHECKING:
     from ros_in_python.ros2.graph import GraphView
-
-
-F = TypeVar("F", bound=Callable[..., Any])
 
 #: Whether a message is wanted.
 Filter = Callable[[Any], bool]
@@ -32,14 +29,14 @@ def _compile(context: click.Context, parameter: click.Parameter, text: str | Non
             f"--filter {text!r} is not a valid Python expression: {error}", "As in: --filter 'm.data > 3'"
         ) from None
 
-    def wanted(message: Any) -> bool:
+    def passes(message: Any) -> bool:
         try:
             # The person at the terminal wrote it, for their own process.
             return bool(eval(code, {"m": message}))
         except Exception as error:
             raise CommandError(f"--filter {text!r} failed: {error}", "The message is called m.") from None
 
-    return wanted
+    return passes
 
 
 filter_option: Callable[[F], F] = click.option(
