@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from groundwork.problem import Problem
-from spinbook.problem import SpinbookError
+from spinbook.problem import SpinbookError, refuse_errors
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -136,8 +136,7 @@ def read_course(root: Path) -> Course:
             problems.append(_wrong(f"`{name}` is outside the course.", "Name files inside the course's folder."))
     run = _chapters_to_run(data, chapters, problems)
     package = _package(data.get("package"), problems)
-    if problems:
-        raise SpinbookError(*problems)
+    refuse_errors(problems)
     assert package is not None
     return Course(
         root=root,

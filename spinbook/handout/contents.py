@@ -31,7 +31,7 @@ from spinbook.handout.pins import declared_pins, jupyterlab_pins, students_pins
 from spinbook.handout.student_copy import exercise_files, for_students
 from spinbook.handout.wheels import interface_wheels, package_of, requirement, spinbook_wheel
 from spinbook.interfaces.definitions import compile_course
-from spinbook.problem import SpinbookError
+from spinbook.problem import SpinbookError, refuse_errors
 from spinbook.update.handout import base_files
 
 #: Packages that students need in the instructor's version, so that checks give the same results, if nothing is pinned.
@@ -158,9 +158,7 @@ def handout(course: Course) -> Handout:
 
 def _notebooks(course: Course) -> dict[str, bytes]:
     built = list(build_notebooks(course))
-    problems = [problem for item in built for problem in item.problems if problem.is_error]
-    if problems:
-        raise SpinbookError(*problems)
+    refuse_errors(problem for item in built for problem in item.problems)
     return {
         item.notebook.name: for_students(item.notebook.read_text(encoding="utf-8"), course.repository).encode()
         for item in built
@@ -199,8 +197,7 @@ def _prove(files: dict[str, bytes], known: list[Secret]) -> None:
     for leak in located(files, known):
         place, file = f" ({leak.at})" if leak.at else "", Path("build", "handout", leak.file)
         problems.append(Problem(file, leak.line, f"{leak.what} would be in it{place}.", fix))
-    if problems:
-        raise SpinbookError(*problems)
+    refuse_errors(problems)
 
 
 @click.command("handout", context_settings={"help_option_names": ["-h", "--help"]})

@@ -17,7 +17,7 @@ from spinbook.chapter.fence import interface_package, interface_path
 from spinbook.chapter.installed_interfaces import is_someone_elses
 from spinbook.chapter.read import definitions_of
 from spinbook.course.course import FILE, Course
-from spinbook.problem import SpinbookError
+from spinbook.problem import SpinbookError, refuse_errors
 
 #: The course's folder with definitions: interfaces/PACKAGE/{msg,srv,action}/.
 FOLDER = "interfaces"
@@ -92,8 +92,7 @@ def checked(course: Course) -> CourseDefinitions:
     """Collect a course's definitions and check them. Raises SpinbookError with every fault."""
     collected = collect(course)
     faults = check(collected.definitions, prefixes.interfaces(prefixes.installed()))
-    if errors := [*collected.problems, *problems(faults)]:
-        raise SpinbookError(*errors)
+    refuse_errors([*collected.problems, *problems(faults)])
     return collected
 
 
@@ -134,8 +133,7 @@ def compile_course(course: Course, collected: CourseDefinitions | None = None) -
         SpinbookError: with every fault in the definitions, or where this machine can't compile.
     """
     collected = collected or collect(course)
-    if collected.problems:
-        raise SpinbookError(*collected.problems)
+    refuse_errors(collected.problems)
     if not collected.definitions or _are_sourced(collected):
         return None
     try:

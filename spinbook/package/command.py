@@ -23,7 +23,7 @@ from spinbook.interfaces.definitions import checked
 from spinbook.package.cell_line import CellFailed, chapter_reader, node_reader, split
 from spinbook.package.files import Module
 from spinbook.package.workspace import write_interface_packages, write_package
-from spinbook.problem import SpinbookError
+from spinbook.problem import SpinbookError, refuse_errors
 
 
 @dataclass
@@ -183,7 +183,7 @@ def _texts(course: Course, what: str, cells_of: Callable[[Chapter], Iterable[Cha
     """Return the texts of these cells of the course by their names, sorted. Raises SpinbookError."""
     first: dict[str, tuple[Path, ChapterCell]] = {}
     readings = list(read_all(course))
-    problems = [problem for reading in readings for problem in reading.problems if problem.is_error]
+    problems = [problem for reading in readings for problem in reading.problems]
     for chapter in (reading.chapter for reading in readings if reading.chapter):
         for cell in cells_of(chapter):
             name = cell.name or ""
@@ -195,6 +195,5 @@ def _texts(course: Course, what: str, cells_of: Callable[[Chapter], Iterable[Cha
                 problem = f"the {what} `{name}` is also defined in {file}:{known.line}, with other text."
                 fix = "Give one of them another name: the package can hold only one file with each name."
                 problems.append(Problem(chapter.file, cell.line, problem, fix))
-    if problems:
-        raise SpinbookError(*problems)
+    refuse_errors(problems)
     return {name: cell.whole for name, (_, cell) in sorted(first.items())}

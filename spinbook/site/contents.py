@@ -24,7 +24,7 @@ from spinbook.chapter.read import headings_of
 from spinbook.chapters import read_all
 from spinbook.course.course import Course
 from spinbook.handout.wheels import interface_wheels, package_of
-from spinbook.problem import SpinbookError
+from spinbook.problem import SpinbookError, refuse_errors
 from spinbook.site import page as names
 from spinbook.site.chapter_page import ExecutedNotebook, as_text, chapter_notebook, stills, wrong_cells
 from spinbook.site.drawings import DrawingError, Picture, draw, drawing_files, drawing_html
@@ -96,9 +96,7 @@ def read_contents(course: Course) -> SiteContents:
 
 def _chapters(course: Course) -> list[Chapter]:
     readings = list(read_all(course))
-    problems = [problem for reading in readings for problem in reading.problems if problem.is_error]
-    if problems:
-        raise SpinbookError(*problems)
+    refuse_errors(problem for reading in readings for problem in reading.problems)
     return [reading.chapter for reading in readings if reading.chapter is not None]
 
 
