@@ -29,7 +29,7 @@ def load_fresh_wheels() -> None:
 
 def _libraries() -> list[Path]:
     """Return the wheels' shared libraries, of several copies the first: some abort when they are loaded twice."""
-    found: dict[str, Path] = {}
+    first: dict[str, Path] = {}
     for distribution in distributions():
         if not distribution.name.lower().startswith(("ros-", "ros_", "rosidl_", "rosgraph_", "rmw_")):
             continue
@@ -37,8 +37,8 @@ def _libraries() -> list[Path]:
             if ".so" in file.suffixes and not file.parent.name.isidentifier():
                 place = Path(str(distribution.locate_file(file))).resolve()
                 if place.parent.name == "lib" or place.parent.suffix == ".libs":
-                    found.setdefault(place.name, place)
-    return [found[name] for name in sorted(found)]
+                    first.setdefault(place.name, place)
+    return [first[name] for name in sorted(first)]
 
 
 def _loaded(library: Path) -> bool:

@@ -59,8 +59,8 @@ def code_digest(*folders: str) -> str:
 def versions() -> str:
     """Return the versions on which a notebook's outputs depend."""
     names = ("ros-rclpy", "matplotlib", "ipykernel", "nbclient")
-    found = [f"{name}={_version(name)}" for name in names]
-    return " ".join([f"python={platform.python_version()}", *found])
+    packages = [f"{name}={_version(name)}" for name in names]
+    return " ".join([f"python={platform.python_version()}", *packages])
 
 
 def _version(distribution: str) -> str:

@@ -93,9 +93,9 @@ def _split_front_matter(text: str, file: Path) -> tuple[Mapping[str, Any], str, 
     ends = {"---", "..."} if fence == "---" else {"+++"}
     end = next((i for i, line in enumerate(lines[1:], start=1) if line.rstrip() in ends), None)
     if end is None:
-        found = "the front matter that begins here never ends."
+        wrong = "the front matter that begins here never ends."
         fix = f"Close it with a line `{fence}`."
-        return {}, "\n" + "\n".join(lines[1:]), [Problem(file, 1, found, fix, Severity.WARNING)]
+        return {}, "\n" + "\n".join(lines[1:]), [Problem(file, 1, wrong, fix, Severity.WARNING)]
     body = "\n" * (end + 1) + "\n".join(lines[end + 1 :])
     if fence == "+++":
         return _toml("\n".join(lines[1:end])), body, []
@@ -104,14 +104,14 @@ def _split_front_matter(text: str, file: Path) -> tuple[Mapping[str, Any], str, 
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = 2 + mark.line if mark else 1
-        what = getattr(error, "problem", None) or "it can't be read"
+        reason = getattr(error, "problem", None) or "it can't be read"
         fix = "Write it as YAML, one `key: value` per line; put a value that holds a colon in quotes."
-        problem = Problem(file, line, f"the front matter is not YAML: {what}.", fix, Severity.WARNING)
+        problem = Problem(file, line, f"the front matter is not YAML: {reason}.", fix, Severity.WARNING)
         return _simple_lines(lines[1:end]), body, [problem]
     if not isinstance(front_matter, dict):
-        found = f"the front matter is a {type(front_matter).__name__}, not `key: value` lines."
+        wrong = f"the front matter is a {type(front_matter).__name__}, not `key: value` lines."
         fix = "Write for example `title: Nodes and Topics`."
-        return {}, body, [Problem(file, 2, found, fix, Severity.WARNING)]
+        return {}, body, [Problem(file, 2, wrong, fix, Severity.WARNING)]
     return front_matter, body, []
 
 

@@ -25,12 +25,12 @@ OLDEST, NEWEST = (3, 10), (3, 14)
 
 def examine_python() -> MachineFinding:
     """Check the version of this Python, and how it was compiled."""
-    found = f"{platform.python_implementation()} {platform.python_version()}, {sys.executable}"
+    python = f"{platform.python_implementation()} {platform.python_version()}, {sys.executable}"
     if not (OLDEST <= sys.version_info[:2] <= NEWEST and platform.python_implementation() == "CPython"):
-        return missing(found, f"Spinbook needs CPython 3.10 to 3.14. Choose one. {set_up_again('python3.12')}")
+        return missing(python, f"Spinbook needs CPython 3.10 to 3.14. Choose one. {set_up_again('python3.12')}")
     if python_build.is_optimized() or in_handout():
-        return ok(found)
-    return warning(f"{found}, compiled without optimizations", _faster_build())
+        return ok(python)
+    return warning(f"{python}, compiled without optimizations", _faster_build())
 
 
 def _faster_build() -> str:

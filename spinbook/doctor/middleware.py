@@ -90,14 +90,14 @@ def examine_shared_memory() -> MachineFinding:
         return warning(f"{folder} can't be written: {error.strerror}", _NOT_NEEDED)
     free = shutil.disk_usage(folder).free
     left = sum(1 for _ in folder.glob("fastrtps_*"))
-    found = f"{folder}, {free // 2**20} MB free" + (f", {left} files of Fast DDS" if left else "")
+    memory = f"{folder}, {free // 2**20} MB free" + (f", {left} files of Fast DDS" if left else "")
     if free < _ENOUGH:
         return warning(
-            found,
+            memory,
             "Programs that import rclpy are killed when it is full.\n"
             "Remove the files of killed nodes: fastdds shm clean. In a container, use --shm-size 256m.",
         )
-    return ok(found)
+    return ok(memory)
 
 
 def examine_log_folder() -> MachineFinding:

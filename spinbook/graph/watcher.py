@@ -233,10 +233,10 @@ def _ends(ends: list[TopicEndpointInfo], others: list[TopicEndpointInfo]) -> tup
     return one_each(GraphEndpoint(_node(end), end.topic_type, connected) for end, connected in fits)
 
 
-def _fit(one: TopicEndpointInfo, other: TopicEndpointInfo) -> bool:
-    if one.topic_type != other.topic_type:
+def _fit(first: TopicEndpointInfo, second: TopicEndpointInfo) -> bool:
+    if first.topic_type != second.topic_type:
         return False
-    publisher, subscription = (one, other) if one.endpoint_type.name == "PUBLISHER" else (other, one)
+    publisher, subscription = (first, second) if first.endpoint_type.name == "PUBLISHER" else (second, first)
     compatibility, _ = qos_check_compatible(publisher.qos_profile, subscription.qos_profile)
     return bool(compatibility != QoSCompatibility.ERROR)
 

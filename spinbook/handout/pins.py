@@ -41,7 +41,7 @@ def declared_pins(packages: Sequence[str], pinned: Sequence[str]) -> list[str]:
         return list(packages)
     known = {canonicalize_name(re.split("[=; ]", line, maxsplit=1)[0]) for line in pinned}
     names = {name for package in packages for name in needed(canonicalize_name(package.partition("==")[0]), "")}
-    versions: dict[str, str] = {canonicalize_name(one.metadata["Name"]): one.version for one in distributions()}
+    versions: dict[str, str] = {canonicalize_name(wheel.metadata["Name"]): wheel.version for wheel in distributions()}
     return [f"{name}=={versions[name]}" for name in sorted(names - known) if name in versions]
 
 

@@ -127,29 +127,29 @@ def robot_of(recording: Recording) -> RobotDescription | None:
 
 def events_of(recording: Recording) -> RecordedEvents:
     """Return the calls and goals of a recording, otherwise its messages, as a timeline's events, with times in s."""
-    found = RecordedEvents()
+    recorded = RecordedEvents()
     for call in recording.calls:
-        found.kinds[call.service] = "service"
+        recorded.kinds[call.service] = "service"
         answers = [call.answered_ns] if call.answered_ns is not None else []
-        found.events.append(TimelineEvent(call.at_ns / SECOND, call.service, "request"))
-        found.events += [TimelineEvent(at / SECOND, call.service, "response") for at in answers]
+        recorded.events.append(TimelineEvent(call.at_ns / SECOND, call.service, "request"))
+        recorded.events += [TimelineEvent(at / SECOND, call.service, "response") for at in answers]
     for goal in recording.goals:
-        found.kinds[goal.action] = "action"
-        found.events += _of_goal(goal)
-    for message in () if found.kinds else (*recording.sent, *recording.received):
-        found.kinds[message.topic] = "topic"
-        found.events.append(TimelineEvent(message.at_ns / SECOND, message.topic, "message"))
-    return found
+        recorded.kinds[goal.action] = "action"
+        recorded.events += _of_goal(goal)
+    for message in () if recorded.kinds else (*recording.sent, *recording.received):
+        recorded.kinds[message.topic] = "topic"
+        recorded.events.append(TimelineEvent(message.at_ns / SECOND, message.topic, "message"))
+    return recorded
 
 
 def _of_goal(goal: Goal) -> list[TimelineEvent]:
     asked = ", ".join(f"{name} {value}" for name, value in goal.goal.items())
-    steps: list[tuple[int | None, str]] = [(one.at_ns, one.state.upper()) for one in goal.states]
-    steps += [(one.at_ns, "feedback") for one in goal.feedback]
+    steps: list[tuple[int | None, str]] = [(state.at_ns, state.state.upper()) for state in goal.states]
+    steps += [(feedback.at_ns, "feedback") for feedback in goal.feedback]
     steps += [(goal.answered_ns, "rejected")] if goal.accepted is False else []
-    for one in goal.cancels:
-        steps += [(one.at_ns, "cancel"), (one.answered_ns, "cancel answered")]
+    for cancel in goal.cancels:
+        steps += [(cancel.at_ns, "cancel"), (cancel.answered_ns, "cancel answered")]
     return [
         TimelineEvent(goal.at_ns / SECOND, goal.action, "goal", str(goal.number), asked),
-        *(TimelineEvent(at / SECOND, goal.action, what, str(goal.number)) for at, what in steps if at is not None),
+        *(TimelineEvent(at / SECOND, goal.action, step, str(goal.number)) for at, step in steps if at is not None),
     ]

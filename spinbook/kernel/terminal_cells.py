@@ -108,7 +108,7 @@ def _run_executable(session: Session, words: list[str], bound: DisplayLimit) -> 
 def _renamed(words: list[str]) -> str:
     """Return the node's name in `__node:=NAME` or `__name:=NAME`, which allows a second node of an executable."""
     for word in words:
-        option, found, name = word.partition(":=")
-        if found and option in ("__node", "__name"):
+        option, mark, name = word.partition(":=")
+        if mark and option in ("__node", "__name"):
             return name
     return ""

@@ -128,14 +128,14 @@ def with_relative_names(exercise: Exercise, scenarios: Iterable[Scenario]) -> Ex
 
     A name that such a scenario itself uses as it is, such as a map that all robots share, keeps its slash.
     """
-    spaces = [one for one in scenarios if any(start.namespace for start in starts(exercise, one))]
+    spaces = [scenario for scenario in scenarios if any(start.namespace for start in starts(exercise, scenario))]
     if not spaces:
         return exercise
     worlds = [scenario.world.begin() for scenario in spaces if scenario.world]
     steps = [step for scenario in spaces for step in (*scenario.content, *scenario.servers)]
     shared = {getattr(step, part, "") for step in steps for part in ("topic", "service", "action")}
     shared |= {name for world in worlds for name in (*world.reads, *world.publishes)}
-    shared -= {to for one in spaces for start in starts(exercise, one) for to in start.remappings.values()}
+    shared -= {to for scenario in spaces for start in starts(exercise, scenario) for to in start.remappings.values()}
 
     def relative(name: str) -> str:
         return name if name in shared else name.removeprefix("/")
@@ -250,7 +250,7 @@ def _marked(todo: Sequence[str], last: str = "") -> list[str]:
 
 def _imports(topics: Sequence[Topic], endpoints: Sequence[ServiceOrAction]) -> str:
     threads = {"MultiThreadedExecutor" for endpoint in endpoints if endpoint.role == "action"}
-    found = {
+    imported = {
         "rclpy.executors": {"ExternalShutdownException", *threads},
         "rclpy.node": {"Node"},
         "rclpy.action": {kind for endpoint in endpoints if (kind := _ACTION_ENDS.get(endpoint.role))},
@@ -258,8 +258,8 @@ def _imports(topics: Sequence[Topic], endpoints: Sequence[ServiceOrAction]) -> s
     }
     for type_ in (*(topic.type for topic in topics), *(endpoint.type for endpoint in endpoints)):
         package, kind, name = type_.split("/")
-        found.setdefault(f"{package}.{kind}", set()).add(name)
-    lines = [f"from {module} import {', '.join(sorted(names))}" for module, names in sorted(found.items()) if names]
+        imported.setdefault(f"{package}.{kind}", set()).add(name)
+    lines = [f"from {module} import {', '.join(sorted(names))}" for module, names in sorted(imported.items()) if names]
     return "\n".join(["import rclpy", *lines])
 
 

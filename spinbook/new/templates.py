@@ -39,10 +39,10 @@ def package_name(course: Path) -> str:
     """Return the ROS package's name for a course in this folder. Raises `SpinbookError` if the name is invalid."""
     name = course.name
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", name):
-        found = f"`{name or course}` can't be a course's folder."
+        problem = f"`{name or course}` can't be a course's folder."
         # colcon's scripts fail if there is a space in a path.
         fix = "Use letters, digits, - and _, a letter first, such as my-robots."
-        raise SpinbookError(Problem(course, None, found, fix))
+        raise SpinbookError(Problem(course, None, problem, fix))
     package = re.sub(r"_+", "_", name.lower().replace("-", "_")).strip("_")
     _refuse_taken(package, course)
     return package
@@ -52,13 +52,13 @@ def exercise_name(name: str, course: Path) -> str:
     """Return `name`, if it is valid for an exercise, a Python file and a node. Raises `SpinbookError` otherwise."""
     file = course / "exercises" / name
     if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", name):
-        found = f"`{name}` can't be an exercise's name."
+        problem = f"`{name}` can't be an exercise's name."
         fix = "Use lower-case letters, digits and single underscores, a letter first, such as gripper_force."
-        raise SpinbookError(Problem(file, None, found, fix))
+        raise SpinbookError(Problem(file, None, problem, fix))
     _refuse_taken(name, file)
     if f"{name}.py" in OWN_FILES:
-        found = f"each exercise has a {name}.py, and the student's file would have the same name."
-        raise SpinbookError(Problem(file, None, found, "Choose another name."))
+        problem = f"each exercise has a {name}.py, and the student's file would have the same name."
+        raise SpinbookError(Problem(file, None, problem, "Choose another name."))
     return name
 
 
@@ -77,12 +77,12 @@ def title_of(text: str, file: Path) -> str:
 def _refuse_taken(name: str, file: Path) -> None:
     """Refuse a name whose module would hide another, or be hidden by it."""
     if keyword.iskeyword(name) or keyword.issoftkeyword(name):
-        found = f"`{name}` is a keyword of Python."
+        problem = f"`{name}` is a keyword of Python."
     elif name in sys.stdlib_module_names or _exists(name):
-        found = f"there is a Python module `{name}` already, and nodes would import the wrong one."
+        problem = f"there is a Python module `{name}` already, and nodes would import the wrong one."
     else:
         return
-    raise SpinbookError(Problem(file, None, found, "Choose another name."))
+    raise SpinbookError(Problem(file, None, problem, "Choose another name."))
 
 
 def _exists(module: str) -> bool:
@@ -129,8 +129,8 @@ def write_solution(course: Path, exercise: Exercise) -> Path:
         file.parent.mkdir(parents=True, exist_ok=True)
         write_if_changed(file, skeleton(with_relative_names(exercise, _scenarios_of(exercise))).encode())
     except OSError as error:
-        found = f"it can't be made: {error.strerror}."
-        raise SpinbookError(Problem(file, None, found, "Choose a place where you may write.")) from None
+        problem = f"it can't be made: {error.strerror}."
+        raise SpinbookError(Problem(file, None, problem, "Choose a place where you may write.")) from None
     return file
 
 
@@ -144,9 +144,9 @@ def _scenarios_of(exercise: Exercise) -> tuple[Scenario, ...]:
 
 def _refuse_existing(folder: Path) -> None:
     if folder.exists() or folder.is_symlink():
-        found = "something with this name exists already."
+        problem = "something with this name exists already."
         raise SpinbookError(
-            Problem(folder, None, found, "Nothing is overwritten: choose another name, or move it away.")
+            Problem(folder, None, problem, "Nothing is overwritten: choose another name, or move it away.")
         )
 
 
@@ -170,8 +170,8 @@ def _filled(template: Path, names: Mapping[str, str]) -> dict[Path, str]:
 
 
 def _without_templates() -> SpinbookError:
-    found = "this installation has no templates of courses and exercises: it came with a handout, for students."
-    return SpinbookError(Problem(COURSE, None, found, _CHECKOUT))
+    problem = "this installation has no templates of courses and exercises: it came with a handout, for students."
+    return SpinbookError(Problem(COURSE, None, problem, _CHECKOUT))
 
 
 def _put(files: Mapping[Path, str], folder: Path) -> None:
@@ -184,5 +184,5 @@ def _put(files: Mapping[Path, str], folder: Path) -> None:
                 write_if_changed(whole / place, text)
             shutil.move(whole, folder)
     except OSError as error:
-        found = f"it can't be made: {error.strerror}."
-        raise SpinbookError(Problem(folder, None, found, "Choose a place where you may write.")) from None
+        problem = f"it can't be made: {error.strerror}."
+        raise SpinbookError(Problem(folder, None, problem, "Choose a place where you may write.")) from None

@@ -179,7 +179,7 @@ def course_files(course: Course) -> dict[str, str]:
     return {name: text.rstrip("\n") + "\n" for name, text in texts.items()}
 
 
-def _texts(course: Course, what: str, cells_of: Callable[[Chapter], Iterable[ChapterCell]]) -> dict[str, str]:
+def _texts(course: Course, noun: str, cells_of: Callable[[Chapter], Iterable[ChapterCell]]) -> dict[str, str]:
     """Return the texts of these cells of the course by their names, sorted. Raises SpinbookError."""
     first: dict[str, tuple[Path, ChapterCell]] = {}
     readings = list(read_all(course))
@@ -192,7 +192,7 @@ def _texts(course: Course, what: str, cells_of: Callable[[Chapter], Iterable[Cha
                 # The chapter shows the file several times: the last version counts.
                 first[name] = (file, cell)
             elif known.whole != cell.whole:
-                problem = f"the {what} `{name}` is also defined in {file}:{known.line}, with other text."
+                problem = f"the {noun} `{name}` is also defined in {file}:{known.line}, with other text."
                 fix = "Give one of them another name: the package can hold only one file with each name."
                 problems.append(Problem(chapter.file, cell.line, problem, fix))
     refuse_errors(problems)

@@ -55,10 +55,8 @@ class PlotRecording:
 
     def in_order(self) -> list[PlotCurve]:
         """Return the curves topic by topic in the order of the paths, whichever topic's message arrived first."""
-        known = self.topics
-        return sorted(
-            self.curves.values(), key=lambda one: known.index(one.quantity.topic) if one.quantity.topic in known else 0
-        )
+        places = {topic: place for place, topic in enumerate(self.topics)}
+        return sorted(self.curves.values(), key=lambda curve: places.get(curve.quantity.topic, 0))
 
     def why_empty(self, paths: Sequence[str]) -> str:
         """Return why nothing was recorded for these paths."""
