@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from grader.checking.created import CreationCall, created, texts
-from grader.exercise.exercise import Exercise, ExerciseError, Qos
+from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.exercise_toml import line_of
 from grader.exercise.starter import hidden_blocks
 from grader.scenario.command_line import starts
@@ -32,18 +31,6 @@ _FIX = "Make the two agree: students see exercise.toml, and the checks use it."
 
 #: What rclpy or a library creates without a call in the program.
 _OF_LIBRARIES = frozenset(("/clock", "/parameter_events", "/rosout", "/tf", "/tf_static"))
-
-
-@dataclass(frozen=True)
-class _DeclaredTable:
-    """One table of exercise.toml: its kind, its number among the tables of this kind, and its values."""
-
-    kind: str
-    number: int
-    name: str
-    type: str
-    qos: Qos | None = None
-    default: Any = None
 
 
 def disagreements(exercise: Exercise) -> Iterator[ExerciseError]:
@@ -97,20 +84,23 @@ def _told_to_read(world: World) -> Iterator[str]:
             yield topic
 
 
-def _declared(exercise: Exercise) -> Iterator[_DeclaredTable]:
-    """Yield all tables, kind by kind, each with its number in exercise.toml."""
-    counts = dict.fromkeys(_WORDS, -1)
+def _declared(exercise: Exercise) -> Iterator[CreationCall]:
+    """Yield what exercise.toml declares, kind by kind, as the call that creates it; `line` is that of the table."""
+    toml, counts = exercise.folder / "exercise.toml", dict.fromkeys(_WORDS, -1)
+
+    def line(kind: str) -> int:
+        counts[kind] += 1
+        return line_of(toml, kind, counts[kind], "") or 1
+
     for topic in exercise.topics:
-        counts[topic.direction] += 1
-        yield _DeclaredTable(topic.direction, counts[topic.direction], topic.name, topic.type, topic.qos)
+        yield CreationCall(topic.direction, line(topic.direction), topic.name, topic.type, topic.qos)
     for end in exercise.endpoints:
-        counts[end.role] += 1
-        yield _DeclaredTable(end.role, counts[end.role], end.name, end.type)
-    for number, parameter in enumerate(exercise.parameters):
-        yield _DeclaredTable("parameter", number, parameter.name, parameter.type, default=parameter.default)
+        yield CreationCall(end.role, line(end.role), end.name, end.type)
+    for parameter in exercise.parameters:
+        yield CreationCall("parameter", line("parameter"), parameter.name, parameter.type, default=parameter.default)
 
 
-def _difference(call: CreationCall, declared: tuple[_DeclaredTable, ...], exercise: Exercise) -> str:
+def _difference(call: CreationCall, declared: tuple[CreationCall, ...], exercise: Exercise) -> str:
     """Return how it differs from the declaration, to follow the words "the solution"; empty if it does not."""
     verb = "declares" if call.kind == "parameter" else "creates"
     phrase = f"{verb} {_WORDS[call.kind]} {call.name}"
@@ -124,7 +114,7 @@ def _difference(call: CreationCall, declared: tuple[_DeclaredTable, ...], exerci
     return _other_value(call, same[0], phrase)
 
 
-def _other_value(call: CreationCall, other: _DeclaredTable, phrase: str) -> str:
+def _other_value(call: CreationCall, other: CreationCall, phrase: str) -> str:
     """Return the first of type, QoS and default that differs from the declaration."""
     pairs = [("type", call.type, other.type), ("default", call.default, other.default)]
     if call.kind == other.kind and call.qos and other.qos:
@@ -141,20 +131,16 @@ def _shown(value: Any) -> str:
 
 
 def _missing(
-    exercise: Exercise, file: Path, source: str, declared: tuple[_DeclaredTable, ...], made: tuple[CreationCall, ...]
+    exercise: Exercise, file: Path, source: str, declared: tuple[CreationCall, ...], made: tuple[CreationCall, ...]
 ) -> Iterator[ExerciseError]:
     """Yield what is declared, but neither created nor named anywhere in the solution."""
-    toml, written = exercise.folder / "exercise.toml", texts(source)
+    written = _OF_LIBRARIES | texts(source)
     computed = {call.kind for call in made if call.name is None}
+    there = {(call.kind, call.name) for call in made}
     for table in declared:
-        there = any((other.kind, other.name) == (table.kind, table.name) for other in made)
-        if (
-            there
-            or table.kind in computed
-            or table.name in _OF_LIBRARIES
-            or {table.name, table.name.lstrip("/")} & written
-        ):
+        name = table.name or ""
+        if (table.kind, name) in there or table.kind in computed or {name, name.lstrip("/")} & written:
             continue
         verb = "declare" if table.kind == "parameter" else "create"
-        problem = f"{file.name} does not {verb} {_WORDS[table.kind]} {table.name}, which is declared here"
-        yield ExerciseError(toml, problem, _FIX, line_of(toml, table.kind, table.number, ""))
+        problem = f"{file.name} does not {verb} {_WORDS[table.kind]} {name}, which is declared here"
+        yield ExerciseError(exercise.folder / "exercise.toml", problem, _FIX, table.line)
