@@ -22,18 +22,6 @@ def test_a_name_is_never_given_twice() -> None:
     assert len(set(names_of(files).values())) == len(files)
 
 
-def test_chapters_with_dots_in_their_names_keep_their_own_outputs(course: CourseFolder) -> None:
-    chapters = {f"1.{name}": f"# {name}\n\n```python\nprint('{name} ran')\n```\n" for name in ("one", "two")}
-
-    said = course.write(**chapters).spinbook("build", "--execute")
-
-    assert said.returncode == 0
-    for name in ("one", "two"):
-        assert f"{name} ran\n" in course.outputs(f"1.{name}").values()
-    graphs = sorted(path.name for path in (course.root / "build/executed").glob("*.json"))
-    assert graphs in ([], ["1.one.graph.json", "1.two.graph.json"])
-
-
 def test_a_name_that_no_chapter_has_is_reported_and_fails(course: CourseFolder) -> None:
     said = course.write(nodes="# Nodes\n").spinbook("build", "--execute", "node")
 
