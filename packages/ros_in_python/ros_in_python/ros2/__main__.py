@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import io
+import signal
 import sys
-
-from groundwork.clean_environment import restart_if_polluted
 
 
 def main() -> None:
@@ -13,11 +12,14 @@ def main() -> None:
 
     Nothing else may be imported before another installation's modules are out of the way.
     """
-    restart_if_polluted("ros_in_python.ros2.__main__")
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a message may have characters that the terminal's encoding lacks
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # it may have been ignored: see cli.py
     try:
+        from groundwork.clean_environment import restart_if_polluted
+
+        restart_if_polluted("ros_in_python.ros2.__main__")
+        for stream in (sys.stdout, sys.stderr):
+            if isinstance(stream, io.TextIOWrapper):
+                stream.reconfigure(errors="replace")  # a message may have what the terminal's encoding lacks
         from ros_in_python.ros2.command import ros2
 
         ros2(prog_name="ros2")

@@ -5,9 +5,11 @@ from __future__ import annotations
 import difflib
 import functools
 import importlib
+import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -148,13 +150,25 @@ def listen() -> None:
     """Make SIGINT and SIGTERM raise `StopSignal`, for the rest of this process's life.
 
     SIGINT is set even where it was ignored (a shell ignores it for what it starts in the background), because a
-    notebook stops its commands with it. Only the first signal is raised: cleaning up is not interrupted by the
-    second, and a SIGTERM during it ends the process at once.
+    notebook stops its commands with it. Cleaning up is not interrupted by a second SIGINT soon afterwards; a SIGTERM
+    during it ends the process at once. What hangs all the same is ended by SIGALRM.
     """
     if threading.current_thread() is not threading.main_thread():
         return
     signal.signal(signal.SIGINT, _stop)
     signal.signal(signal.SIGTERM, _stop)
+    sys.unraisablehook = _raise_again
+
+
+def exit_code_of(error: BaseException) -> int | None:
+    """Return the exit status after a signal; None if this error has nothing to do with one.
+
+    Code in C that calls Python may make another error of the `StopSignal` that it gets: ImportError, TypeError.
+    """
+    if isinstance(error, StopSignal):
+        return error.exit_code
+    is_ours = isinstance(error, click.ClickException | click.exceptions.Exit) or not isinstance(error, Exception)
+    return None if is_ours or _stopped_at is None else EXIT_AFTER_SIGINT
 
 
 @contextmanager
@@ -172,6 +186,12 @@ def held_back() -> Iterator[None]:
         _raise(number)
 
 
+#: After this time (s), a second SIGINT is raised too: the first may have been lost in a callback from C.
+_PATIENCE_S = 2.0
+#: How long cleaning up may take (s).
+_AT_MOST_S = 30.0
+# When a signal was raised (s); None if none was.
+_stopped_at: float | None = None
 # For each block that holds signals back, the number of the one that has come.
 _held: list[int | None] = []
 
@@ -179,11 +199,25 @@ _held: list[int | None] = []
 def _stop(number: int, frame: FrameType | None) -> None:
     if _held and _held[-1] is None:
         _held[-1] = number
-    else:
+    elif _stopped_at is None or time.monotonic() - _stopped_at > _PATIENCE_S:
         _raise(number)
 
 
 def _raise(number: int) -> NoReturn:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    global _stopped_at
+    _stopped_at = time.monotonic()
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    if hasattr(signal, "setitimer"):  # a page has none
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_REAL, _AT_MOST_S)
     raise StopSignal(number)
+
+
+def _raise_again(lost: sys.UnraisableHookArgs) -> None:
+    """Raise a signal once more that came in a destructor or a callback, where Python drops exceptions."""
+    global _stopped_at
+    if isinstance(lost.exc_value, StopSignal):
+        _stopped_at = None
+        threading.Timer(0.01, os.kill, (os.getpid(), signal.SIGINT)).start()
+    else:
+        sys.__unraisablehook__(lost)

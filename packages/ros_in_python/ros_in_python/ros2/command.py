@@ -49,8 +49,10 @@ class Ros2(Menu):
         cli.listen()
         try:
             return super().invoke(ctx)
-        except cli.StopSignal as stopped:
-            raise click.exceptions.Exit(stopped.exit_code) from None
+        except BaseException as error:
+            if (code := cli.exit_code_of(error)) is None:
+                raise
+            raise click.exceptions.Exit(code) from None
 
 
 #: The entry points by which another installed distribution adds a noun: NAME = "module:click_command".

@@ -218,6 +218,29 @@ def test_a_signal_ends_what_waits_in_vain(ros_domain: int, terminal: Terminal) -
     assert (answer.code, answer.out, answer.err) == (2, "", "")
 
 
+LOST = """
+import os, signal, time
+from ros_in_python.ros2 import cli
+
+class Destroyed:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0)
+
+cli.listen()
+try:
+    Destroyed()
+    time.sleep(30)
+except cli.StopSignal:
+    print("stopped")
+"""
+
+
+def test_a_signal_is_not_lost_where_python_drops_exceptions() -> None:
+    ended = subprocess.run([sys.executable, "-c", LOST], capture_output=True, text=True, timeout=30, check=False)
+    assert (ended.stdout, ended.stderr) == ("stopped\n", "")
+
+
 def test_sigint_is_heard_even_where_it_was_ignored(standing: Robot, terminal: Terminal) -> None:
     standing("counter")
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
