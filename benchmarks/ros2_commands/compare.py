@@ -33,6 +33,7 @@ _CHANGING = re.compile(r"\d+\.\d+|\b[0-9a-f]{8,}\b|(?<=sec: )\d+|(?<=pid \[)\d+|
 def main() -> None:
     """Run all lines, and say how many are equal."""
     given = _arguments()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in a shell's background, and by children then
     lines = [line for line in (HERE / "commands.txt").read_text().splitlines() if given.only in line.split()[0]]
     given.output.mkdir(parents=True, exist_ok=True)
     equal = 0

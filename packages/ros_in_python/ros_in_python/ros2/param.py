@@ -81,7 +81,9 @@ def parameters_of_file(file: Path, node: str, *, use_wildcard: bool) -> list[Any
     from rclpy.parameter import parameter_dict_from_yaml_file
 
     try:
-        parameters = parameter_dict_from_yaml_file(str(file), use_wildcard, target_nodes=[node])
+        written = yaml.safe_load(file.read_text(encoding="utf-8"))
+        owners = [owner for owner in (["/**"] if use_wildcard else []) + [node] if owner in written]
+        parameters = parameter_dict_from_yaml_file(str(file), target_nodes=owners or [node])
     except OSError as error:
         raise CommandError(f"{file}: {error.strerror}") from None
     except yaml.YAMLError as error:

@@ -88,7 +88,7 @@ def xml(package_name: str, tag: str | None) -> None:
     prefix = search.everywhere(Path.cwd()).get(package_name)
     file = prefix / "share" / package_name / "package.xml" if prefix else None
     if file is None or not file.is_file():
-        raise CommandError(f"Package '{package_name}' not found", "`ros2 pkg list` shows those that are there.")
+        raise CommandError("Package not found", "`ros2 pkg list` shows those that are there.")
     text = file.read_text(encoding="utf-8")
     if tag is None:
         click.echo(text.rstrip("\n"))

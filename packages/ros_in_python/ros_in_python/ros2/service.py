@@ -179,5 +179,6 @@ def echo(graph: GraphView, service_name: str, service_type: str | None, **option
     topic, kind = f"{name}/_service_event", interfaces.service_class(service_type)
     graph.settle(lambda: bool(graph.publishers(topic)))
     if not graph.publishers(topic):
-        click.echo(f"No node publishes the calls of {name} yet: see Node.configure_introspection in rclpy.", err=True)
+        click.echo(f"No publishers on topic '{topic}'; is service introspection on the client or server enabled?")
+        click.echo("In rclpy, it is with configure_introspection of the service or the client.", err=True)
     listen(graph, topic, kind.Event, (), qos_profile_services_default, options)

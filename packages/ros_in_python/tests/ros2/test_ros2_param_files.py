@@ -6,6 +6,8 @@ from pathlib import Path
 
 from ros2_terminal import Robot, Terminal
 
+from ros_in_python.ros2.param import parameters_of_file
+
 
 def test_a_list_is_shown_as_a_list(standing: Robot, terminal: Terminal) -> None:
     standing("publisher")
@@ -17,7 +19,11 @@ def test_a_file_sets_what_a_running_node_accepts_and_says_what_it_refuses(
 ) -> None:
     robot("publisher")
     file = tmp_path / "robot.yaml"
-    file.write_text("/joint_publisher:\n  ros__parameters:\n    rate: 20\n    gains:\n      left: [0.75, 1.0]\n")
+    file.write_text(
+        "/joint_publisher: {ros__parameters: {rate: 20}}\n/**: {ros__parameters: {gains.left: [0.75, 1.0]}}\n"
+    )
+    assert [it.name for it in parameters_of_file(file, "/joint_publisher", use_wildcard=False)] == ["rate"]
+    assert [it.name for it in parameters_of_file(file, "/arm", use_wildcard=True)] == ["gains.left"]
     answer = terminal.ros2("param", "load", "/joint_publisher", str(file))
     assert answer.code == 1
     assert answer.out == "Set parameter gains.left successful\n"
