@@ -108,19 +108,10 @@ class Session:
         return Path.cwd() / self.package.workspace
 
     def run_node(
-        self,
-        name: str,
-        code: str,
-        bound: DisplayLimit,
-        start: NodeStart | None = None,
-        after: Sequence[str] | None = None,
+        self, name: str, code: str, bound: DisplayLimit, start: NodeStart, after: Sequence[str] | None
     ) -> None:
-        """Write a node's code as a module of its package, start it and show its log for a while.
-
-        `after` names the nodes and parts whose code completes it; None if it is complete.
-        """
-        start = start or NodeStart()
-        file = self._saved(name, code, start, after)
+        """Save a node, start it and show its log for a while; `after` as in `save_node`."""
+        file = self.save_node(name, code, start, after)
         self.run_background(name, start.argv(file), self._import_path(file), Path.cwd(), bound)
 
     def restart(self, name: str, words: Sequence[str]) -> RunningNode:
@@ -134,14 +125,10 @@ class Session:
             print(f"(replaces {earlier}, the earlier version of this node)")
             self.nodes.stop(earlier)
 
-    def save_node(self, name: str, code: str, start: NodeStart) -> None:
-        """Write a whole program as a module of its package, for `ros2 run` to start."""
-        self._saved(name, code, start, None)
-
-    def keep_node(self, name: str, code: str, start: NodeStart, after: Sequence[str] | None = None) -> None:
-        """Write a node's code as a module of its package, for `ros2 run` to start with arguments."""
+    def keep_node(self, name: str, code: str, start: NodeStart, after: Sequence[str] | None) -> None:
+        """Save a node for `ros2 run` to start with arguments; `after` as in `save_node`."""
         known_as = start.known_as or (f"{self.package.name}/{name}",)
-        self._saved(name, code, replace(start, known_as=known_as), after)
+        self.save_node(name, code, replace(start, known_as=known_as), after)
         if start.classes:
             print(f"— saved, not started: nothing here calls {start.classes[0]}, which spins —")
             return
@@ -149,7 +136,11 @@ class Session:
         print("— saved, not started: it reads command-line arguments. Start it with them:")
         print(f"  %ros2 run {package} {executable} …")
 
-    def _saved(self, name: str, code: str, start: NodeStart, after: Sequence[str] | None) -> Path:
+    def save_node(self, name: str, code: str, start: NodeStart, after: Sequence[str] | None = None) -> Path:
+        """Write a node's code as a module of its package, for `ros2 run` to start. Return its file.
+
+        `after` names the nodes and parts whose code completes it; None if it is complete. Raises CellFailed.
+        """
         package, executables = self._package_of(start.known_as)
         if package.name == name:
             raise CellFailed(f"A node can't have the package's name, {name}.")
