@@ -99,12 +99,9 @@ def joins(process: KeptProcess, domain: int) -> Callable[[], bool]:
 class OutputPrinter:
     """Prints lines as they arrive; if there are very many, only the first and, at the end, the last."""
 
-    def __init__(
-        self, first: int = FIRST_LINES, last: int = LAST_LINES, short: Callable[[str], str] = shortened
-    ) -> None:
+    def __init__(self, short: Callable[[str], str] = shortened) -> None:
         self._short = short
-        self._first = first
-        self._last: deque[str] = deque(maxlen=last)
+        self._last: deque[str] = deque(maxlen=LAST_LINES)
         self._count = 0
         self._part = ""
         self._lost = False
@@ -135,7 +132,7 @@ class OutputPrinter:
 
     def _line(self, line: str) -> None:
         self._count += 1
-        if self._count <= self._first:
+        if self._count <= FIRST_LINES:
             print(self._short(line.rstrip("\r")))
         else:
             self._last.append(line)
@@ -145,7 +142,7 @@ class OutputPrinter:
         if self._part:
             self._line(self._part)
             self._part = ""
-        hidden = max(self._count, total_lines - self._left_out) - self._first - len(self._last)
+        hidden = max(self._count, total_lines - self._left_out) - FIRST_LINES - len(self._last)
         if hidden > 0 or self._lost:
             print(f"… {hidden:,} more lines{rest_is} …")
         for line in self._last:
@@ -166,14 +163,14 @@ def show_for(
     process: KeptProcess,
     bound: DisplayLimit,
     rest_is: str,
-    has_joined: Callable[[], bool] = lambda: False,
-    short: Callable[[str], str] = shortened,
+    has_joined: Callable[[], bool],
+    short: Callable[[str], str],
 ) -> None:
     """Show what a process prints until it ends, or until its time is up; then say what is missing.
 
     `has_joined` says whether the process takes part in ROS yet (see `joins`), `short` shortens lines that are too long.
     """
-    shown = OutputPrinter(short=short)
+    shown = OutputPrinter(short)
     countdown = Countdown(bound, has_joined)
     over = came = False
     while not over:

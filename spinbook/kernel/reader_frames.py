@@ -41,10 +41,10 @@ def is_log_line(line: str) -> bool:
 
 
 class ReaderFrames:
-    """Goes through the lines of an output in order, and leaves out frames of files that are not below `root`."""
+    """Goes through the lines of an output in order, and leaves out frames of files that are not below this folder."""
 
-    def __init__(self, root: Path | None = None) -> None:
-        self._root = root or Path.cwd()
+    def __init__(self) -> None:
+        self._root = Path.cwd()
         self._inside = False
         self._keeps = True
 

@@ -36,8 +36,7 @@ def die_with_parent() -> None:
 class ProcessOutput:
     """The output of a process: its first and last bytes, and how many were dropped between them."""
 
-    def __init__(self, kept_at_each_end: int = KEPT_AT_EACH_END) -> None:
-        self._kept = kept_at_each_end
+    def __init__(self) -> None:
         self._head = bytearray()
         self._tail = bytearray()
         self.total = 0
@@ -47,11 +46,11 @@ class ProcessOutput:
         """Add output."""
         self.total += len(data)
         self.lines += data.count(b"\n")
-        room = max(0, self._kept - len(self._head))
+        room = max(0, KEPT_AT_EACH_END - len(self._head))
         self._head += data[:room]
         self._tail += data[room:]
-        if len(self._tail) > 2 * self._kept:
-            del self._tail[: -self._kept]
+        if len(self._tail) > 2 * KEPT_AT_EACH_END:
+            del self._tail[:-KEPT_AT_EACH_END]
 
     def since(self, offset: int) -> tuple[int, int, bytes]:
         """Return (offset, dropped, bytes): what is kept from `offset` on, and how many bytes before it are lost."""
