@@ -1,6 +1,6 @@
 """The real Week 3 chapter, built and run: every cell does what the chapter says about it.
 
-`make soak` runs it, first the sections about the joints, then all of it; `make course` runs the whole chapter, too.
+`make soak` runs it, and so does `make course`.
 """
 
 from __future__ import annotations
@@ -16,19 +16,13 @@ from executed_chapter import ROOT, executed
 NAME = "03-nodes-and-topics"
 JOINTS = [f"{side}_{joint}" for side in ("left", "right") for joint in ("shoulder_pitch", "shoulder_roll", "elbow")]
 
-#: The sections that depend on one another from the first node to the package, and one exercise of three.
-THE_JOINTS = (
-    *("A publisher: the joint commands", "A subscriber: the joint monitor", "Are the warnings real?"),
-    *("Look into the running system", "See it move", "As a ROS 2 package", "Practice: joint velocities"),
-)
-pytestmark = pytest.mark.soak
-WHOLE = pytest.param((), id="whole chapter", marks=pytest.mark.timeout(900))
+pytestmark = [pytest.mark.soak, pytest.mark.timeout(900)]
 
 
-@pytest.fixture(scope="module", params=[pytest.param(THE_JOINTS, id="the joints"), WHOLE])
-def notebook(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
+@pytest.fixture(scope="module")
+def notebook(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The chapter's notebook with its outputs, made from a copy of the course."""
-    return executed(tmp_path_factory.mktemp("course"), NAME, request.param)
+    return executed(tmp_path_factory.mktemp("course"), NAME)
 
 
 def cell(notebook: Any, cell_id: str) -> Any:
@@ -46,15 +40,10 @@ def pictures(notebook: Any) -> list[Any]:
 def test_every_code_cell_ran_and_only_those_that_should_fail_did(notebook: Any) -> None:
     code = [c for c in notebook.cells if c.cell_type == "code"]
 
-    assert len(code) > 12
+    assert len(code) > 40
     assert all(c.execution_count for c in code)
     failed = {c.id for c in code if any(o.output_type == "error" for o in c.outputs)}
     assert failed == {c.id for c in code if "raises-exception" in c.metadata.get("tags", [])}
-
-
-@pytest.mark.parametrize("notebook", [WHOLE], indirect=True)
-def test_the_whole_chapter_is_there(notebook: Any) -> None:
-    assert sum(c.cell_type == "code" for c in notebook.cells) > 40
 
 
 def test_about_ten_messages_a_second_are_measured(notebook: Any) -> None:
@@ -77,7 +66,6 @@ def test_six_joints_are_plotted(notebook: Any) -> None:
     assert b64decode(plots[0]["data"]["image/png"]).startswith(b"\x89PNG")
 
 
-@pytest.mark.parametrize("notebook", [WHOLE], indirect=True)
 def test_the_turtles_circle_is_shown(notebook: Any) -> None:
     assert any("image/png" in output.get("data", {}) for output in cell(notebook, "code-drive-a-turtle").outputs)
 

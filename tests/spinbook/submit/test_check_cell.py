@@ -41,10 +41,12 @@ def texts(shown: Shown) -> tuple[str, str]:
     return " ".join(shown.pictures[0]["text/plain"].split()), shown.pictures[0]["text/html"]
 
 
-def test_a_cell_that_was_not_run_is_asked_for(kernel: Kernel) -> None:
-    shown = kernel.run("%check joint_velocity")
+@pytest.mark.parametrize("verb", ["check", "submit", "try"])
+def test_a_cell_that_was_not_run_is_asked_for(kernel: Kernel, verb: str) -> None:
+    shown = kernel.run(f"%{verb} joint_velocity")
 
     assert shown.error == "Run the cell that begins with %%node joint_velocity first. Then run this one again."
+    assert not list(kernel.folder.glob("*.zip"))
 
 
 def test_a_program_that_can_not_start_is_reported_with_its_line(kernel: Kernel) -> None:

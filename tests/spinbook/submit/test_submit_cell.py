@@ -25,12 +25,6 @@ def kernel(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Kernel]:
     kernel.shut_down()
 
 
-def test_a_cell_that_was_not_run_is_asked_for(kernel: Kernel) -> None:
-    shown = kernel.run("%submit joint_velocity")
-    assert "Run the cell that begins with %%node joint_velocity first" in shown.error
-    assert not list(kernel.folder.glob("*.zip"))
-
-
 def test_the_cell_is_checked_and_handed_in_as_it_was_run(kernel: Kernel) -> None:
     kernel.run(f"%%node joint_velocity --seconds 0.1\n{CODE}")
     shown = kernel.run("%submit joint_velocity --student 'Ada L'")

@@ -13,12 +13,6 @@ from spinbook.kernel.timeline import lanes
 from submit.conftest import node_cell, solution
 
 
-def test_a_cell_that_was_not_run_is_asked_for(kernel: Kernel) -> None:
-    shown = kernel.run("%try joint_velocity")
-
-    assert shown.error == "Run the cell that begins with %%node joint_velocity first. Then run this one again."
-
-
 def test_an_unknown_scenario_lists_those_that_there_are(kernel: Kernel) -> None:
     kernel.run(node_cell(solution()))
 
