@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeAlias
 
 from ros_in_python.launch.actions import Action, LaunchedProgram, LifecycleNode
 from ros_in_python.launch.conditions import Condition
+from ros_in_python.ros2.cli import CommandError
 
 #: Actions, or a function that gets the event and the context and returns actions or None.
 Reaction: TypeAlias = Sequence[Any] | Callable[[Any, Any], Any] | Any
@@ -86,10 +88,19 @@ class StateTransition(LaunchEvent):
 
 @dataclass(frozen=True, kw_only=True)
 class SignalProcess(LaunchEvent):
-    """Sends programs a signal, when it is emitted."""
+    """Sends programs a signal, by its number or name, when it is emitted."""
 
-    signal_number: int
+    signal_number: int | str
     process_matcher: Callable[[LaunchedProgram], bool]
+
+    @property
+    def number(self) -> signal.Signals:
+        """The signal. Raises `CommandError` if there is none with this number or name."""
+        of = self.signal_number
+        try:
+            return signal.Signals[of] if isinstance(of, str) else signal.Signals(of)
+        except (KeyError, ValueError):
+            raise CommandError(f"SignalProcess: there is no signal {of!r}") from None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -80,8 +80,9 @@ class ProcessGroup:
         with self._listening():
             try:
                 self._do(steps)
-                while self._running or self._later:
-                    self._wait()
+                self._wait_for_all()
+                self._end(signal.SIGINT, events.ShutdownRequested("idle"))
+                self._wait_for_all()  # what handlers of the end have begun
             finally:
                 self._kill()
                 if self._lifecycle:
@@ -118,9 +119,11 @@ class ProcessGroup:
         for running in list(self._running):
             action = running.step.action
             if isinstance(event, events.ShutdownProcess) and event.process_matcher(action):
+                self._announce(running, signal.SIGINT)
                 running.end(signal.SIGINT)
             elif isinstance(event, events.SignalProcess) and event.process_matcher(action):
-                running.send(event.signal_number)
+                self._announce(running, event.number)
+                running.send(event.number)
             elif (
                 isinstance(event, events.ChangeState)
                 and isinstance(action, LifecycleNode)
@@ -133,9 +136,12 @@ class ProcessGroup:
         self._lifecycle = self._lifecycle or LifecycleClient(self._queue.put)
         return self._lifecycle
 
+    def _announce(self, running: _LaunchedProcess, number: signal.Signals) -> None:
+        self._say("INFO", running.name, f"sending signal '{number.name}' to process[{running.name}]")
+
     def _start(self, step: ProcessToStart) -> None:
         hears_lines = any(isinstance(other.handler, events.OnProcessIO) for other in self._handlers)
-        name = f"{step.name}-{next(self._numbers)}"
+        name = step.name_again or f"{step.name}-{next(self._numbers)}"
         if isinstance(step.action, LifecycleNode):
             self._life().watch(step.action)
         if step.action.log_cmd:
@@ -171,6 +177,10 @@ class ProcessGroup:
                 continue
             if step.handler.handle_once:
                 self._handlers.remove(step)
+            if isinstance(event, events.ProcessExited) and not self._is_ending and any(map(_ends, steps)):
+                self._say(
+                    "INFO", "launch", f"process[{event.process_name}] was required: shutting down launched system"
+                )
             self._do(steps)
 
     # --- what the processes do
@@ -183,6 +193,10 @@ class ProcessGroup:
                 self._queue.put(events.ProcessIO(*running.what, line, is_stdout))
         if is_stdout:
             self._queue.put(running)
+
+    def _wait_for_all(self) -> None:
+        while self._running or self._later:
+            self._wait()
 
     def _wait(self) -> None:
         with contextlib.suppress(queue.Empty):
@@ -211,6 +225,7 @@ class ProcessGroup:
             f"process[{running.name}] failed to terminate '{after}' seconds after receiving '{weaker}', "
             f"escalating to '{stronger.name}'",
         )
+        self._announce(running, stronger)
         running.send(stronger)
 
     def _take(self, event: Any) -> None:
@@ -240,6 +255,8 @@ class ProcessGroup:
         self._later = [entry for entry in self._later if not entry[2].is_cancelled_at_end]
         heapq.heapify(self._later)
         for running in self._running:
+            if not event.due_to_sigint:
+                self._announce(running, number)
             running.end(number)
         if first:
             self._happened(event)
@@ -250,11 +267,12 @@ class ProcessGroup:
             self._say("INFO", running.name, f"process has finished cleanly [pid {pid}]")
         else:
             self._died = self._died or not running.is_told
-            cmd = " ".join(word for word in step.argv if word.strip())
+            words = step.argv[2:] if getattr(step.action, "shell", False) else step.argv  # without /bin/sh -c
+            cmd = " ".join(word for word in words if word.strip())
             self._say("ERROR", running.name, f"process has died [pid {pid}, exit code {code}, cmd '{cmd}'].")
         self._happened(events.ProcessExited(*running.what, code))
         if step.respawn_s is not None and step.respawns > 0 and not self._is_ending:
-            again = replace(step, respawns=step.respawns - 1)
+            again = replace(step, respawns=step.respawns - 1, name_again=running.name)
             self._schedule(Later(step.respawn_s, (again,)))
         else:
             self._happened(events.ExecutionComplete(step.action))
@@ -284,3 +302,7 @@ class ProcessGroup:
         finally:
             for number, handler in before.items():
                 signal.signal(number, handler)
+
+
+def _ends(step: Step) -> bool:
+    return isinstance(step, Emission) and isinstance(step.event, events.ShutdownRequested)

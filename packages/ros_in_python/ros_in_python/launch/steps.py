@@ -17,7 +17,8 @@ class ProcessToStart:
     """One program's process; `name` stands before each line that it prints: `joint_publisher-1`.
 
     `respawn_s` is how long after its end it starts again (s), at most `respawns` times; None if it does not. `grace_s`
-    is how long it may take to end after SIGINT, and then after SIGTERM (s).
+    is how long it may take to end after SIGINT, and then after SIGTERM (s). `name_again` is the name with its number
+    of one that starts again.
     """
 
     name: str
@@ -28,6 +29,7 @@ class ProcessToStart:
     respawn_s: float | None = None
     respawns: float = math.inf
     grace_s: tuple[float, float] = (5.0, 5.0)
+    name_again: str = ""
 
 
 @dataclass(frozen=True)

@@ -54,10 +54,12 @@ return LaunchDescription([
     ExecuteProcess(
         cmd=["echo $GREETING $PWD $NAME"], shell=True, cwd="/tmp", additional_env={"NAME": "me"}, name="shell"),
     GroupAction([UnsetEnvironmentVariable("GREETING")]),
+    RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg=LocalSubstitution("event.reason"))])),
     LogInfo(msg=["env: ", EnvironmentVariable("GREETING")]),
 ])""")  # fmt: skip
     assert (answer.code, answer.err) == (0, "")
-    assert sorted(said(answer)) == ["[shell-1] hello world /tmp me", "env: hello world"]
+    assert sorted(said(answer)[:2]) == ["[shell-1] hello world /tmp me", "env: hello world"]
+    assert said(answer)[2:] == ["idle"]
 
 
 def test_an_included_file_gets_arguments_and_knows_where_it_is(terminal: Terminal, tmp_path: Path) -> None:
@@ -175,6 +177,8 @@ return LaunchDescription([
 ])""")  # fmt: skip
     assert answer.code == 0
     assert "ends: done" in said(answer)
+    assert "[INFO] [launch]: process[echo-2] was required: shutting down launched system" in answer.out
+    assert "[INFO] [sleep-1]: sending signal 'SIGINT' to process[sleep-1]" in answer.out
     assert "[ERROR] [sleep-1]: process has died" in answer.out
 
 
@@ -187,7 +191,7 @@ return LaunchDescription([
         on_exit=lambda event, context: Shutdown() if event.returncode else None),
 ])""")  # fmt: skip
     assert (tmp_path / "count").read_text() == "again\n" * 3
-    assert answer.out.count("process started") == 3
+    assert answer.out.count("[echo-1]: process started") == 3
 
 
 def test_a_group_can_forget_what_holds_outside(terminal: Terminal, tmp_path: Path) -> None:
@@ -215,7 +219,8 @@ return LaunchDescription([
     TimerAction(period=0.3, actions=[LogInfo(msg="after all")], cancel_on_shutdown=False),
     TimerAction(period=0.3, actions=[LogInfo(msg="never")]),
 ])""")  # fmt: skip
-    assert said(answer) == ["first", "second", "[echo-1] x", "enough", "after all"]
+    end = "[INFO] [launch]: process[echo-1] was required: shutting down launched system"
+    assert said(answer) == ["first", "second", "[echo-1] x", end, "enough", "after all"]
 
 
 def test_a_program_gets_its_signals_and_its_own_line_format(terminal: Terminal, tmp_path: Path) -> None:
@@ -227,7 +232,7 @@ stubborn = ExecuteProcess(cmd=["trap 'echo heard' INT; echo up; echo err >&2; wh
 return LaunchDescription([
     stubborn,
     RegisterEventHandler(OnProcessIO(
-        on_stdout=lambda event: EmitEvent(event=SignalProcess(signal_number=2, process_matcher=only(stubborn)))
+        on_stdout=lambda event: EmitEvent(event=SignalProcess(signal_number="SIGINT", process_matcher=only(stubborn)))
         if b"up" in event.text else EmitEvent(event=ShutdownProcess(process_matcher=only(stubborn))),
         on_stderr=lambda event: LogInfo(msg=f"other: {event.text.decode().strip()}"))),
 ])""")  # fmt: skip
