@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import importlib.util
-import re
 import sys
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -212,15 +211,9 @@ def ros_packages() -> frozenset[str]:
     return frozenset(prefixes.packages(prefixes.installed()))
 
 
-@functools.cache
 def interfaces_of(module: str) -> frozenset[str]:
     """Return the names in a module such as `sensor_msgs.msg`, from the interface files; empty for any other module."""
-    match = re.fullmatch(r"(\w+)\.(msg|srv|action)", module)
-    if not match:
-        return frozenset()
-    package, kind = match.groups()
-    interfaces = prefixes.interfaces_of(package, prefixes.installed())
-    return frozenset(name.partition("/")[2] for name in interfaces if name.startswith(f"{kind}/"))
+    return _all_interfaces().get(module, frozenset())
 
 
 def own_names(module: str, own_interfaces: Collection[str]) -> frozenset[str]:
