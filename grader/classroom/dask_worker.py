@@ -22,7 +22,8 @@ from grader.grading.grading import Grading, grading_of
 from grader.grading.reference import versions
 from grader.report.feedback_plot import picture
 from grader.sandbox.isolation import choose
-from grader.sandbox.middleware import require_middleware
+from grader.sandbox.middleware import MiddlewareUnavailable, require_middleware
+from grader.sandbox.program import SandboxUnavailable
 from grader.submission.submission import Submission
 from grader.workers.pool import WorkerPool
 from groundwork.files import cached, write_if_changed
@@ -131,11 +132,14 @@ def grade_on_worker(
 ) -> GradedSubmission:
     """Return one submission's grade, without recordings, and its plot.
 
-    `ours` describes the caller, as `describe_worker` does. A worker that differs, because it joined later, leaves the
-    cluster. `key` is the caller's `grade_key`. If this worker's key differs, the result is a `host-error`.
+    `ours` describes the caller, as `describe_worker` does. A worker that differs or can't grade leaves the cluster: it
+    joined later. `key` is the caller's `grade_key`. If this worker's key differs, the result is a `host-error`.
     """
-    if differs := differences(ours, describe_worker(options)):
-        _leave(differs)
+    try:
+        if differs := differences(ours, describe_worker(options)):
+            _leave(f"it differs: {differs}")
+    except (MiddlewareUnavailable, SandboxUnavailable) as error:
+        _leave(f"it can't grade: {str(error).rstrip('.')}")
     with _prepared(packed, options) as bench, own_core() as core:
         runner = bench.grading.runner
         if bench.key != key:
@@ -146,12 +150,12 @@ def grade_on_worker(
         return GradedSubmission(who, replace(grade, recordings={}, references={}), picture(grade, runner.exercise))
 
 
-def _leave(differs: str) -> NoReturn:
+def _leave(why: str) -> NoReturn:
     """Take this worker out of the cluster, and give its submission to another one."""
     from distributed import Reschedule, get_worker
 
     worker = get_worker()
-    worker.log_event(LEFT, f"The worker {worker.address} has left the cluster, because it differs: {differs}.")
+    worker.log_event(LEFT, f"The worker {worker.address} has left the cluster, because {why}.")
     worker.loop.add_callback(worker.close_gracefully)
     raise Reschedule
 
@@ -171,13 +175,9 @@ def _prepared(packed: ExerciseFiles, options: Options) -> Iterator[PreparedGradi
         with _lock:
             bench.users, bench.last_used = bench.users - 1, time.monotonic()
             if not bench.users:
-                _look_later()
-
-
-def _look_later() -> None:
-    timer = threading.Timer(UNUSED_S, close_unused)
-    timer.daemon = True
-    timer.start()
+                timer = threading.Timer(UNUSED_S, close_unused)
+                timer.daemon = True
+                timer.start()
 
 
 def _prepare(packed: ExerciseFiles, options: Options) -> PreparedGrading:

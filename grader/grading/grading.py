@@ -62,7 +62,7 @@ class Grading:
         if module := next(missing, None):
             text = f"This is not your fault: {module}, which notebooks have, is missing here. "
             text += "Instructors: pip install 'spinbook[notebooks]', or name it in exercise.toml (packages)."
-            return self._grade(submission, recordings, verdicts, "host-error", text, began)
+            return self._grade(submission, recordings, (), "host-error", text, began)
         first = recordings[self.runner.scenarios[0].name].ending
         outcome: Outcome = "graded" if first.outcome == "completed" else first.outcome
         return self._grade(submission, recordings, verdicts, outcome, message_of(first, self.runner.exercise), began)

@@ -19,10 +19,14 @@ import psutil
 import pytest
 from small_class import POINTS, ROOT, SmallClass, wait_until, without_timings
 
-from grader.classroom.dask_worker import differences, pack_exercise
+from grader.classroom import dask_worker
+from grader.classroom.dask_worker import ExerciseFiles, differences, pack_exercise
 from grader.classroom.request import ClusterLost
 from grader.exercise import load
+from grader.grading.grade import Options
+from grader.sandbox.middleware import MiddlewareUnavailable
 from grader.scenario.declared import declared
+from grader.submission.submission import Submission
 from interface_compiler import near, prefixes
 
 # Importing it takes half a second, in each of pytest-xdist's processes.
@@ -146,6 +150,21 @@ def test_a_worker_differs_by_its_versions_or_its_sandbox() -> None:
     ours = {"python": "3.11.2", "sandbox": "namespaces"}
     assert not differences(ours, ours)
     assert differences(ours, {"python": "3.11.2", "sandbox": "landlock"}) == "sandbox landlock, here namespaces"
+
+
+def test_a_worker_that_joined_later_and_can_not_grade_leaves_its_submissions_to_others(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def unavailable() -> None:
+        raise MiddlewareUnavailable("The middleware is missing.")
+
+    def leave(why: str) -> None:
+        raise EOFError(why)
+
+    monkeypatch.setattr(dask_worker, "require_middleware", unavailable)
+    monkeypatch.setattr(dask_worker, "_leave", leave)
+    with pytest.raises(EOFError, match=r"^it can't grade: The middleware is missing$"):
+        dask_worker.grade_on_worker(ExerciseFiles("", {}), Options(), {}, "", "anna", Submission("", "", "", "", None))
 
 
 def test_a_scheduler_that_does_not_answer_is_reported_in_a_sentence(small_class: SmallClass, cache: Path) -> None:
