@@ -34,7 +34,7 @@ _START = """async () => {
   window.worker = take("check", { output: (text) => window.heard.push(text) });
   await window.worker.ready;
 }"""
-_CHECK = "given => window.worker.call('check', given)"
+_CHECK = "given => window.worker.call('check.check', given)"
 
 
 @contextmanager
@@ -55,7 +55,7 @@ def page_of(exercises: Iterable[str]) -> Iterator[Opened]:
 
 def checked(shown: Opened, file: Path) -> dict[str, Any]:
     """What the page's check says of a program."""
-    given = {"exercise": file.relative_to(SOLUTIONS).parts[0], "source": file.read_text(encoding="utf-8")}
+    given = {"name": file.relative_to(SOLUTIONS).parts[0], "source": file.read_text(encoding="utf-8")}
     found: dict[str, Any] = shown.page.evaluate(_CHECK, given)
     return found
 

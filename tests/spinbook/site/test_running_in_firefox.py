@@ -72,7 +72,7 @@ def test_an_error_in_a_worker_arrives_with_its_message(page: Firefox) -> None:
     said = page.evaluate(
         "const { take } = await import(new URL('../run/processes.js', location.href));"
         "const worker = take('broken', {}); await worker.ready;"
-        "const said = await worker.call('drawn', { names: [], lines: null, title: '' }).catch(String);"
+        "const said = await worker.call('timeline.drawn', { names: [], lines: null, title: '' }).catch(String);"
         "worker.end(); return said"
     )
     assert "object is not iterable" in said
