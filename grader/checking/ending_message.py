@@ -29,12 +29,16 @@ ADVICE = (
         "Compare the indentation of this line with the lines around it.",
     ),
     (re.compile(r"SyntaxError: .*non-utf-8|SyntaxError: \(unicode", re.IGNORECASE), "Save the file as UTF-8."),
+    (
+        re.compile(r"SyntaxError: invalid (?:non-printable )?character"),
+        "Type this character again: copied text may have other quotes, dashes or spaces than Python's.",
+    ),
     (re.compile(r"SyntaxError"), "Python can't read this line. Look at the end of the line before it, too."),
     (
         re.compile(r"Address family not supported"),
         "A node has no network while it is graded and needs none: it communicates over ROS 2 only.",
     ),
-    (re.compile(r"NameError"), "Is the name spelled as in its definition, and defined before this line?"),
+    (re.compile(r"NameError"), "Is the name spelled as in its definition, and imported or defined before this line?"),
     (re.compile(r"ZeroDivisionError"), "When is the number that this line divides by zero?"),
     (re.compile(r"KeyError|IndexError"), "When is this key or index missing?"),
     (

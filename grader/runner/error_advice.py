@@ -73,7 +73,7 @@ _BY_TEXT = (
         "A text field of a message takes a str only. The text of a parameter is get_parameter(…).value.",
     ),
     (
-        r"has no attribute '_TYPE_SUPPORT'",
+        r"has no attribute '_TYPE_SUPPORT'|rclpy_resolve_name\(\): incompatible function arguments",
         "The class of the messages comes before the name: create_publisher(String, '/name', 10), ActionClient(self, "
         "Type, '/name').",
     ),
@@ -94,6 +94,7 @@ _BY_TEXT = (
         r"multiply sequence by non-int|only concatenate (?:str|list)|unsupported operand type\(s\) for .*'str'",
         "A value of this line is a text or a list, and no number: where does it come from? '0.5' is a text.",
     ),
+    (r"missing 1 required positional argument: 'self'", "Write parentheses after the class: node = MyNode()."),
     (r"required positional argument: 'qos_profile'", "The last argument is the queue depth, such as 10."),
     (r"required positional argument: 'node_name'", "The node's name goes in here: super().__init__('name')."),
     (r"float\(\) argument must be .*, not 'method'", "The period comes first: create_timer(period, self.on_timer)."),

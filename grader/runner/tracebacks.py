@@ -34,7 +34,8 @@ _OF_A_SYNTAX_ERROR = '  File "'
 @dataclass(frozen=True)
 class LastError:
     """The error that ended a program: its last line, such as `ZeroDivisionError: float division by zero`, and the line
-    of the student's `file` that raised it, or from which it was called, if there is one.
+    of the student's `file` that raised it, or from which it was called, if there is one; that of a callback
+    with which a library could not do anything.
 
     `place` is both in words: "line 5", with the file if there are several, and with the notebook's cell if the program
     has several. `raised_there` is whether this line itself raised it, and `traceback` is the whole text, up to the
@@ -68,8 +69,27 @@ def last_error(log: str, sources: Mapping[str, str]) -> LastError | None:
     if not own:
         return LastError(error, None, traceback=block)
     file, line = own[-1]
-    row = _row(sources[file], line)
-    return LastError(error, line, row, frames[-1:] == [(file, line)], block, file, _place(file, line, sources))
+    raised_there = frames[-1:] == [(file, line)]
+    line = line if raised_there else _callback_line(error, sources[file]) or line
+    return LastError(error, line, _row(sources[file], line), raised_there, block, file, _place(file, line, sources))
+
+
+#: The line to blame for an error that a library raises when it calls a callback, by a pattern of the error: the
+#: callback that takes other arguments; the one that was called instead of given.
+_CALLBACK_LINES = (
+    (r"TypeError: (?:\w+\.)*(\w+)\(\) (?:takes|missing) \d", r"\s*(?:async )?def \1\("),
+    (r"TypeError: ('NoneType') object is not callable", r".*\b(?:create_\w+|ActionServer)\(.*\bself\.\w+\(\)"),
+)
+
+
+def _callback_line(error: str, source: str) -> int | None:
+    """Return the line to blame for what a library raised; None unless there is exactly one."""
+    for what, where in _CALLBACK_LINES:
+        if match := re.match(what, error):
+            pattern = where.replace(r"\1", match[1])
+            lines = [number for number, row in enumerate(source.splitlines(), 1) if re.match(pattern, row)]
+            return lines[0] if len(lines) == 1 else None
+    return None
 
 
 #: What stands between the tracebacks of one error and of the error that led to it.
@@ -136,7 +156,7 @@ def _traceback(text: str) -> Iterator[str]:
 
 
 def _shortened(error: str) -> str:
-    error = _ADDRESS.sub("", error)
+    error = _ADDRESS.sub("", error).removesuffix(" The following argument types are supported:")
     return error if len(error) <= _LONGEST_ERROR else f"{error[:_LONGEST_ERROR]}…"
 
 

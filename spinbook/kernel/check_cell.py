@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -59,12 +60,13 @@ def code_of(exercise: Exercise, session: Session, shell: Any, notebook: Path | N
             code = code_of_notebook(Notebook(cells_as_run(session, shell)), exercise)
             edited = saved and digest_of(saved.source) != digest_of(code.source)
             edited = edited and _saved_after(notebook, session.ran_at[node])
-            return CheckedCode(code, _as_run(node, session.ran_at[node]), _edited(node) if edited else "")
+            warning = _edited(node) if edited else _elsewhere(node, code, shell)
+            return CheckedCode(code, _as_run(node, session.ran_at[node]), warning)
         if saved and notebook:
             not_run = (
                 f"it has not been run since the kernel started, so this is how it was last saved in {notebook.name}"
             )
-            return CheckedCode(saved, f"the cell %%node {node}; {not_run}")
+            return CheckedCode(saved, f"the cell %%node {node}; {not_run}", _elsewhere(node, saved, shell))
         with contextlib.suppress(Unreadable):
             code = code_of_notebook(Notebook(cells_as_run(session, shell)), exercise)
             return CheckedCode(code, "the cells as you ran them last, without any change that you made after that")
@@ -106,6 +108,19 @@ def _edited(node: str) -> str:
     return (
         f"You have changed the cell %%node {node} since you ran it, and the change is not in this result. "
         "Run that cell again, then {command}."
+    )
+
+
+def _elsewhere(node: str, code: Code, shell: Any) -> str:
+    """Return what to say if a later version of this program was run in a cell without its magic; "" otherwise."""
+    classes = "|".join(re.findall(r"^class (\w+)", code.source, re.MULTILINE)) or "$"
+    program = re.compile(rf"^class (?:{classes})\b.*\bspin", re.MULTILINE | re.DOTALL)
+    last = next(filter(program.search, reversed(shell.history_manager.input_hist_raw)), None)
+    if last is None or NotebookCell(0, last).magic.code.strip() in code.source:
+        return ""
+    return (
+        f"The cell that you ran last with this program does not begin with `%%node {node}`, so it is not in this "
+        "result. Make that the first line of the cell, with nothing before it, run it, then {command}."
     )
 
 

@@ -58,7 +58,7 @@ class ReaderFrames:
     def _line(self, line: str) -> str | None:
         if _BEGIN.match(line):
             self._inside, self._keeps = True, True
-        elif self._inside and (frame := _FRAME.match(line)):
+        elif (frame := _FRAME.match(line)) and (self._inside or self._of_reader(frame["file"])):  # or a SyntaxError
             file = self._of_reader(frame["file"])
             self._keeps = bool(file)
             place = f"{file}{frame['then']}{_in_cell(frame['file'], int(frame['line']))}"

@@ -91,12 +91,9 @@ def lanes(recording: RecordedEvents) -> tuple[Lane, ...]:
         if kind == "action":
             drawn += _goals(name, own, end)
         elif own:
-            drawn.append(_calls(name, own, end) if kind == "service" else _topic(name, own))
+            ticks = Lane(name, name, (), tuple(Mark(event.at, "tick") for event in own))
+            drawn.append(_calls(name, own, end) if kind == "service" else ticks)
     return tuple(drawn)
-
-
-def _topic(name: str, events: list[TimelineEvent]) -> Lane:
-    return Lane(name, name, (), tuple(Mark(event.at, "tick") for event in events))
 
 
 def _calls(name: str, events: list[TimelineEvent], end: float) -> Lane:

@@ -133,16 +133,12 @@ def _shape(look: str, x: float, y: float) -> str:
 def _placed(marks: Sequence[Mark], across: Scale) -> Iterator[tuple[str, float, int]]:
     """Yield (text, x in px, row) for each text, so that no two overlap."""
     ends: list[float] = []
-    for mark in filter(_is_written, marks):
+    for mark in (mark for mark in marks if mark.look in _WRITTEN and mark.text not in ("", _UNWRITTEN)):
         width = sum(_CAPITAL if char.isupper() else _CHAR for char in mark.text)
         x = min(max(across.at(mark.at) - width / 2, _LEFT), _WIDTH - 4 - width)
         row = next((row for row, end in enumerate(ends) if end + 6 <= x), len(ends))
         ends[row : row + 1] = [x + width]
         yield mark.text, x, row
-
-
-def _is_written(mark: Mark) -> bool:
-    return mark.look in _WRITTEN and mark.text not in ("", _UNWRITTEN)
 
 
 def _axis(across: Scale, top: float, bottom: float) -> str:

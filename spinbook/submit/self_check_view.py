@@ -91,7 +91,7 @@ def as_html(grade: Grade, exercise: Exercise) -> str:
         step=_first_step(grade, exercise),
         log=_end(grade.log),
         log_open=grade.outcome != "graded",
-        rows=_rows(grade, exercise),
+        rows=[_row(check, grade, exercise) for check in shown_checks(grade)],
         fold_hints=not exercise.count_hints,
         # In an <img>, an SVG can neither run nor load anything.
         plot=Markup("data:image/svg+xml;base64,") + base64.b64encode(plot.encode()).decode() if plot else "",
@@ -116,10 +116,6 @@ def _first_step(grade: Grade, exercise: Exercise) -> str:
 def _end(log: str) -> str:
     """Return the end of a log, which shows why the program ended."""
     return without_paths(log).strip()[-LONGEST:]
-
-
-def _rows(grade: Grade, exercise: Exercise) -> list[CheckRow]:
-    return [_row(check, grade, exercise) for check in shown_checks(grade)]
 
 
 def _row(check: ShownCheck, grade: Grade, exercise: Exercise) -> CheckRow:

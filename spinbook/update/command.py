@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import zipfile
-from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -116,8 +115,4 @@ def _lines(text: MergeReport) -> list[str]:
         lines.append("you and the course moved cells: yours are in your order")
     counted = (("changed", text.taken), ("new", text.added), ("taken out", text.removed))
     counts = [f"{len(names)} {verb}" for verb, names in counted if names]
-    return [*lines, f"other cells: {_and(counts)}. Yours are as they were."]
-
-
-def _and(parts: Sequence[str]) -> str:
-    return ", ".join(parts) or "none changed"
+    return [*lines, f"other cells: {', '.join(counts) or 'none changed'}. Yours are as they were."]

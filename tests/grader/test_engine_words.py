@@ -135,6 +135,19 @@ def test_a_name_with_the_wrong_capital_letters_is_told_from_one_that_is_misspelt
     assert misspelt.endswith("has no Haeder. Is the name spelled right?")
 
 
+@pytest.mark.parametrize(
+    ("error", "advice"),
+    [
+        ("NameError: name 'Header' is not defined", "imported or defined before this line?"),
+        ("SyntaxError: invalid character '‘' (U+2018)", "copied text may have other quotes, dashes or spaces"),
+        ("SyntaxError: invalid non-printable character U+00A0", "Type this character again"),
+    ],
+)
+def test_what_a_beginner_can_do_about_an_error_is_said(error: str, advice: str) -> None:
+    message = f"Your program did not start: {error} in line 3."
+    assert advice in message_of(Ending("did-not-start", message), load(ROOT / "exercises" / "heartbeat"))
+
+
 def test_advice_that_is_no_text_is_refused_with_its_line(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "exercises" / "joint_velocity", tmp_path / "joint_velocity")
     file = tmp_path / "joint_velocity" / "exercise.toml"

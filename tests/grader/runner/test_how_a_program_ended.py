@@ -297,6 +297,19 @@ def raised(line: int, error: str, *frames: str) -> str:
             "Begin __init__ with super().__init__('name'): that makes the node.",
         ),
         (
+            raised(
+                12,
+                "TypeError: rclpy_resolve_name(): incompatible function arguments. The following types",
+            ),
+            NODE,
+            "The class of the messages comes before the name",
+        ),
+        (
+            raised(12, "TypeError: Node.destroy_node() missing 1 required positional argument: 'self'"),
+            NODE,
+            "Write parentheses after the class: node = MyNode().",
+        ),
+        (
             raised(12, "ImportError: Cannot load backend 'TkAgg', as 'headless' is currently running"),
             NODE,
             "A node that is graded has no screen.",
@@ -315,6 +328,28 @@ def raised(line: int, error: str, *frames: str) -> str:
 )
 def test_advice_names_what_the_student_can_change(log: str, source: str, advice: str) -> None:
     assert advice in of_exit(ProcessExit(1, None, None), log, {"turnstile.py": source})[0]
+
+
+@pytest.mark.parametrize(
+    ("error", "source", "row"),
+    [
+        (
+            "TypeError: Turnstile.on_push() takes 1 positional argument but 2 were given",
+            "class Turnstile(Node):\n    def on_push(self):\n        pass\n\n\nrclpy.spin(Turnstile())\n",
+            "def on_push(self):",
+        ),
+        (
+            "TypeError: 'NoneType' object is not callable",
+            "class Turnstile(Node):\n    def __init__(self):\n        self.create_timer(1.0, self.on_timer())\n",
+            "self.create_timer(1.0, self.on_timer())",
+        ),
+    ],
+)
+def test_the_callback_that_rclpy_can_not_call_is_the_line_to_look_at(error: str, source: str, row: str) -> None:
+    log = raised(5, error, 'File "rclpy/executors.py", line 111, in await_or_execute')
+    message, line = of_exit(ProcessExit(1, None, None), log, {"turnstile.py": source})
+    assert f"in line {line}: `{row}`" in message
+    assert line == source[: source.index(row)].count("\n") + 1
 
 
 def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_its_init() -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from spinbook.kernel.node_errors import NodeError, NodeLog, describe, ended_badly, how_it_ended
+from spinbook.kernel.reader_frames import ReaderFrames
 
 RAISED = 'Traceback (most recent call last):\n  File "/ws/arm.py", line 9, in go\n    a.b\nValueError: no grip\n'
 CTRL_C = 'Traceback (most recent call last):\n  File "/ws/arm.py", line 3, in <module>\nKeyboardInterrupt\n'
@@ -126,6 +127,13 @@ def test_an_exception_while_a_program_is_stopped_is_an_error() -> None:
 
     assert error is not None
     assert error.what == "ValueError: no grip."
+
+
+def test_a_syntax_error_has_the_path_and_the_line_of_its_cell(tmp_path: Path) -> None:
+    file = tmp_path / "arm.py"
+    file.write_text("import math\n\n\n# %%node arm (line 2)\nx = (\n")
+    printed = [f'  File "{file}", line 5', "    x = (", "SyntaxError: '(' was never closed"]
+    assert list(ReaderFrames(tmp_path).shown(printed)) == ['  File "arm.py", line 3', *printed[1:]]
 
 
 def test_exit_codes() -> None:

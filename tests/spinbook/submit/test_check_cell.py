@@ -52,8 +52,12 @@ def test_a_cell_that_was_not_run_is_asked_for(kernel: Kernel, verb: str) -> None
 def test_a_program_that_can_not_start_is_reported_with_its_line(kernel: Kernel) -> None:
     broken = solution().replace("def main", "def main(:\n    pass\n\n\ndef other", 1)
 
-    text, html = texts(shown_of(kernel, broken))
+    kernel.run(node_cell(broken))
+    kernel.run(f"%%nod joint_velocity\n{solution()}")
+    shown = kernel.run(CHECK)
+    text, html = texts(shown)
 
+    assert "WARNING: The cell that you ran last with this program does not begin with `%%node joint_vel" in shown.text
     line = 1 + next(i for i, line in enumerate(broken.split("\n"), start=1) if "def main(:" in line)
     for message in (text, html):
         assert "Your program did not start: SyntaxError" in message
