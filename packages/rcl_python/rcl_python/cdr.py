@@ -16,8 +16,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from rcl_python.abort import require_class
-
 HEADER = b"\x00\x01\x00\x00"
 PADDING = b"\x00"
 """The padding before a field that has to be aligned. Fast DDS leaves whatever the memory held."""
@@ -76,7 +74,7 @@ class Codec:
 def serialize(message: Any) -> bytes:
     """Return the bytes of a message."""
     out = bytearray(HEADER)
-    _write_fields(out, message)
+    _write_fields(out, message, type(message))
     return bytes(out)
 
 
@@ -85,8 +83,7 @@ def deserialize(data: bytes, message_class: type) -> Any:
     return _read_fields(Cursor(data), message_class)
 
 
-def _write_fields(out: bytearray, message: Any) -> None:
-    kind: Any = type(message)
+def _write_fields(out: bytearray, message: Any, kind: Any) -> None:
     fields = _fields(kind)
     if not fields:
         out += b"\0"
@@ -127,13 +124,9 @@ def _codec(slot: Any) -> Codec:
 
 
 def _message_writer(slot: Any) -> Writer:
-    package, name = slot.namespaces[0], str(slot.name)
-
-    def write(out: bytearray, value: Any) -> None:
-        require_class(value, package, name)
-        _write_fields(out, value)
-
-    return write
+    package = ".".join(slot.namespaces)
+    # As the wheels' compiled code does, this takes the fields of whatever object is there.
+    return lambda out, value: _write_fields(out, value, _class(package, slot.name))
 
 
 def _basic_writer(name: str) -> Writer:

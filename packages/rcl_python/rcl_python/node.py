@@ -230,6 +230,8 @@ def _gid(text: str) -> list[int]:
 
 def resolve_name(node: Node, name: str, only_expand: bool, is_service: bool) -> str:
     """Return a topic's or service's absolute name, remapped unless `only_expand`. Raises RCLError if it is invalid."""
+    if not isinstance(name, str):
+        raise TypeError("rclpy_resolve_name(): incompatible function arguments.")
     try:
         return node.resolve(name, "service" if is_service else "topic", only_expand)
     except ValueError as error:

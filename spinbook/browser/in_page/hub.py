@@ -33,8 +33,6 @@ class Turns:
         self._hub.acquire()
         self.is_over = False
         """Whether the program must end now, as if it were killed."""
-        self.aborted = False
-        """Whether it ended as C code that calls abort() does, by SIGABRT."""
         self.has_ended = False
         self.fault: BaseException | None = None
         """The exception in the hub's code while it handled what the program sent."""

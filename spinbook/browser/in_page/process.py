@@ -20,7 +20,7 @@ from typing import Any
 import grader
 import rcl_python
 import rmw_lockstep
-from rcl_python import abort, logs, participant
+from rcl_python import logs, participant
 from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.link import PageLink
 from spinbook.browser.in_page.own_frames import print_error
@@ -42,7 +42,6 @@ def prepare() -> None:
     """
     threads.replace_threading()
     logs.write = lambda line: print(line, file=sys.stderr)
-    abort.end = _abort
     # Browsers do not reveal the number reliably, and Pyodide's is 1: pools would have a single thread.
     os.cpu_count = lambda: _PROCESSORS
     rcl_python.install()
@@ -75,10 +74,6 @@ def answer(page: Any, op: str, arguments: Mapping[str, Any]) -> str:
     if "page" in inspect.signature(function).parameters:
         return json.dumps(function(page, **arguments))
     return json.dumps(function(**arguments))
-
-
-def _abort(text: str) -> None:
-    raise SystemExit(text)
 
 
 def _show_error_of_thread(ended: threading.ExceptHookArgs) -> None:

@@ -5,7 +5,6 @@ The hub grants the time. The program waits in one place only; when it waits ther
 
 from __future__ import annotations
 
-import sys
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import fields
@@ -137,13 +136,6 @@ class ProgramLink:
         if self._turns.signal:
             name, self._turns.signal = self._turns.signal, ""
             interrupt(name)
-
-    def abort(self, text: str) -> None:
-        """End the program as C's abort() does, with this message. Raises `RunFinished`."""
-        print(text, file=sys.stderr)
-        self._turns.aborted = self._turns.is_over = True
-        self.scheduler.leave_to_main()
-        raise RunFinished
 
     @property
     def has_request(self) -> bool:

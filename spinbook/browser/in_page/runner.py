@@ -26,7 +26,7 @@ from grader.runner.run import ScenarioRun
 from grader.scenario.command_line import arguments
 from grader.scenario.scenario import Scenario
 from groundwork.process_exit import ProcessExit
-from rcl_python import abort, logs
+from rcl_python import logs
 from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.hub import PageHub, RunFinished, Turns
 from spinbook.browser.in_page.process import become_main, exit_status, run_main
@@ -60,10 +60,7 @@ class PageProgram:
 
     def poll(self) -> ProcessExit | None:
         """Return how it ended; None if it still runs."""
-        return self._end() if self._turns.has_ended else None
-
-    def _end(self) -> ProcessExit:
-        return ProcessExit(None, signal.SIGABRT) if self._turns.aborted else ProcessExit(self.code)
+        return ProcessExit(self.code) if self._turns.has_ended else None
 
     def wait(self, timeout_s: float) -> ProcessExit | None:
         """Return the same as `poll`: the program does not run while the grader's thread does."""
@@ -86,7 +83,7 @@ class PageProgram:
         if not self._turns.has_ended:
             self._turns.is_over = True
             self._turns.let_program_go_on()
-        return self._end()
+        return ProcessExit(self.code)
 
 
 def run(exercise: Exercise, scenario: Scenario, program: ProgramText) -> Recording:
@@ -154,17 +151,16 @@ def _reset_rclpy() -> None:
 @contextmanager
 def _as_main(program: ProgramText, scenario: Scenario, log: io.StringIO, link: ProgramLink) -> Iterator[None]:
     """Make the program `__main__`, with the grader's arguments, and keep what it prints; clean up afterwards."""
-    before = sys.modules["__main__"], sys.argv, logs.write, abort.end, dict(os.environ)
+    before = sys.modules["__main__"], sys.argv, logs.write, dict(os.environ)
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     become_main(program.source, program.file, arguments(scenario))
     logs.write = lambda line: print(line, file=log)
-    abort.end = link.abort
     threads.use_scheduler(link.scheduler)
     try:
         with redirect_stdout(log), redirect_stderr(log), _time_of(link):
             yield
     finally:
-        sys.modules["__main__"], sys.argv, logs.write, abort.end, environment = before
+        sys.modules["__main__"], sys.argv, logs.write, environment = before
         with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
             link.scheduler.close()
         os.environ.clear()

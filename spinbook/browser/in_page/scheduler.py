@@ -98,11 +98,6 @@ class Scheduler:
         """Wait for another thread, at most this long (-1: without a limit)."""
         self.wait(None if milliseconds < 0 else round(milliseconds * 1e6), in_ros=False)
 
-    def leave_to_main(self) -> None:
-        """Wait forever, unless this is the main thread."""
-        if threads.get_ident() != self._main:
-            self.wait(None, in_ros=False)
-
     def wait(self, nanoseconds: int | None, in_ros: bool) -> None:
         """Let other threads run, for this long (None: no limit) or until there is something new to check."""
         mine = threads.get_ident()

@@ -18,23 +18,23 @@ const read = (text) => {
   return { text, versions: [] };
 };
 
-// Return every draft of a page, by its key; none if storage is forbidden.
-function draftsOf(page) {
+// Return what a look into the browser's storage gives, otherwise `none`: it may be forbidden.
+function stored(look, none) {
   try {
-    const keys = Object.keys(localStorage).filter((key) => key.startsWith(PREFIX + page));
-    return new Map(keys.map((key) => [key.slice(PREFIX.length), read(localStorage.getItem(key))]));
+    return look();
   } catch {
-    return new Map();
+    return none;
   }
 }
 
-export function forget(key) {
-  try {
-    localStorage.removeItem(PREFIX + key);
-  } catch {
-    // Nothing was stored.
-  }
-}
+// Return every draft of a page, by its key.
+const draftsOf = (page) =>
+  stored(() => {
+    const keys = Object.keys(localStorage).filter((key) => key.startsWith(PREFIX + page));
+    return new Map(keys.map((key) => [key.slice(PREFIX.length), read(localStorage.getItem(key))]));
+  }, new Map());
+
+export const forget = (key) => stored(() => localStorage.removeItem(PREFIX + key));
 
 // Return why it could not be stored; "" if it could. If there is little room, earlier versions are given up first.
 function store(key, record) {
@@ -81,12 +81,8 @@ export class Draft {
   }
 
   #stored() {
-    try {
-      const text = localStorage.getItem(PREFIX + this.key);
-      return text === null ? null : read(text);
-    } catch {
-      return null;
-    }
+    const text = stored(() => localStorage.getItem(PREFIX + this.key), null);
+    return text === null ? null : read(text);
   }
 
   #take({ text, original = this.written, versions }) {

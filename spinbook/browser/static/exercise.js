@@ -17,22 +17,12 @@ const TAKEN = /\n# Hints shown in the page: \{.*\}\n$/;
 let process = null;
 
 // Return how many steps of hints were shown of each check of an exercise, by its title.
-function taken(exercise) {
-  try {
-    return JSON.parse(localStorage.getItem(`hints:${exercise}`)) ?? {};
-  } catch {
-    return {};
-  }
-}
+const taken = (exercise) => globalThis.kept(`hints:${exercise}`) ?? {};
 
 function count(exercise, check, steps) {
   const counts = taken(exercise);
   counts[check] = Math.max(counts[check] ?? 0, steps);
-  try {
-    localStorage.setItem(`hints:${exercise}`, JSON.stringify(counts));
-  } catch {
-    // A browser that stores nothing counts nothing.
-  }
+  globalThis.keep(`hints:${exercise}`, counts);
 }
 
 function withCounts(text, exercise) {
@@ -40,23 +30,23 @@ function withCounts(text, exercise) {
   return counts === "{}" ? text : `${text.replace(TAKEN, "")}\n# Hints shown in the page: ${counts}\n`;
 }
 
-// Return the process that checks. There is one per page, until it has to be ended.
-function checker(hears) {
+// Return the process that checks, once it is ready. There is one per page, until it has to be ended.
+async function checker(say) {
   process ??= take("check", {});
-  Object.assign(process.hears, hears, { end: () => (process = null) });
-  return process;
+  const worker = process;
+  Object.assign(worker.hears, { progress: (part) => say(`Loading ${part} …`), end: () => (process = null) });
+  await worker.ready;
+  return worker;
 }
 
 // Return the program in a file. The grader's own code reads it, so notebooks and archives give the same as in the grader.
 async function read(exercise, file, say) {
-  const worker = checker({ progress: (part) => say(`Loading ${part} …`) });
-  await worker.ready;
-  return worker.call("check.read", { name: exercise, file: file.name, content: new Uint8Array(await file.arrayBuffer()) });
+  const content = new Uint8Array(await file.arrayBuffer());
+  return (await checker(say)).call("check.read", { name: exercise, file: file.name, content });
 }
 
 async function check(exercise, source, say) {
-  const worker = checker({ progress: (part) => say(`Loading ${part} …`) });
-  await worker.ready;
+  const worker = await checker(say);
   say("Checking …");
   const result = await Promise.race([worker.call("check.check", { name: exercise, source }), after(1000 * LIMIT_S, "late")]);
   if (result !== "late") return result;
@@ -155,8 +145,9 @@ function opening(section) {
     }
   };
   const runChecks = async () => {
-    const checked = await check(name, editor.text, say);
-    say("");
+    const source = editor.text;
+    const checked = await check(name, source, say);
+    say(editor.text === source ? "" : "You have changed your program since. This is the result of the one before: check again.");
     result.replaceChildren(...panel(checked, name));
     show(result);
     announce(checked.problem ?? checked.total);

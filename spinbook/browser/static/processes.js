@@ -88,7 +88,7 @@ export class Process {
     this.ready = Promise.all([code, memory]).then(([compiled, memory]) =>
       this.call("start", { version: VERSION, identity: this.identity, compiled, memory }),
     );
-    this.ready.catch(() => this.end());
+    this.ready.then(() => (this.isReady = true), () => this.end());
   }
 
   // Join the graph: from now on, it gets the others' frames.
@@ -133,9 +133,9 @@ export class Process {
     this.worker.postMessage({ op: "signal", name });
   }
 
-  // Interrupt it as Ctrl-C does, and kill it if it does not end.
+  // Interrupt it as Ctrl-C does, and kill it if it does not end, or has not begun.
   async stop() {
-    if (!this.alive) return;
+    if (!this.isReady) return this.end();
     this.signal("SIGINT");
     const ended = this.ended ?? this.idle;
     if ((await Promise.race([ended, after(STOP_MS, "late")])) !== "late") return;
@@ -165,6 +165,7 @@ export class Process {
 
   // Check repeatedly whether it responds: a program that computes without a pause does not.
   #watch() {
+    if (!this.alive) return;
     this.watching = setInterval(() => {
       if (!this.asked) {
         this.asked = Date.now();

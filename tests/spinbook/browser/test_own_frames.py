@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import io
 import linecache
+
+import pytest
 
 from spinbook.browser.in_page.own_frames import print_error, with_own_frames
 
@@ -29,10 +30,9 @@ def failure() -> BaseException:
     raise AssertionError
 
 
-def test_the_frames_of_libraries_are_left_out_of_every_error_in_the_chain() -> None:
-    shown = io.StringIO()
-    print_error(failure(), shown)
-    text = shown.getvalue()
+def test_the_frames_of_libraries_are_left_out_of_every_error_in_the_chain(capsys: pytest.CaptureFixture[str]) -> None:
+    print_error(failure())
+    text = capsys.readouterr().err
     assert "ros.zip" not in text
     assert text.count('File "mine.py"') == 2
     assert "return 1 / 0" in text
