@@ -16,14 +16,16 @@ from grader.exercise.writing import to_toml
 from grader.submission.code import STARTER
 from grader.workers.pool import WorkerPool
 from spinbook.browser.archives import check_archive, ros_archive, share_archive
+from spinbook.browser.compiled import with_compiled_modules
 from spinbook.build.digest import digest
 from spinbook.handout.student_copy import exercise_files
 
 # Pyodide (https://pyodide.org, Mozilla Public License 2.0) comes from npm; fetch-pyodide.sh pins the digest.
 
 
+_STDLIB = "python_stdlib.zip"
 #: The files of Pyodide that a page loads. Its list of packages is replaced by an empty one: none is ever fetched.
-FILES = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
+FILES = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", _STDLIB)
 _LOCK = "pyodide-lock.json"
 _FOLDER = Path("share", "spinbook", "pyodide")
 
@@ -66,8 +68,9 @@ def run_files(exercises: Mapping[str, bytes]) -> dict[str, str | bytes]:
     files |= {file.name: file.read_bytes() for file in sorted(_STATIC.iterdir())}
     # A service worker only serves its own folder and those below.
     at_the_top = {_OFFLINE: files.pop(_OFFLINE)}
-    files |= {"ros.zip": ros_archive(), "share.zip": share_archive(), "check.zip": check_archive(exercises)}
-    version = _version(files)
+    files |= {"share.zip": share_archive(), "check.zip": check_archive(exercises)}
+    files |= with_compiled_modules(folder, {"ros.zip": ros_archive(), _STDLIB: files[_STDLIB]})
+    version = digest(*(part for name in sorted(files) for part in (name, files[name])))[:16]
     files = {name: _with_version(name, data, version) for name, data in files.items()}
     files[_LIST] = _listed(version, files)
     return {**at_the_top, **{f"{FOLDER}/{name}": data for name, data in files.items()}}
@@ -77,11 +80,6 @@ def run_version(files: Mapping[str, str | bytes]) -> str:
     """Return the version of the files from `run_files` among a site's files; "" if there are none."""
     listed = files.get(f"{FOLDER}/{_LIST}")
     return str(json.loads(listed)["version"]) if listed else ""
-
-
-def _version(files: Mapping[str, bytes]) -> str:
-    """Return a version that changes with any of the files."""
-    return digest(*(part for name in sorted(files) for part in (name, files[name])))[:16]
 
 
 _ADDRESSES = "address.js"
@@ -116,7 +114,8 @@ def public_parts(exercises: Iterable[Exercise]) -> dict[str, bytes]:
     with WorkerPool() as workers:
         for exercise in exercises:
             copy = exercise_files(exercise, workers)
-            needed = [name for name in copy if name in _NEEDED or _is_code(name, exercise)]
+            code = {name for name in copy if name.endswith(".py")} - {exercise.file_name}  # such as a world
+            needed = [name for name in copy if name in code or name in _NEEDED]
             files |= {f"exercises/{exercise.name}/{name}": copy[name] for name in needed}
             files |= {f"exercises/{exercise.name}/{name}": text for name, text in _limits(exercise, copy).items()}
             # The grader ignores code that equals the starter, so it has to know the starter.
@@ -133,8 +132,3 @@ def _limits(exercise: Exercise, copy: Mapping[str, bytes]) -> dict[str, bytes]:
         return {}
     text = f"This exercise uses {' and '.join(lacks)}, which a web page does not have. Check it in the notebook."
     return {LACKS: text.encode(), "exercise.toml": to_toml(replace(exercise, packages=())).encode()}
-
-
-def _is_code(name: str, exercise: Exercise) -> bool:
-    """Return whether it is code of the author's, such as a world, and not the starter."""
-    return name.endswith(".py") and name != exercise.file_name

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader.exercise.exercise import Exercise, Parameter, ServiceOrAction, Topic
+from grader.exercise.exercise import Exercise, Parameter, Topic
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,9 @@ def _interface(exercise: Exercise) -> str:
         rows = [_topic_row(topic) for topic in exercise.topics]
         parts.append(_table("| The node | Topic | Type | QoS | Units |", rows))
     if exercise.endpoints:
-        rows = [_endpoint_row(endpoint) for endpoint in exercise.endpoints]
+        rows = [
+            f"| {_VERBS[end.role]} | `{end.name}` | `{end.type}` | {_units(end.units)} |" for end in exercise.endpoints
+        ]
         parts.append(_table("| The node | Name | Type | Units |", rows))
     if exercise.parameters:
         rows = [_parameter_row(parameter) for parameter in exercise.parameters]
@@ -92,10 +94,6 @@ _VERBS = {
     "action": "serves the action",
     "action_client": "sends goals to the action",
 }
-
-
-def _endpoint_row(endpoint: ServiceOrAction) -> str:
-    return f"| {_VERBS[endpoint.role]} | `{endpoint.name}` | `{endpoint.type}` | {_units(endpoint.units)} |"
 
 
 def _parameter_row(parameter: Parameter) -> str:

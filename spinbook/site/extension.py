@@ -227,17 +227,14 @@ def _head(kind: str, about: dict[str, Any]) -> str:
     path = escape(about.get("download", ""))
     download = f'<a class="cell-download" href="../{path}" download>Download {escape(file)}</a>'
     kind_name = f'<span class="cell-kind">{_KINDS.get(kind, "Cell")}</span>'
-    run = f" data-run='{_in_quotes(about['run'])}'" if about.get("run") else ""
+    # JSON has many double quotes, so its attribute is in single ones.
+    data = escape(json.dumps(about.get("run"), separators=(",", ":")), quote=False).replace("'", "&#x27;")
+    run = f" data-run='{data}'" if about.get("run") else ""
     return (
         f'<div class="cell-head"{run}><p class="cell-name">{kind_name} {name}</p><div class="cell-links">'
         f'<details class="more"><summary aria-label="More about {escape(of)}">…</summary>'
         f'<div class="places">{download if file else ""}{source if about["source"] else ""}</div></details></div></div>'
     )
-
-
-def _in_quotes(data: dict[str, Any]) -> str:
-    """Return JSON for an attribute in single quotes, as it has many double ones."""
-    return escape(json.dumps(data, separators=(",", ":")), quote=False).replace("'", "&#x27;")
 
 
 def _changes(lines: list[int]) -> Iterator[str]:

@@ -58,7 +58,8 @@ def _ask(question: nodes.paragraph, name: str) -> None:
     opening = (
         f'<div class="guess" id="{name}" data-question="{escape(question.astext())}" data-right="{escape(right)}">'
     )
-    parent.insert(parent.index(options), nodes.raw("", opening + _fieldset(name), format="html"))
+    opening += f'<fieldset role="radiogroup" aria-labelledby="{name}-question">'
+    parent.insert(parent.index(options), nodes.raw("", opening, format="html"))
     answer[0].replace_self(
         nodes.raw("", answer[0].astext().replace(_DETAILS, '<details class="answer"', 1), format="html")
     )
@@ -75,10 +76,6 @@ def _right(answer: list[nodes.Node]) -> str:
     """Return the text in bold with which an answer begins, without its full stop."""
     bold = next((node for part in answer for node in part.findall(nodes.strong)), None)
     return bold.astext().rstrip(".") if bold else ""
-
-
-def _fieldset(name: str) -> str:
-    return f'<fieldset role="radiogroup" aria-labelledby="{name}-question">'
 
 
 def _choices(options: nodes.bullet_list, name: str) -> Iterator[nodes.Node]:

@@ -139,12 +139,8 @@ def _term(heading: str) -> Term:
     title = heading.replace("`", "")
     short = _SHORT.match(title)
     names = [short.group(1), short.group(2)] if short else [title]
-    forms = [form for name in names for form in (name, *_plurals(name))]
+    forms = [form for name in names for form in (name, f"{name[:-1]}ies" if name.endswith("y") else f"{name}s")]
     return Term(title, tuple(dict.fromkeys(forms)), anchor_of(title))
-
-
-def _plurals(name: str) -> tuple[str, ...]:
-    return (name[:-1] + "ies",) if name.endswith("y") else (name + "s",)
 
 
 def anchor_of(title: str) -> str:

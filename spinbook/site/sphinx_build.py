@@ -18,7 +18,7 @@ from sphinx.errors import SphinxError
 from grader.exercise.loading import load
 from groundwork.files import write_folder
 from groundwork.problem import Problem, Severity
-from spinbook.browser.files import FOLDER, pyodide_files, pyodide_folder, run_version
+from spinbook.browser.files import FILES, FOLDER, run_version
 from spinbook.build.digest import digest
 from spinbook.course.course import Course
 from spinbook.handout.leaks import authors_code, leaks, secrets_of_all
@@ -42,7 +42,9 @@ def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], 
     # The search data changes with every sentence: it is no reason to load the rest again.
     own = [data for path, data in files.items() if Path(path).parent.name == "_static"]
     version = digest(run_version(files), *own, *(data for name, data in scripts.items() if name != _SEARCH_DATA))[:16]
-    published = {f"{page}.html": _stamped((html / f"{page}.html").read_bytes(), version) for page in pages}
+    # Pages load our scripts and styles by addresses with this version: no cache gives them older ones.
+    stamp = rb"\1?v=" + version.encode() + b'"'
+    published = {f"{page}.html": _OWN_FILE.sub(stamp, (html / f"{page}.html").read_bytes()) for page in pages}
     if (lost := f"{NOT_FOUND}.html") in published:
         # Servers show this page at any address.
         published[lost] = _RELATIVE.sub(rb'\1="' + address.encode() + rb'\2"', published[lost])
@@ -65,11 +67,6 @@ def publish(html: Path, pages: Iterable[str], files: Mapping[str, str | bytes], 
 _VERSION, _OFFLINE = "version.txt", "offline.json"
 _RELATIVE = re.compile(rb'\b(href|src|action|data-root)="(?!https?:|#|\./)([^"]*)"')
 _OWN_FILE = re.compile(rb'(_static/(?:%s))"' % b"|".join(re.escape(name.encode()) for name in _OURS))
-
-
-def _stamped(page: bytes, version: str) -> bytes:
-    """Return a page that loads our scripts and styles by addresses with this version: no cache gives it older ones."""
-    return _OWN_FILE.sub(rb"\1?v=" + version.encode() + b'"', page)
 
 
 _COMMENTS = re.compile(rb"^[ \t]*(?://[^\n]*\n|/\*.*?\*/\n)?", re.MULTILINE | re.DOTALL)
@@ -134,18 +131,12 @@ def prove_nothing_leaks(course: Course, contents: SiteContents) -> None:
 def _published(contents: SiteContents) -> dict[str, bytes]:
     files: dict[str, str | bytes] = {f"{page.name}{page.suffix}": page.text for page in contents.pages}
     files |= {f"{page.name}.frame": page.frame(contents.openers) for page in contents.pages}
-    others = _of_pyodide()
-    files |= {f"site/{path}": content for path, content in contents.files.items() if others.get(path) != content}
+    others = {f"{FOLDER}/{name}" for name in FILES}  # of Pyodide: large, with nothing of a course
+    files |= {f"site/{path}": content for path, content in contents.files.items() if path not in others}
     files |= {f"launch/{path}": content for path, content in contents.branch.items()}
     # In the notebooks they are compressed, where nothing could be found.
     files |= {f"launch/{path}": content for path, content in contents.copies.items()}
     return {path: content.encode() if isinstance(content, str) else content for path, content in files.items()}
-
-
-def _of_pyodide() -> dict[str, bytes]:
-    """Return Pyodide's files, by their path in a site. They are large and contain nothing of a course."""
-    folder = pyodide_folder()
-    return {f"{FOLDER}/{name}": content for name, content in pyodide_files(folder).items()} if folder else {}
 
 
 _THEMES = Path(__file__).parent

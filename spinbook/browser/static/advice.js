@@ -1,19 +1,13 @@
 // What Python says of code that is edited: its errors, and the names that can follow. A process that waits for its
 // program is asked; until there is one, nothing is said.
-import { download } from "./download.js";
-import { hindrance } from "./elements.js";
-import { prepared } from "./processes.js";
-
-let loading = null;
+import { prepare } from "./download.js";
 
 // Ask the process that waits, or null if none can be there.
 async function ask(op, given) {
-  if (hindrance()) return null;
-  await (loading ??= download(() => {}));
-  const process = prepared();
+  const process = await prepare();
   try {
-    await process.ready;
-    return await process.call(op, given);
+    await process?.ready;
+    return process && (await process.call(op, given));
   } catch {
     return null; // Without a network or memory, the code can be edited all the same.
   }

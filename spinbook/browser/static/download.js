@@ -1,21 +1,39 @@
 // The download that all nodes of a course share: shows its progress, and caches the files for use without a network.
 import { VERSION, addressOf } from "./address.js";
-import { after } from "./elements.js";
+import { after, hindrance } from "./elements.js";
+import { prepared } from "./processes.js";
 
 const base = new URL("./", import.meta.url);
 const COURSE = new URL("../", base).href;
 const READY_MS = 4000;
-let done = null;
+// What the first node needs. The rest loads while it starts.
+const FIRST = /^(pyodide|python|ros|worker)/;
+let loading = null;
+let say = () => {};
 
-// Load the files for nodes, once; `say` gets the progress in words, and from 0 to 1. Without a service worker, each file
-// loads when it is needed.
-export function download(say) {
-  done ??= load(say).catch(() => (done = null));
-  return done;
+// Load the files for nodes, once; `hear` gets the progress in words, and from 0 to 1. Resolves when a node can start.
+// Without a service worker, each file loads when it is needed.
+export async function download(hear) {
+  say = hear;
+  const rest = await first();
+  say = () => {}; // What the reader waits for is there.
+  if (!rest) return;
+  loading = Promise.resolve(null);
+  rest().catch(() => {}); // Without a network, what was kept before stays.
 }
 
-async function load(say) {
-  if (!(await serviceWorker())) return;
+// Start a process that waits for its program, before there is one. Resolves with it; with null where there can be none.
+export async function prepare() {
+  if (hindrance()) return null;
+  await first();
+  return prepared();
+}
+
+// Load what the first node needs. Resolves with what loads the rest, or with null.
+const first = () => (loading ??= load().catch(() => (loading = null)));
+
+async function load() {
+  if (!(await serviceWorker())) return null;
   const { files } = await (await fetch(addressOf("files.json"))).json();
   const earlier = (await caches.keys()).filter((name) => name.startsWith("run-") && name !== `run-${VERSION}`);
   const cache = await caches.open(`run-${VERSION}`);
@@ -26,9 +44,13 @@ async function load(say) {
   const whole = missing.reduce((sum, [, size]) => sum + size, 0);
   let loaded = 0;
   const report = (size) => say(`Loading ${megabytes((loaded += size))} of ${megabytes(whole)} MB, once for this course …`, loaded / whole);
-  await Promise.all(missing.map(([name, , digest]) => fetchInto(cache, addressOf(name), digest, report)));
-  await Promise.all(earlier.map((name) => caches.delete(name)));
-  keepCourse().catch(() => {}); // Without a network, what was kept before stays.
+  const fetchAll = (files) => Promise.all(files.map(([name, , digest]) => fetchInto(cache, addressOf(name), digest, report)));
+  await fetchAll(missing.filter(([name]) => FIRST.test(name)));
+  return async () => {
+    await fetchAll(missing.filter(([name]) => !FIRST.test(name)));
+    await Promise.all(earlier.map((name) => caches.delete(name)));
+    await keepCourse();
+  };
 }
 
 // Take a file that has not changed from the cache of an earlier version.

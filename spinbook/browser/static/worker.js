@@ -100,12 +100,7 @@ async function python(memory) {
     },
   };
   if (memory) {
-    const copy = new Uint8Array(memory.size);
-    let filled = 0;
-    for await (const part of memory.stream()) {
-      copy.set(part, filled);
-      filled += part.length;
-    }
+    const copy = new Uint8Array(await memory.arrayBuffer());
     Int8Array.prototype.set = setFullPages;
     const loading = loadPyodide({ ...options, _loadSnapshot: copy });
     const py = await loading.finally(() => delete Int8Array.prototype.set);

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -34,12 +36,23 @@ def requested(shown: Opened, address: str) -> list[str]:
     return asked
 
 
-def test_nothing_is_loaded_before_run(browser: Browser, address: str) -> None:
+def test_nothing_is_loaded_before_somebody_points_at_run(browser: Browser, address: str) -> None:
     with opened(browser, f"{address}/chapters/01-talk.html") as shown:
         asked = requested(shown, address)
         assert [path for path in asked if path.startswith("/_static/run.js?v=")]
         assert not [path for path in asked if path.startswith("/run/")]
+        with shown.page.expect_request("**/run/files.json?*"):
+            shown.page.get_by_role("button", name="Run talker.py").hover()
         assert shown.faults == []
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="Node.js compiles for pages")
+def test_what_every_page_imports_at_its_start_is_compiled(built: SmallCourse) -> None:
+    modules = {"ros.zip": "rclpy/node.py", "python_stdlib.zip": "asyncio/events.py"}
+    for archive, module in modules.items():
+        names = zipfile.ZipFile(built.site / "run" / archive).namelist()
+        assert f"{module}c" in names
+        assert module not in names
 
 
 def test_a_page_runs_its_nodes(reader: BrowserContext, address: str) -> None:

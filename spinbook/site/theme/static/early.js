@@ -4,7 +4,7 @@
   let chosen = null;
   let isWhole = false;
   try {
-    chosen = localStorage.getItem("colours");
+    chosen = localStorage.getItem("colours")?.replaceAll('"', "");
     isWhole = localStorage.getItem("parts-whole") === "true";
   } catch {
     // Without storage, the page follows the system's setting.

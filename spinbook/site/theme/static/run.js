@@ -16,11 +16,7 @@
   }
 
   function add(place, module, text, label, act) {
-    const button = document.createElement("button");
-    button.type = "button";
-    button.className = "run-button";
-    button.textContent = text;
-    button.setAttribute("aria-label", label);
+    const button = newButton("run-button", text, label);
     button.addEventListener("click", async () => {
       let loaded = null;
       try {
@@ -30,6 +26,9 @@
       }
       if (loaded) await act(loaded, button);
     });
+    // Whoever points at the button may press it soon.
+    const near = () => navigator.connection?.saveData || load("download.js").then((page) => page.prepare()).catch(() => {});
+    ["pointerenter", "focus"].forEach((event) => button.addEventListener(event, near, { once: true }));
     place?.prepend(button);
     return button;
   }
@@ -74,16 +73,11 @@
     }).className = "button";
   }
 
-  function hasDraft() {
-    try {
-      return Object.keys(localStorage).some((key) => key.startsWith(`code:${location.pathname}`));
-    } catch {
-      return false; // Nothing can be stored.
-    }
+  let drafts = [];
+  try {
+    drafts = Object.keys(localStorage).filter((key) => key.startsWith(`code:${location.pathname}`));
+  } catch {
+    // Nothing can be stored.
   }
-
-  if (hasDraft()) {
-    if (starter) load("exercise.js").then((page) => page.open(starter), () => {});
-    else if (places.length) load("page.js").then((page) => page.open(), () => {});
-  }
+  if (drafts.length && (starter || places.length)) load(starter ? "exercise.js" : "page.js").then((page) => page.open(starter), () => {});
 })();

@@ -6,17 +6,19 @@ const said = document.getElementById("said");
 // As in this script's own address, so that no cache gives others that are older.
 const version = new URL(document.currentScript.src).search;
 
+function newButton(className, text = "", label = "") {
+  const button = document.createElement("button");
+  Object.assign(button, { type: "button", className, textContent: text, ariaLabel: label });
+  return button;
+}
+
 function colours() {
   const button = document.querySelector(".theme-button");
   const show = () => button.setAttribute("aria-pressed", String(root.dataset.colours === "dark"));
   show();
   button.addEventListener("click", () => {
     root.dataset.colours = root.dataset.colours === "dark" ? "light" : "dark";
-    try {
-      localStorage.setItem("colours", root.dataset.colours);
-    } catch {
-      // Without storage, the choice holds for this page only.
-    }
+    keep("colours", root.dataset.colours);
     show();
   });
 }
@@ -80,13 +82,9 @@ function copying() {
   const isSmall = matchMedia("(hover: none), (max-width: 40rem)").matches;
   for (const code of document.querySelectorAll("main .highlight > pre")) {
     if (code.closest(".cell_output, .shown")) continue;
-    const button = document.createElement("button");
-    button.type = "button";
-    button.className = "copy";
-    button.textContent = "Copy";
     const cell = code.closest(".cell");
     const file = cell?.querySelector(".cell-file")?.textContent;
-    button.setAttribute("aria-label", file ? `Copy ${file}` : "Copy this code");
+    const button = newButton("copy", "Copy", file ? `Copy ${file}` : "Copy this code");
     button.addEventListener("click", async () => {
       const done = await toClipboard(code.textContent.replace(/\n$/, ""));
       button.textContent = done ? "Copied" : "Not copied";
@@ -104,15 +102,11 @@ function copying() {
 function scrolling() {
   const update = (entries) => {
     for (const { target } of entries) {
-      if (target.scrollWidth > target.clientWidth + 1) {
-        target.tabIndex = 0;
-        target.setAttribute("role", "group");
-        target.setAttribute("aria-label", target.matches("pre") ? "Code, scrolls sideways" : "Scrolls sideways");
-      } else {
-        target.removeAttribute("tabindex");
-        target.removeAttribute("role");
-        target.removeAttribute("aria-label");
-      }
+      const scrolls = target.scrollWidth > target.clientWidth + 1;
+      if (scrolls) target.tabIndex = 0;
+      else target.removeAttribute("tabindex");
+      target.role = scrolls ? "group" : null;
+      target.ariaLabel = scrolls ? (target.matches("pre") ? "Code, scrolls sideways" : "Scrolls sideways") : null;
     }
   };
   const observer = new ResizeObserver(update);
@@ -131,8 +125,7 @@ function whereabouts() {
       const at = [...links.keys()].filter((id) => seen.has(id)).pop();
       if (!at) return;
       for (const [id, link] of links) {
-        if (id === at) link.setAttribute("aria-current", "true");
-        else link.removeAttribute("aria-current");
+        link.ariaCurrent = id === at ? "true" : null;
       }
     },
     { rootMargin: "-80px 0px -70% 0px" },
@@ -212,12 +205,10 @@ function searching() {
 
 // Return a button that pauses what moves in `frame` (WCAG 2.2.2): it has the class "paused" then.
 function pauseButton(frame) {
-  const button = document.createElement("button");
-  button.type = "button";
-  button.className = "pause";
+  const button = newButton("pause");
   const show = (paused) => {
     button.textContent = paused ? "Play" : "Pause";
-    button.setAttribute("aria-label", `${button.textContent} this picture`);
+    button.ariaLabel = `${button.textContent} this picture`;
   };
   button.addEventListener("click", () => show(frame.classList.toggle("paused")));
   show(false);
@@ -273,8 +264,7 @@ function chapterParts() {
     for (const each of parts) {
       if (each === part) each.removeAttribute("hidden");
       else each.setAttribute("hidden", "until-found");
-      if (each === part && !isWhole) link(each.id).setAttribute("aria-current", "page");
-      else link(each.id).removeAttribute("aria-current");
+      link(each.id).ariaCurrent = each === part && !isWhole ? "page" : null;
     }
     row.scrollLeft = link(part.id).offsetLeft - row.offsetLeft - row.clientWidth / 2;
     whole.setAttribute("aria-pressed", String(isWhole));
