@@ -136,4 +136,5 @@ def _describe(error: BaseException) -> str:
         return f"the module {module} is not supported here. There is: {there}.\n{_ELSEWHERE}"
     if isinstance(error, ImportError) and module in MODULES and (name := _NOT_FOUND.search(str(error))):
         return _refusal(module, name[1])
-    return f"{type(error).__name__}: {error}"
+    hint = "\n`pip install xacro` brings it." if module == "xacro" else ""
+    return f"{type(error).__name__}: {error}{hint}"

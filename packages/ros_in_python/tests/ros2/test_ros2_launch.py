@@ -209,6 +209,11 @@ def test_a_node_that_dies_is_named_and_the_launch_fails(workspace: Path, termina
             "def generate_launch_description():\n    return LaunchDescription([Shutdown()])\n",
             "is not an action. EmitEvent(event=…)",
         ),
+        (
+            "a.launch.py",
+            "import xacro\n",
+            "a.launch.py:1: ModuleNotFoundError: No module named 'xacro'\n`pip install xacro`",
+        ),
         ("a.launch.py", "def generate_launch_description(\n", "a.launch.py:1: not valid Python"),
         ("a.launch.py", "x = 1\n", "has no function generate_launch_description()"),
         ("a.launch.py", "def generate_launch_description():\n    return 1 / 0\n", "a.launch.py:2: ZeroDivisionError"),
