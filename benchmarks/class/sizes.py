@@ -18,11 +18,16 @@ from pathlib import Path
 import psutil
 from grade_all import grade
 from grades import wrong_with
-from students import the_class, write
+from students import EXERCISE, ROOT, the_class, write
+
+from grader.classroom.signatures import signatures
+from grader.exercise import load
+from grader.grading import Options, grading_of
+from grader.workers import WorkerPool
 
 
 def main() -> int:
-    """Grade a class of each size, after a small one that makes ready; print a line for each."""
+    """Grade a class of each size, after what is made once; print a line for each."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("sizes", type=int, nargs="*", default=[10, 100, 200], help="how many students  %(default)s")
     sizes: list[int] = parser.parse_args().sizes
@@ -32,8 +37,10 @@ def main() -> int:
         "| class | seconds | s a submission | CPU s a submission | a minute | MB together (PSS) "
         "| MB largest process (RSS) |\n| --- |" + " --- |" * 6
     )
+    with WorkerPool() as workers:
+        signatures(grading_of(load(ROOT / "exercises" / EXERCISE), Options(), workers))
     try:
-        for size in [4, *sizes]:
+        for size in sizes:
             made = the_class(size, seed=2, hostile=False)
             folder = base / str(size)
             write(made, folder / "submissions")
@@ -41,9 +48,8 @@ def main() -> int:
             seconds, memory = grade(folder / "submissions", folder / "results", None, quiet=True)
             cpu = cpu_seconds() - before
             wrong += sum(bool(wrong_with(handed, folder / "results")) for handed in made)
-            name = f"{size}" if size in sizes else f"{size}, to make ready"
             each = f"{seconds / size:.2f} | {cpu / size:.2f} | {60 * size / seconds:.0f}"
-            print(f"| {name} | {seconds:.1f} | {each} | {memory.together:.0f} | {memory.largest:.0f} |", flush=True)
+            print(f"| {size} | {seconds:.1f} | {each} | {memory.together:.0f} | {memory.largest:.0f} |", flush=True)
     finally:
         shutil.rmtree(base, ignore_errors=True)
     print(f"{wrong} grades are not what they must be.")
