@@ -88,7 +88,7 @@ def _write_fields(out: bytearray, message: Any, kind: Any) -> None:
     if not fields:
         out += b"\0"
     for name, codec in fields:
-        codec.write(out, getattr(message, name))
+        codec.write(out, getattr(message, name if type(message) is kind else name.removeprefix("_")))
 
 
 def _read_fields(cursor: Cursor, kind: Any) -> Any:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from typing import Any
 
 import pytest
+from geometry_msgs.msg import Point, Twist
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from random_messages import message_classes, messages
@@ -78,6 +80,19 @@ def test_a_package_s_messages_become_the_same_bytes(package: str) -> None:
 @pytest.mark.parametrize("kind", CLASSES, ids=lambda kind: kind.__name__)
 def test_many_messages_of_a_type_become_the_same_bytes(kind: Any) -> None:
     compare_with(kind, MANY)
+
+
+def test_a_field_takes_the_fields_of_whatever_object_is_there() -> None:
+    alike = Twist()
+    alike.linear = Point(x=1.0, y=2.0, z=3.0)
+    assert cdr.serialize(alike) == serialize_message(alike)[: len(cdr.serialize(alike))]
+    for value in (3.0, None):
+        other = Twist()
+        other.linear = value
+        with pytest.raises(AttributeError) as theirs:
+            serialize_message(other)
+        with pytest.raises(AttributeError, match=re.escape(str(theirs.value))):
+            cdr.serialize(other)
 
 
 def test_a_text_ends_where_c_would_end_it() -> None:

@@ -115,11 +115,16 @@ def found(exercise: str, *names: str) -> dict[str, str]:
     return said
 
 
+#: Here an assertion of the course's own compiled messages ends the program; in a page, Python's exception does.
+ENDED_BY_C = {"joint_mover": {"returns_nothing"}}
+
+
 def differing(exercise: str, said: dict[str, str]) -> dict[str, str]:
     """Return the programs that differ, without those that a page refuses to run, as it should."""
     refused = {name for name, words in said.items() if words.startswith("not checked: ")}
     assert refused == NEEDS_MORE.get(exercise, set()) & set(said)
-    return {name: words for name, words in said.items() if words != "same" and name not in refused}
+    expected = refused | ENDED_BY_C.get(exercise, set())
+    return {name: words for name, words in said.items() if words != "same" and name not in expected}
 
 
 def written(folder: Path, **sources: str) -> list[str]:
