@@ -40,11 +40,9 @@ def _bytes(file: Path) -> bytes:
 
 def folders_digest(root: Path, *parts: str) -> str:
     """Return a digest of these files of `root` and all files in these folders, without Python's compiled ones."""
-    return files_digest((file for part in parts for file in _files(root / part) if file.suffix != ".pyc"), root)
-
-
-def _files(path: Path) -> Iterable[Path]:
-    return [path] if path.is_file() else path.rglob("*.*")
+    paths = [root / part for part in parts]
+    files = (file for path in paths for file in ([path] if path.is_file() else path.rglob("*.*")))
+    return files_digest((file for file in files if file.suffix != ".pyc"), root)
 
 
 @functools.cache

@@ -259,7 +259,8 @@ def broken(text: str, length: int, *, evenly: bool = True) -> tuple[str, ...]:
         lines = _filled(parts, limit)
         if len(lines) <= count and all(len(line) <= length for line in lines):
             return tuple(line.strip() for line in lines)
-    return tuple(piece.strip() for line in _filled(parts, length) for piece in _cut(line, length))
+    filled = _filled(parts, length)
+    return tuple(line[at : at + length].strip() for line in filled for at in range(0, len(line), length))
 
 
 def _filled(parts: list[str], length: int) -> list[str]:
@@ -269,10 +270,6 @@ def _filled(parts: list[str], length: int) -> list[str]:
             lines.append("")
         lines[-1] += part
     return lines
-
-
-def _cut(line: str, length: int) -> list[str]:
-    return [line[start : start + length] for start in range(0, len(line), length)]
 
 
 def _lines(arrows: tuple[Arrow, ...], placed: Mapping[_Key, PlacedBox]) -> list[PlacedArrow]:

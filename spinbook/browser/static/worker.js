@@ -100,7 +100,12 @@ async function python(memory) {
     },
   };
   if (memory) {
-    const copy = new Uint8Array(await memory.arrayBuffer());
+    const copy = new Uint8Array(memory.size);
+    let filled = 0; // Read as a stream: arrayBuffer() would cost each process 28 MB more.
+    for await (const part of memory.stream()) {
+      copy.set(part, filled);
+      filled += part.length;
+    }
     Int8Array.prototype.set = setFullPages;
     const loading = loadPyodide({ ...options, _loadSnapshot: copy });
     const py = await loading.finally(() => delete Int8Array.prototype.set);
