@@ -5,16 +5,18 @@ from __future__ import annotations
 import difflib
 import re
 import sys
+from collections.abc import Mapping
 from importlib.util import find_spec
 
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Ending
+from grader.submission.python_code import imported
 from grader.submission.python_version import newer_name
 
 #: What the sandbox has besides Python itself, as a student would import it.
 AVAILABLE = "rclpy, tf2, the standard ROS 2 messages (std_msgs, geometry_msgs, sensor_msgs and so on), numpy"
 
-MISSING = re.compile(r"ModuleNotFoundError: No module named '([^']+)'")
+MISSING = re.compile(r"ModuleNotFoundError: No module named '((?P<top>[^'.]+)[^']*)'")
 NO_NAME = re.compile(r"ImportError: cannot import name '([^']+)' from '([^']+)'")
 
 #: An error to which `grader.runner.program_end` has added advice, behind the line that it quotes.
@@ -71,11 +73,16 @@ def _instead(module: str, exercise: Exercise) -> str:
     return f"The module {module} is not available here. Available are Python's own modules, {available}.{meant}"
 
 
-def lacks_a_notebooks_module(ending: Ending) -> str:
-    """Return the module of `OF_NOTEBOOKS` for whose lack a program ended here, otherwise an empty text."""
+def lacks_a_notebooks_module(ending: Ending, sources: Mapping[str, str]) -> str:
+    """Return the module of `OF_NOTEBOOKS` for whose lack a program ended here, otherwise an empty text.
+
+    A program that does not import the module only pretends, to get no zero.
+    """
     missing = MISSING.search(ending.message)
-    top = missing[1].partition(".")[0] if missing else ""
-    return top if top in OF_NOTEBOOKS and find_spec(top) is None else ""
+    if not missing or missing["top"] not in OF_NOTEBOOKS or find_spec(missing["top"]):
+        return ""
+    imports = {name.partition(".")[0] for source in sources.values() for name in imported(source)}
+    return missing["top"] if missing["top"] in imports else ""
 
 
 def message_of(ending: Ending, exercise: Exercise) -> str:
@@ -91,7 +98,7 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
             return f"{message} {advice}"
     if newer := newer_name(message):
         return f"{message} {newer}"
-    if (missing := MISSING.search(message)) and missing[1].partition(".")[0] not in sys.stdlib_module_names:
+    if (missing := MISSING.search(message)) and missing["top"] not in sys.stdlib_module_names:
         return f"{message} {_instead(missing[1], exercise)}"
     if no_name := NO_NAME.search(message):
         name = no_name[1][:1].upper() + no_name[1][1:]

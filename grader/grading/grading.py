@@ -58,8 +58,9 @@ class Grading:
         if broken:
             text = f"This is not your fault: the check {broken[0].name} broke: {broken[0].error}"
             return self._grade(submission, recordings, verdicts, "host-error", text, began)
-        missing = filter(None, (lacks_a_notebooks_module(recording.ending) for recording in recordings.values()))
-        if module := next(missing, None):
+        endings = [recording.ending for recording in recordings.values()]
+        missing = (lacks_a_notebooks_module(ending, submission.sources) for ending in endings)
+        if module := next(filter(None, missing), None):
             text = f"This is not your fault: {module}, which notebooks have, is missing here. "
             text += "Instructors: pip install 'spinbook[notebooks]', or name it in exercise.toml (packages)."
             return self._grade(submission, recordings, (), "host-error", text, began)

@@ -71,14 +71,16 @@ def test_a_broken_submission_is_told_what_is_wrong(
 def test_a_module_that_only_notebooks_have_costs_nobody_a_point(
     grading: Grading, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    source = "raise ModuleNotFoundError(\"No module named 'matplotlib'\")\n"
-    assert grade_of(grading, source).outcome == "did-not-start", "it is installed here"
+    pretends = "raise ModuleNotFoundError(\"No module named 'matplotlib'\")\n"
+    imports = f"{pretends}from matplotlib import pyplot\n"
+    assert grade_of(grading, imports).outcome == "did-not-start", "it is installed here"
 
     monkeypatch.setattr(ending_message, "find_spec", lambda name: None)
-    grade = grade_of(grading, source)
+    grade = grade_of(grading, imports)
 
     assert (grade.outcome, grade.has_score) == ("host-error", False)
     assert "matplotlib, which notebooks have, is missing here. Instructors: pip install" in grade.message
+    assert grade_of(grading, pretends).has_score, "a zero, as for any error that a program raises itself"
 
 
 def test_a_crash_in_one_scenario_costs_only_its_checks(grading: Grading) -> None:
