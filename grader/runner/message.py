@@ -20,18 +20,7 @@ _LIST = re.compile(r"sequence<(?P<sequence>[^,>]+)(, \d+)?>|(?P<array>.+)\[\d+\]
 def to_fields(message: Any) -> Fields:
     """Return the fields of a ROS message as plain data."""
     kind: Any = type(message)
-    return {name: _plain(getattr(message, name)) for name in _names(kind)}
-
-
-@functools.cache
-def _names(kind: Any) -> tuple[str, ...]:
-    """Return the names of a message type's fields; cached, because the type makes a new copy each time."""
-    return tuple(kind.get_fields_and_field_types())
-
-
-def to_message(type_name: str, fields: Fields) -> Any:
-    """Return a ROS message of that type with these fields; fields not given keep their defaults."""
-    return filled(message_class(type_name)(), fields)
+    return {name: _plain(getattr(message, name)) for name in _types(kind)}
 
 
 def filled(message: Any, fields: Fields) -> Any:

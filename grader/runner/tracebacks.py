@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from grader.recording.places import place_of
@@ -15,8 +15,8 @@ _FRAME = re.compile(r'^[ \t]*File "(?P<file>[^"]+)", line (?P<line>\d{1,9})', re
 _OF_A_LAUNCH = re.compile(r"^\[[\w.-]+-\d+\] ", re.MULTILINE)
 _ERROR = re.compile(r"[A-Za-z_][\w.]*(:|$)")
 
-#: An error's last line is as long as the student likes; more characters than this do not help.
-_LONGEST_ERROR = 500
+#: A line of an error or of a program is as long as the student likes; more characters than this do not help.
+_LONGEST_ROW = 500
 
 #: At most this many folders above a student's file are compared with a traceback's path.
 _DEEPEST = 20
@@ -61,7 +61,9 @@ def last_error(log: str, sources: Mapping[str, str]) -> LastError | None:
     start = _beginning(log)
     if start < 0:
         return None
-    rows = list(_traceback(log[start:]))
+    rows = log[start:].splitlines()
+    ends = (number for number, row in enumerate(rows, 1) if number > 1 and _ERROR.match(row))
+    rows = rows[: next(ends, len(rows))]
     error = _shortened(rows[-1].strip()) if _ERROR.match(rows[-1]) else ""
     block = "\n".join(rows)
     frames = [(_own(m["file"], sources), int(m["line"])) for m in _FRAME.finditer(block)]
@@ -87,7 +89,8 @@ def _callback_line(error: str, source: str) -> int | None:
     for what, where in _CALLBACK_LINES:
         if match := re.match(what, error):
             pattern = where.replace(r"\1", match[1])
-            lines = [number for number, row in enumerate(source.splitlines(), 1) if re.match(pattern, row)]
+            rows = enumerate(source.splitlines(), 1)
+            lines = [number for number, row in rows if re.match(pattern, row[:_LONGEST_ROW])]
             return lines[0] if len(lines) == 1 else None
     return None
 
@@ -145,19 +148,9 @@ def _beginning(log: str) -> int:
     return last if last >= 0 else log.rfind(_OF_A_SYNTAX_ERROR)
 
 
-def _traceback(text: str) -> Iterator[str]:
-    """Yield the lines up to the error; all of them if there is none."""
-    first, *others = text.splitlines()
-    yield first
-    for row in others:
-        yield row
-        if _ERROR.match(row):
-            return
-
-
 def _shortened(error: str) -> str:
     error = _ADDRESS.sub("", error).removesuffix(" The following argument types are supported:")
-    return error if len(error) <= _LONGEST_ERROR else f"{error[:_LONGEST_ERROR]}…"
+    return error if len(error) <= _LONGEST_ROW else f"{error[:_LONGEST_ROW]}…"
 
 
 def _row(source: str, line: int) -> str:

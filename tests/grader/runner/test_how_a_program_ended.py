@@ -7,6 +7,7 @@ from rclpy.node import Node
 
 from grader.runner.node_attributes import PUBLIC
 from grader.runner.program_end import of_exit, survived_by
+from grader.runner.tracebacks import last_error
 from groundwork.process_exit import ProcessExit
 
 SOURCE = "import rclpy\nrclpy.spin(node)\n"
@@ -474,3 +475,11 @@ def test_the_attributes_of_node_are_those_of_this_rclpy() -> None:
     properties = {name for name in dir(Node) if isinstance(getattr(Node, name), property)}
 
     assert set(PUBLIC) == properties
+
+
+def test_a_line_of_a_megabyte_does_not_keep_the_grader_busy() -> None:
+    """Patterns would take minutes for it, and each scenario again."""
+    log = RAISES.partition('  File "turnstile.py", line 3')[0] + "TypeError: 'NoneType' object is not callable\n"
+    error = last_error(log, {"turnstile.py": f"{SOURCE}# {'create_timer(' * 75_000}"})
+    assert error
+    assert error.line == 2

@@ -21,7 +21,7 @@ from grader.recording import Recording
 from grader.recording.arrays import LongArray
 from grader.recording.recording import from_json, to_json
 from grader.report.bag import write_bags
-from grader.runner.message import to_fields, to_message
+from grader.runner.message import filled, to_fields
 from grader.runner.program import Task
 from grader.runner.run import run
 from grader.sandbox import ForkServer, Limits, ProgramSpec, SandboxedProgram, choose
@@ -207,8 +207,8 @@ def test_a_check_compares_and_shows_arrays_as_lists() -> None:
 def test_a_byte_and_bytes_are_numbers_in_a_recording() -> None:
     message = UnboundedSequences(byte_values=[b"\1", b"\xff"])
     assert to_fields(message)["byte_values"] == [1, 255]
-    assert to_message("test_msgs/msg/UnboundedSequences", {"byte_values": [1, 255]}).byte_values == [b"\1", b"\xff"]
+    assert filled(UnboundedSequences(), {"byte_values": [1, 255]}).byte_values == [b"\1", b"\xff"]
     assert to_fields(BasicTypes(byte_value=b"\7"))["byte_value"] == 7
-    assert to_message("test_msgs/msg/BasicTypes", {"byte_value": 7}).byte_value == b"\7"
+    assert filled(BasicTypes(), {"byte_value": 7}).byte_value == b"\7"
     given = checked_fields(UnboundedSequences, {"byte_values": b"\1\2", "float32_values": np.zeros(2)}, "name")
     assert given == {"byte_values": [1, 2], "float32_values": [0.0, 0.0]}

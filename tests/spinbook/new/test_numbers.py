@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from grader.runner.message import message_class, to_fields, to_message
+from grader.runner.message import filled, message_class, to_fields
 from grader.scenario.numbers import (
     Stream,
     chosen,
@@ -44,7 +44,7 @@ def test_a_wave_swings_between_its_heights_at_its_instants() -> None:
 
 def test_a_number_goes_into_any_field_of_any_message() -> None:
     [message] = numbers("/cmd_vel", [(0.5, 2.0)], type="geometry_msgs/msg/Twist", field="linear.x")
-    twist = to_message(message.type, message.fields)
+    twist = filled(message_class(message.type)(), message.fields)
     assert isinstance(twist, message_class("geometry_msgs/msg/Twist"))
     assert (twist.linear.x, twist.angular.z) == (2.0, 0.0)
 
@@ -53,7 +53,7 @@ def test_stamps_are_the_instants_and_move_with_a_pause() -> None:
     stream = numbers(
         "/range", [(0.0, 1.0), (0.5, 2.0)], type="sensor_msgs/msg/Range", field="range", stamped=True, max_range=9.0
     )
-    fields = to_fields(to_message(stream[1].type, paused(stream, 1, 30.25)[1].fields))
+    fields = to_fields(filled(message_class(stream[1].type)(), paused(stream, 1, 30.25)[1].fields))
     assert fields["header"]["stamp"] == {"sec": 130, "nanosec": 750_000_000}
     assert (fields["range"], fields["max_range"]) == (2.0, 9.0)
     assert stream[1].fields["header"]["stamp"] == {"sec": 100, "nanosec": 500_000_000}, "the stream itself stays"
