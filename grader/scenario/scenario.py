@@ -341,4 +341,6 @@ def _digestible(value: Any) -> Any:
     """Replace long arrays by their digests, and leave out where the author's course is."""
     if isinstance(value, LongArray):
         return [value.typecode, hashlib.sha256(value).hexdigest()]
+    if isinstance(value, dict):
+        return {str(key): item for key, item in value.items()}
     return value.without_folder() if isinstance(value, AuthorCode) else value

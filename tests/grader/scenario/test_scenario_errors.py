@@ -12,9 +12,11 @@ from grader.checking.ending_message import message_of
 from grader.exercise import ExerciseError, load
 from grader.exercise.writing import to_toml
 from grader.recording import Ending
+from grader.scenario.code import AuthorCode
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Scenario
 from grader.scenario.store import NotForStudents, from_plain, plain
+from grader.scenario.world import World
 
 TOML = """\
 title = "Any kind"
@@ -337,6 +339,12 @@ def test_scenarios_differ_if_anything_in_them_does(tmp_path: Path) -> None:
         )
     }
     assert len(digests) == 9
+
+
+def test_a_worlds_arguments_may_have_any_keys() -> None:
+    world = AuthorCode("grader.scenario.models", "GoalPoint")
+    digests = {Scenario("", "", world=World(world, walls={(0, 1): number, 3: 4})).digest for number in (1, 2)}
+    assert len(digests) == 2
 
 
 def test_packages_are_pinned_to_what_is_installed(tmp_path: Path) -> None:
