@@ -6,7 +6,6 @@ import shlex
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from importlib.metadata import version
 from pathlib import Path
 
 import click
@@ -14,7 +13,7 @@ import click
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import COURSE, find, load
 from grader.gradescope.own_wheel import SOURCE, NoWheel, as_wheel, is_checkout, wheel_contents
-from grader.gradescope.pins import LOCKS, PLOTS, PLOTS_PINS, hashed_pins, needed, pins
+from grader.gradescope.pins import LOCKS, PLOTS, PLOTS_PINS, hashed_pins, needed, pinned, pins
 from grader.grading.reference import solution_file
 from grader.sandbox.middleware import MiddlewareUnavailable
 from grader.sandbox.program import Isolation
@@ -60,8 +59,7 @@ def _pins() -> dict[str, str]:
 
 def _test_messages(files: Mapping[str, bytes]) -> list[str]:
     """Return the package test_msgs, with its version, if the exercise names it: few do, and it is large."""
-    name = "ros-jazzy-test-msgs"
-    return [f"{name}=={version(name)}"] if any(b"test_msgs" in content for content in files.values()) else []
+    return [pinned("ros-jazzy-test-msgs")] if any(b"test_msgs" in content for content in files.values()) else []
 
 
 def _script(file: str, exercise: Exercise, isolation: Isolation | None) -> str:

@@ -31,8 +31,14 @@ OF_OTHER_VERSIONS = {"python-dateutil": ("six",), "ipython": ("decorator",)}
 
 def pins() -> str:
     """Return the installed versions of everything that is needed, a line such as `numpy==2.3.1` for each."""
-    installed = {name: _installed(name) for name in sorted(needed() | needed(PLOTS, "")) if name != NAME}
-    return "".join(f"{name}=={distribution.version}\n" for name, distribution in installed.items() if distribution)
+    names = sorted((needed() | needed(PLOTS, "")) - {NAME})
+    return "".join(f"{pinned(name)}\n" for name in names if _installed(name))
+
+
+def pinned(name: str) -> str:
+    """Return what pip is to install: the version that is here, or any if none is, as where ROS 2 comes from Debian."""
+    distribution = _installed(name)
+    return f"{name}=={distribution.version}" if distribution else name
 
 
 def hashed_pins(lock: Path, needs: Set[str]) -> str:

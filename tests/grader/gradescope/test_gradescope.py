@@ -12,6 +12,7 @@ import subprocess
 import sys
 import zipfile
 from dataclasses import replace
+from importlib import metadata
 from io import BytesIO
 from pathlib import Path
 
@@ -25,6 +26,7 @@ from grader.classroom50.run import result, summary
 from grader.exercise import load
 from grader.gradescope.command import bundle
 from grader.gradescope.own_wheel import as_wheel, wheel_contents
+from grader.gradescope.pins import pinned
 from grader.grading.grade import Adjustment
 from grader.report.as_json import gradescope_results as results
 from interface_compiler import activation, prefixes
@@ -50,6 +52,12 @@ def test_late_work_counts_there_too() -> None:
     shown = results(plain.entry(plain.HALF, adjustments=(Adjustment("late", -1.0, "handed in 1 h late"),)))
     assert shown["score"] == 5
     assert "-1 points: handed in 1 h late" in shown["output"]
+
+
+def test_what_pypi_did_not_install_here_is_asked_for_in_any_version() -> None:
+    """A machine whose ROS 2 comes from Debian knows no version of PyPI's."""
+    assert pinned("numpy") == f"numpy=={metadata.version('numpy')}"
+    assert pinned("ros-jazzy-of-another-machine") == "ros-jazzy-of-another-machine"
 
 
 def test_a_fault_of_ours_has_no_score() -> None:
