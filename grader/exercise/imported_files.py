@@ -38,7 +38,7 @@ def importable(folder: Path) -> Iterator[None]:
         sys.path.remove(path)
         sys.dont_write_bytecode = wrote
         # Only what was imported meanwhile: to look at another module would copy its memory in a fork.
-        for name in list(itertools.takewhile(lambda name: name != last, reversed(sys.modules))):
+        for name in list(itertools.takewhile(last.__ne__, reversed(sys.modules))):
             if Path(getattr(sys.modules[name], "__file__", None) or "/").parent == folder:
                 del sys.modules[name]
 
