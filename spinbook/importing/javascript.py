@@ -19,8 +19,7 @@ _OBJECT = re.compile(r"(?:=|\bexport\s+default)\s*(?=\{)")
 
 def objects_in(text: str) -> Iterator[Any]:
     """Yield the objects that a file assigns or exports."""
-    for match in _OBJECT.finditer(text):
-        yield value_in(text[match.end() :])
+    return (value_in(text[match.end() :]) for match in _OBJECT.finditer(text))
 
 
 def value_in(text: str) -> Any:
@@ -36,11 +35,14 @@ def value_in(text: str) -> Any:
 
 def _as_yaml(text: str) -> str:
     """Return the object or list with which a text begins as YAML, which also has commas before the last bracket."""
-    flow, tokens, depth, after_colon = "", [], 0, False
+    flow, depth, nested, after_colon = "", 0, 0, False
+    tokens: list[str] = []
     for match in _TOKEN.finditer(text):
         mark = match["mark"]
-        if not mark or (mark == ":" and after_colon):  # also the colon of CONDITION ? ONE : OTHER
+        # An expression goes on to the end of its brackets, and after the colon of CONDITION ? ONE : OTHER.
+        if not mark or nested or (tokens and mark in "{[") or (mark == ":" and after_colon):
             tokens += [match[0]] if match.lastgroup else []
+            nested += sum((sign in "([{") - (sign in ")]}") for sign in mark or match["word"] or "")
             continue
         flow += f"{_scalar(tokens, is_key=mark == ':')}{mark} "
         tokens, after_colon = [], mark == ":"
@@ -54,5 +56,5 @@ def _scalar(tokens: Sequence[str], *, is_key: bool) -> str:
     """Return a text, a key, true or false as YAML; an expression is null."""
     is_text = len(tokens) == 1 and tokens[0][0] in "\"'`"
     if is_text or (is_key and tokens):
-        return json.dumps(tokens[0][1:-1] if tokens[0][0] in "\"'`" else tokens[0])
+        return json.dumps(tokens[0][1:-1] if tokens[0][0] in "\"'`" else tokens[0], ensure_ascii=False)
     return tokens[0] if tokens in (["true"], ["false"]) else "null" if tokens else ""

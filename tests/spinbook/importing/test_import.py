@@ -71,8 +71,9 @@ const sidebars = {
   tutorial: [
     'index', // the first
     {type: 'category', label: "A, b: {c}", link: {type: 'generated-index'},
-     items: ['part/second', {type: 'doc', id: 'part/first'}]},
+     items: ['part/second', {type: 'doc', id: 'part/first'}], ...rest([{a: 1}, more[0]]), key: 'x'},
   ],
+  generated(pages) { return {docs: pages}; },
 };
 module.exports = sidebars;
 """
