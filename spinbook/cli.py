@@ -127,10 +127,7 @@ class Verbs(click.Group):
         try:
             return super().invoke(ctx)
         except ImportError as missing:
-            package = _package(missing)
-            if package not in EXTRAS:
-                raise
-            raise _missing(ctx.invoked_subcommand or "", package) from None
+            raise _in_words(ctx.invoked_subcommand or "", missing) from None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the verbs by who uses them, without importing any."""
@@ -159,17 +156,15 @@ def _load(name: str, verb: Verb) -> click.Command:
     try:
         command = getattr(importlib.import_module(module), attribute)
     except ImportError as missing:
-        package = _package(missing)
-        if package not in EXTRAS:
-            raise
-        raise _missing(name, package) from None
+        raise _in_words(name, missing) from None
     assert isinstance(command, click.Command)
     return command
 
 
-def _package(missing: ImportError) -> str:
-    of_fast_dds = "librmw_fastrtps_cpp" in str(missing)
-    return "Fast DDS" if of_fast_dds else (missing.name or "").partition(".")[0]
+def _in_words(verb: str, missing: ImportError) -> Exception:
+    """Return the error that says what to install; the same error if no extra has the module."""
+    package = "Fast DDS" if "librmw_fastrtps_cpp" in str(missing) else (missing.name or "").partition(".")[0]
+    return _missing(verb, package) if package in EXTRAS else missing
 
 
 def _missing(verb: str, package: str) -> click.UsageError:

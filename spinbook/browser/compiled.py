@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import subprocess
 import tempfile
@@ -9,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from groundwork.child_process import run_program
-from groundwork.files import cached, write_if_changed
+from groundwork.files import cached, write_folder, write_if_changed
 from spinbook.build.digest import digest
 
 _SCRIPT = Path(__file__).with_name("compile.mjs")
@@ -21,15 +22,17 @@ def with_compiled_modules(pyodide: Path, archives: Mapping[str, bytes]) -> dict[
     Pyodide: pages then compile for themselves. npm, which fetches Pyodide, comes with Node.js.
     """
     kept = cached("pages") / digest(_SCRIPT.read_bytes(), *archives.values())[:24]
-    if not all((kept / name).is_file() for name in archives):
-        with tempfile.TemporaryDirectory(prefix="spinbook-") as folder:
-            for name, content in archives.items():
-                Path(folder, name).write_bytes(content)
-            if not _compiles(pyodide, folder):
-                return dict(archives)
-            for name in archives:
-                write_if_changed(kept / name, Path(folder, name).read_bytes())
-    return {name: (kept / name).read_bytes() for name in archives}
+    with contextlib.suppress(OSError):  # not compiled yet
+        return {name: (kept / name).read_bytes() for name in archives}
+    with tempfile.TemporaryDirectory(prefix="spinbook-") as folder:
+        write_folder(Path(folder), archives)
+        if not _compiles(pyodide, folder):
+            return dict(archives)
+        compiled = {name: Path(folder, name).read_bytes() for name in archives}
+    with contextlib.suppress(OSError):  # a cache that can't be written keeps nothing
+        for name, content in compiled.items():
+            write_if_changed(kept / name, content)
+    return compiled
 
 
 def _compiles(pyodide: Path, folder: str) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from argparse import Namespace
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -89,10 +90,8 @@ def _module(name: str, node: Namespace, code: str, read: Notebooks) -> Module:
     whole = code
     if node.after or node.usual_imports:
         pieces = [read.code[piece] for piece in node.after if piece in read.code]
-        try:
+        with contextlib.suppress(CodeError):  # Python itself reports best what is wrong.
             whole = join(code, pieces).whole
-        except CodeError:
-            whole = code  # Python itself reports best what is wrong.
     pairs = [known.partition("/") for known in node.known_as]
     own = read.package.name if read.package else ""
     executables = tuple(executable for package, _, executable in pairs if package == own)

@@ -71,9 +71,8 @@ def answer(page: Any, op: str, arguments: Mapping[str, Any]) -> str:
     """
     module, _, name = op.partition(".")
     function = getattr(importlib.import_module(f"spinbook.browser.in_page.{module}"), name)
-    if "page" in inspect.signature(function).parameters:
-        return json.dumps(function(page, **arguments))
-    return json.dumps(function(**arguments))
+    first = [page] if "page" in inspect.signature(function).parameters else []
+    return json.dumps(function(*first, **arguments))
 
 
 def _show_error_of_thread(ended: threading.ExceptHookArgs) -> None:

@@ -198,8 +198,8 @@ self.onmessage = async ({ data: message }) => {
   try {
     self.postMessage({ op: "done", id: message.id, value: await answer(message) });
   } catch (error) {
-    // `os._exit` ends Python itself, with a status.
-    const ended = Number.isInteger(error?.status) ? { value: error.status } : { error: String(error) };
+    // `os._exit` ends Python itself, with a program's status.
+    const ended = message.op === "process.run_program" && Number.isInteger(error?.status) ? { value: error.status } : { error: String(error) };
     self.postMessage({ op: "done", id: message.id, ...ended });
   }
 };

@@ -101,9 +101,11 @@ def _place(name: str, depth: int, children: Mapping[str, list[str]], drawn: dict
 
 
 def draw(frames: Mapping[str, Mapping[str, Any]], file: Path) -> None:
-    """Draw the frames into a file of any type that matplotlib knows."""
-    from matplotlib.figure import Figure
-
+    """Draw the frames into a file of any type that matplotlib knows. Raises SystemExit without matplotlib."""
+    try:
+        from matplotlib.figure import Figure
+    except ModuleNotFoundError:
+        sys.exit(f"{file.with_suffix('.gv')} is written. The PDF needs matplotlib: pip install matplotlib")
     tree = places(frames)
     width = max(one.across for one in tree.values()) + 1
     depth = max(one.depth for one in tree.values()) + 1

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
+import pytest
 import yaml
 from test_frames import buffer_of, stamped
 
@@ -26,3 +28,9 @@ def test_the_graph_says_how_often_each_frame_comes(tmp_path: Path) -> None:
     assert '"base" -> "left"[label="static or sent once"];' in graph
     view_frames.draw(FRAMES, tmp_path / "frames.pdf")
     assert (tmp_path / "frames.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_without_matplotlib_the_graph_is_there_and_the_way_to_the_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    with pytest.raises(SystemExit, match=r"^frames.gv is written. The PDF needs matplotlib: pip install matplotlib$"):
+        view_frames.draw(FRAMES, Path("frames.pdf"))
