@@ -49,7 +49,7 @@ def read_notebooks(folder: Path) -> Notebooks:
         except (OSError, Unreadable) as error:
             raise SpinbookError(Problem(file, None, str(error), "Save it again in JupyterLab.")) from None
         except CellFailed as error:
-            problem = f"a cell can't run, so it makes no node: {error}"
+            problem = f"the cell `{cell.source.split(chr(10))[0]}` can't run, so it makes no node: {error}"
             raise SpinbookError(Problem(file, None, problem, "Correct it, and save the notebook.")) from None
     if read.package is None:
         problem = "there is no course.toml and no notebook of a course here."
@@ -66,10 +66,10 @@ def _take(read: Notebooks, source: str, file: Path) -> None:
     first, _, code = source.partition("\n")
     magic, _, line = first.partition(" ")
     if magic == "%%part":
-        read.code["".join(split(line)[:1])] = code
+        read.code["".join(word for word in split(line) if word != "--keep")] = code
     elif magic == "%%interface" and read.package:
         _take_interface(read, "".join(split(line)[:1]), code, file)
-    elif magic == "%%node":
+    elif magic == "%%node" and not {"-h", "--help"} & set(split(line)):
         node = node_reader().parse_args(split(line))
         name = node.name.removesuffix(".py")
         read.code[name] = code

@@ -177,12 +177,15 @@ def test_colcon_builds_it_and_ros2_run_runs_it_and_ctrl_c_ends_it(course: Course
 
 
 def test_a_node_s_line_in_a_notebook_is_read_as_its_cell_reads_it(tmp_path: Path) -> None:
-    (tmp_path / "one.ipynb").write_text(_notebook("%chapter one --package robot", "%%node --until hello talker\na = 1"))
-    assert {name: module.code for name, module in read_notebooks(tmp_path).modules.items()} == {"talker": "a = 1\n"}
+    cells = ["%%part --keep b\nb = 2", "%%node --until hello talker --after b\na = b", "%%node other --help"]
+    (tmp_path / "one.ipynb").write_text(_notebook("%chapter one --package robot", *cells))
+    modules = read_notebooks(tmp_path).modules
+    assert {name: module.code for name, module in modules.items()} == {"talker": "b = 2\n\n\na = b\n"}
 
 
 @pytest.mark.parametrize(
-    ("text", "problem"), [("{", "not a valid notebook"), (_notebook("%%node talker --untill x"), "--untill")]
+    ("text", "problem"),
+    [("{", "not a valid notebook"), (_notebook("%%node a --untill x"), "cell `%%node a --untill x` can't.*: --untill")],
 )
 def test_a_notebook_of_which_a_part_would_be_left_out_is_refused(tmp_path: Path, text: str, problem: str) -> None:
     (tmp_path / "one.ipynb").write_text(text)
