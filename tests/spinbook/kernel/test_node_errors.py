@@ -129,11 +129,12 @@ def test_an_exception_while_a_program_is_stopped_is_an_error() -> None:
     assert error.what == "ValueError: no grip."
 
 
-def test_a_syntax_error_has_the_path_and_the_line_of_its_cell(tmp_path: Path) -> None:
+def test_a_syntax_error_has_the_path_and_the_line_of_its_cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     file = tmp_path / "arm.py"
     file.write_text("import math\n\n\n# %%node arm (line 2)\nx = (\n")
     printed = [f'  File "{file}", line 5', "    x = (", "SyntaxError: '(' was never closed"]
-    assert list(ReaderFrames(tmp_path).shown(printed)) == ['  File "arm.py", line 3', *printed[1:]]
+    assert list(ReaderFrames().shown(printed)) == ['  File "arm.py", line 3', *printed[1:]]
 
 
 def test_exit_codes() -> None:
