@@ -54,16 +54,17 @@ class Grading:
         except HostFault as fault:
             text = str(fault).strip().splitlines()[-1]
             return self._grade(submission, {}, (), "host-error", f"This is not your fault: {text}", began)
-        broken = [verdict for verdict in verdicts if verdict.status == "error"]
-        if broken:
-            text = f"This is not your fault: the check {broken[0].name} broke: {broken[0].error}"
-            return self._grade(submission, recordings, verdicts, "host-error", text, began)
         endings = [recording.ending for recording in recordings.values()]
         missing = (lacks_a_notebooks_module(ending, submission.sources) for ending in endings)
         if module := next(filter(None, missing), None):
             text = f"This is not your fault: {module}, which notebooks have, is missing here. "
             text += "Instructors: pip install 'spinbook[notebooks]', or name it in exercise.toml (packages)."
-            return self._grade(submission, recordings, (), "host-error", text, began)
+            # Without the recordings: once it is installed, they must not be judged again.
+            return self._grade(submission, {}, (), "host-error", text, began)
+        broken = [verdict for verdict in verdicts if verdict.status == "error"]
+        if broken:
+            text = f"This is not your fault: the check {broken[0].name} broke: {broken[0].error}"
+            return self._grade(submission, recordings, verdicts, "host-error", text, began)
         first = recordings[self.runner.scenarios[0].name].ending
         outcome: Outcome = "graded" if first.outcome == "completed" else first.outcome
         return self._grade(submission, recordings, verdicts, outcome, message_of(first, self.runner.exercise), began)

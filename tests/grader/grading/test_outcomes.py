@@ -80,6 +80,7 @@ def test_a_module_that_only_notebooks_have_costs_nobody_a_point(
 
     assert (grade.outcome, grade.has_score) == ("host-error", False)
     assert "matplotlib, which notebooks have, is missing here. Instructors: pip install" in grade.message
+    assert not grade.recordings, "to judge them again, once it is installed, would give a zero"
     assert grade_of(grading, pretends).has_score, "a zero, as for any error that a program raises itself"
 
 
