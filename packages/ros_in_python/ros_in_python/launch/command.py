@@ -145,7 +145,7 @@ def _unused(arguments: Iterable[str], description: LaunchDescription, context: C
     """Yield a sentence on each argument that was given, but neither declared nor asked for."""
     names = list(dict.fromkeys(argument.name for argument in arguments_of(description.entities, read, context.file)))
     for name in arguments:
-        if name not in context.asked.union(names):
+        if name not in context.asked.union(names) and not name.startswith("launch-prefix"):
             yield f"the launch file has no argument '{name}'. It has: {', '.join(names) or 'none'}."
 
 

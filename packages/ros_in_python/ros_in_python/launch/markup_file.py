@@ -174,7 +174,10 @@ def _entity(element: Element) -> Any:
     _check(element, kind)
     if kind in _INNER:
         raise CommandError(f"`{kind}` stands within a node, not alone.")
-    made = _MADE[kind](element)
+    try:
+        made = _MADE[kind](element)
+    except ValueError as error:
+        raise CommandError(f"`{element.kind}`: {error}.") from None
     made.condition = _condition(element.attributes)
     return made
 
@@ -258,7 +261,10 @@ def _split(line: str) -> list[Any]:
     is_open = False
     for part in parse(line) if "$(" in line else [line]:
         if isinstance(part, str):
-            pieces = shlex.split(part)
+            try:
+                pieces = shlex.split(part)
+            except ValueError as error:
+                raise CommandError(f"`{line}`: {error}. As in ROS 2, quotes have no `$(…)` in them.") from None
             if pieces and is_open and not part[0].isspace():
                 words[-1].append(pieces.pop(0))
             words += [[piece] for piece in pieces]
@@ -282,11 +288,7 @@ def _program(element: Element) -> dict[str, Any]:
         "respawn": _optional(element, "respawn") or False,
         "respawn_delay": None if delay is None else float(delay),
         "respawn_max_retries": int(element.attributes.get("respawn_max_retries", -1)),
-        **{
-            name: _needed_text(element, name)
-            for name in ("sigterm_timeout", "sigkill_timeout")
-            if name in element.attributes
-        },
+        **{name: _text(value) for name, value in element.attributes.items() if name.endswith("_timeout")},
         "on_exit": known.Shutdown() if "on_exit" in element.attributes else (),
         "additional_env": {
             str(_needed(child, "name")): _needed_text(child, "value")

@@ -195,6 +195,25 @@ def test_words_of_commands_are_split_as_a_shell_splits_them() -> None:
     assert said(launched("say(Command(['echo ', '\"x  y\"; z']))"))[0] == "x  y; z"
 
 
+@pytest.mark.parametrize(
+    ("attributes", "problem"),
+    [
+        (
+            """cmd="echo 'to $(var a)'" """,
+            "`echo 'to $(var a)'`: No closing quotation. As in ROS 2, quotes have no `$(…)` in them.",
+        ),
+        ('cmd="true" respawn_delay="soon"', "`executable`: could not convert string to float: 'soon'."),
+    ],
+)
+def test_an_attribute_that_can_not_be_read_is_named(attributes: str, problem: str) -> None:
+    answer = launched(f"<launch><executable {attributes}/></launch>", name="a.launch.xml")
+    assert (answer.exit_code, answer.output.strip().endswith(f"a.launch.xml: {problem}")) == (1, True), answer.output
+
+
+def test_a_prefix_for_programs_may_have_none_to_stand_before() -> None:
+    assert said(launched("say('hi')", "--launch-prefix=nice")) == ["hi"]
+
+
 def test_texts_of_yaml_stay_texts_and_those_of_xml_are_read_as_yaml() -> None:
     xml = (
         "<launch><set_parameter name='a' value='3'/><node exec='./show.sh'><param name='b' value='4'/></node></launch>"
