@@ -80,8 +80,7 @@ def _launch(session: Session, words: list[str], bound: DisplayLimit) -> None:
 def _create_package(session: Session, words: list[str]) -> None:
     """Run `ros2 pkg create … NAME`: make an empty package in the workspace, for the chapter's nodes."""
     package = new_package(["ros2", *words])
-    name = package.name
-    if not name:
+    if not (name := package.name):
         raise CellFailed("Write: ros2 pkg create --build-type ament_python NAME")
     if name != session.package.name and (session.workspace / "src" / name).exists():
         print(f"The package {name} already exists.")

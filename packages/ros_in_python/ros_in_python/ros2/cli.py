@@ -147,7 +147,7 @@ class StopSignal(KeyboardInterrupt):
 
 
 def listen() -> None:
-    """Make SIGINT and SIGTERM raise `StopSignal`, for the rest of this process's life.
+    """Make SIGINT and SIGTERM raise `StopSignal`, for a command, of which a page's process runs several.
 
     SIGINT is set even where it was ignored (a shell ignores it for what it starts in the background), because a
     notebook stops its commands with it. Cleaning up is not interrupted by a second SIGINT soon afterwards; a SIGTERM
@@ -155,6 +155,8 @@ def listen() -> None:
     """
     if threading.current_thread() is not threading.main_thread():
         return
+    global _stopped_at
+    _stopped_at = None
     signal.signal(signal.SIGINT, _stop)
     signal.signal(signal.SIGTERM, _stop)
     sys.unraisablehook = _raise_again
@@ -215,9 +217,8 @@ def _raise(number: int) -> NoReturn:
 
 def _raise_again(lost: sys.UnraisableHookArgs) -> None:
     """Raise a signal once more that came in a destructor or a callback, where Python drops exceptions."""
-    global _stopped_at
     if isinstance(lost.exc_value, StopSignal):
-        _stopped_at = None
+        listen()
         threading.Timer(0.01, os.kill, (os.getpid(), signal.SIGINT)).start()
     else:
         sys.__unraisablehook__(lost)

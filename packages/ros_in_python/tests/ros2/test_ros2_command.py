@@ -227,18 +227,21 @@ class Destroyed:
         os.kill(os.getpid(), signal.SIGINT)
         time.sleep(0)
 
-cli.listen()
-try:
-    Destroyed()
-    time.sleep(30)
-except cli.StopSignal:
-    print("stopped")
+# A terminal of a page runs one command after the other in a process.
+for command in ("first", "second"):
+    cli.listen()
+    assert cli.exit_code_of(ValueError()) is None
+    try:
+        Destroyed()
+        time.sleep(20)
+    except cli.StopSignal:
+        print(command, "stopped")
 """
 
 
-def test_a_signal_is_not_lost_where_python_drops_exceptions() -> None:
+def test_a_signal_is_not_lost_where_python_drops_exceptions_nor_counted_for_the_next_command() -> None:
     ended = subprocess.run([sys.executable, "-c", LOST], capture_output=True, text=True, timeout=30, check=False)
-    assert (ended.stdout, ended.stderr) == ("stopped\n", "")
+    assert (ended.stdout, ended.stderr) == ("first stopped\nsecond stopped\n", "")
 
 
 def test_sigint_is_heard_even_where_it_was_ignored(standing: Robot, terminal: Terminal) -> None:
