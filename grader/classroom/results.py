@@ -199,7 +199,7 @@ def _of_a_run(grading: Grading) -> dict[str, Any]:
     return {
         "scenarios": [scenario.digest for scenario in runner.scenarios],
         "versions": versions(),
-        "data": digest_of(data_paths(runner.exercise)),
+        "data": digest_of(data_paths(runner.exercise), runner.exercise.folder),
         "seed": runner.options.seed,
         "pace": runner.options.pace,
         "limits": asdict(runner.options.limits),

@@ -38,12 +38,12 @@ def versions() -> dict[str, str]:
     }
 
 
-def digest_of(files: list[Path]) -> str:
-    """Return the SHA-256 of these files' contents, in this order."""
+def digest_of(files: list[Path], folder: Path | None = None) -> str:
+    """Return the SHA-256 of these files' names, or their paths in `folder`, and contents, in this order."""
     total = hashlib.sha256()
     for file in files:
         content = file.read_bytes()
-        total.update(f"{file.name} {len(content)}\n".encode())
+        total.update(f"{file.relative_to(folder) if folder else file.name} {len(content)}\n".encode())
         total.update(content)
     return total.hexdigest()
 
@@ -51,8 +51,8 @@ def digest_of(files: list[Path]) -> str:
 def exercise_digest(exercise: Exercise) -> str:
     """Return a digest of what decides a grade, besides the scenarios and the solution: not the task or the deadline."""
     settings = repr(replace(exercise, folder=Path(), solution_folder=None, task=""))
-    files = digest_of([*with_modules(exercise.check_files), *data_paths(exercise)])
-    return hashlib.sha256(f"{settings} {files}".encode()).hexdigest()
+    checks, data = digest_of([*with_modules(exercise.check_files)]), digest_of(data_paths(exercise), exercise.folder)
+    return hashlib.sha256(f"{settings} {checks} {data}".encode()).hexdigest()
 
 
 def _version(*names: str) -> str:
