@@ -90,7 +90,7 @@ EXTRAS = {
     "rosbags": "bag",
     "rclpy": "ros",
     "Fast DDS": "ros",
-    **dict.fromkeys(("IPython", "ipykernel", "jupytext", "matplotlib", "nbclient", "nbformat"), "notebooks"),
+    **dict.fromkeys(("IPython", "ipykernel", "jupytext", "matplotlib", "nbclient", "nbformat", "PIL"), "notebooks"),
     **dict.fromkeys(("sphinx", "myst_nb", "myst_parser", "latex2mathml", "livereload", "sphinx_book_theme"), "site"),
 }
 
