@@ -32,9 +32,9 @@ class Turtle:
         self._velocities = pose == POSE
 
     def hear(self, topic: str, message: Any) -> None:
-        """Take a command."""
-        self._forward, self._left, self._turn = message.linear.x, message.linear.y, message.angular.z
-        self._age = 0.0
+        """Take a command. As in turtlesim, an infinite turn leaves no heading: nan."""
+        self._forward, self._left, self._age = message.linear.x, message.linear.y, 0.0
+        self._turn = message.angular.z if math.isfinite(message.angular.z) else math.nan
 
     def step(self, seconds: float) -> None:
         """Move on."""
