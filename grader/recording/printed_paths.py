@@ -1,17 +1,30 @@
-"""Takes the grading machine's paths out of what a program printed: students know their files by other names."""
+"""Takes out of what a program printed what helps no student: frames of libraries, and the grading machine's paths."""
 
 from __future__ import annotations
 
 import re
 import sys
 
-_IN_TRACEBACKS = re.compile(r'(?<=File ")(?:/submission/|[^"\n]*/(?:site|dist)-packages/)')
 _ENVIRONMENT = re.compile(rf"{re.escape(sys.prefix)}(?![\w.-])/?")
+#: Of an installed Python, and of a page's; Python's own code is in `lib/python3.12` or `python312.zip`.
+_LIBRARIES = r'[^"\n]*/(?:(?:site|dist)-packages|lib\d*/python3[^/"\n]*)/|/(?:ros|check|share)\.zip/|/lib/|<frozen '
+#: A frame with its code; a launched program's has the program's name before it.
+_FRAME = re.compile(
+    rf'^((?:\[[\w./-]+\] )? *)File "(?:{_LIBRARIES})[^"\n]*", line \d+.*\n'
+    r'(?:\1(?: +(?!File ")|\[Previous line repeated ).*\n)*',
+    re.MULTILINE,
+)
+
+
+def with_own_frames(log: str) -> str:
+    """Return a log whose tracebacks have the program's own frames only."""
+    return _FRAME.sub("", log)
 
 
 def without_paths(log: str) -> str:
-    """Return a log in whose tracebacks files have names that a student knows, such as `joint_velocity.py`.
+    """Return a log with the program's own frames only, whose files have names that a student knows, such as
+    `joint_velocity.py`.
 
     The folder of the Python environment is left out everywhere.
     """
-    return _ENVIRONMENT.sub("", _IN_TRACEBACKS.sub("", log))
+    return _ENVIRONMENT.sub("", with_own_frames(log).replace('File "/submission/', 'File "'))

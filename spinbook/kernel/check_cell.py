@@ -244,7 +244,7 @@ def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
             text = text or str(error)
         except ExerciseError as error:
             raise CellFailed(f"The exercise is at fault, not your code.\n{error}") from None
-    where = " and ".join(str(place.resolve()) for place in places)
+    where = " and ".join(dict.fromkeys(str(place.resolve()) for place in places))
     raise CellFailed(
         f"{text}\nI looked in {where} and above. A notebook from the course's website: run its first code cells. "
         f"One from a handout: keep the notebook in the folder of the handout, or name it: %check {name} --course FOLDER"

@@ -30,15 +30,13 @@ def own_options(line: str, seconds: float) -> tuple[DisplayLimit, str]:
         option, value, flag = match.groups()
         line = line[match.end() :]
         expects_error = expects_error or bool(flag)
-        if flag:
-            continue
         if option == "until":
             until = shlex.split(value)[0]
-            continue
-        try:
-            seconds = float(value)
-        except ValueError:
-            raise CellFailed("`--seconds` needs a number, as in --seconds 5.") from None
+        elif option:
+            try:
+                seconds = float(value)
+            except ValueError:
+                raise CellFailed("`--seconds` needs a number, as in --seconds 5.") from None
     return DisplayLimit(seconds, until, expects_error), line
 
 

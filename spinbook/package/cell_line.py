@@ -40,9 +40,9 @@ class LineReader(argparse.ArgumentParser):
 
 
 def split(line: str) -> list[str]:
-    """Return the words of a line, quoted as in a shell. Raises CellFailed."""
+    """Return the words of a line, quoted as in a shell and without a `# comment`. Raises CellFailed."""
     try:
-        return shlex.split(line)
+        return shlex.split(line, comments=True)
     except ValueError as error:
         raise CellFailed(f"can't read this line: {error}. A quotation mark is missing in: {line}") from None
 

@@ -19,12 +19,12 @@ from grader.exercise.data_files import LACKS
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load
 from grader.recording.arrays import read_arrays
+from grader.recording.printed_paths import with_own_frames
 from grader.recording.recording import Ending, Recording, from_plain, not_run_because
 from grader.report.checks import ShownCheck, public_total, shown_verdicts
 from grader.scenario.scenario import Scenario
 from grader.scenario.store import from_plain as scenario_from_plain
 from spinbook.browser.in_page import runner
-from spinbook.browser.in_page.own_frames import with_own_frames
 from spinbook.browser.in_page.runner import ProgramText
 
 _ARCHIVE = Path("/check.zip")

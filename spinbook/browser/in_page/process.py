@@ -13,6 +13,7 @@ import random
 import sys
 import threading
 import time
+import traceback
 import types
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -20,10 +21,10 @@ from typing import Any
 import grader
 import rcl_python
 import rmw_lockstep
+from grader.recording.printed_paths import with_own_frames
 from rcl_python import logs, participant
 from spinbook.browser.in_page import program_imports, threads
 from spinbook.browser.in_page.link import PageLink
-from spinbook.browser.in_page.own_frames import print_error
 
 _FAILED, _INTERRUPTED = 1, 130
 #: How many threads `MultiThreadedExecutor` and other pools have.
@@ -80,6 +81,11 @@ def _show_error_of_thread(ended: threading.ExceptHookArgs) -> None:
     if ended.exc_value is not None and not isinstance(ended.exc_value, SystemExit):
         print(f"Exception in thread {ended.thread.name if ended.thread else '?'}:", file=sys.stderr)
         print_error(ended.exc_value)
+
+
+def print_error(error: BaseException) -> None:
+    """Print an exception, and those that led to it, with the program's own frames: others help no student."""
+    print(with_own_frames("".join(traceback.format_exception(error))), end="", file=sys.stderr)
 
 
 def _refuse_input(prompt: object = "") -> str:

@@ -121,7 +121,8 @@ function forPython(before, edited, said) {
     language,
     support,
     language.data.of({ autocomplete: complete }),
-    mirror.autocompletion(),
+    // Its own keys would take Escape before the editor's see it.
+    mirror.autocompletion({ defaultKeymap: false }),
     mirror.indentOnInput(),
     mirror.linter(underline, { delay: UNDERLINE_MS }),
   ];

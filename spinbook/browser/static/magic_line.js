@@ -13,13 +13,15 @@ export const USAGES = {
 };
 const OPTION = /\[(--\w+)( [A-Z]+( \[[A-Z]+ \.\.\.\])?)?\] ?/g;
 const QUOTED = /"([^"]*)"|'([^']*)'/g;
+const COMMENT = /("[^"]*"|'[^']*')|#.*/g;
 const WORD = /(?:"[^"]*"|'[^']*'|[^\s"'])+/g;
 
 // A line that a magic does not understand.
 export class UsageError extends Error {}
 
-// The words of a line, quoted as in a shell.
-export function wordsOf(line) {
+// The words of a line, quoted as in a shell and without a `# comment`.
+export function wordsOf(typed) {
+  const line = typed.replace(COMMENT, "$1");
   if (/["']/.test(line.replace(QUOTED, ""))) throw new UsageError(`A quotation mark is missing in: ${line}`);
   return (line.match(WORD) ?? []).map((word) => word.replace(QUOTED, "$1$2"));
 }

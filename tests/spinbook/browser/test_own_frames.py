@@ -6,7 +6,7 @@ import linecache
 
 import pytest
 
-from spinbook.browser.in_page.own_frames import print_error, with_own_frames
+from spinbook.browser.in_page.process import print_error
 
 LIBRARY = """\
 def call(back):
@@ -38,16 +38,3 @@ def test_the_frames_of_libraries_are_left_out_of_every_error_in_the_chain(capsys
     assert "return 1 / 0" in text
     assert "ZeroDivisionError: division by zero" in text
     assert text.endswith("ValueError: no\n")
-
-
-def test_a_log_loses_them_with_their_code_and_nothing_else() -> None:
-    log = (
-        '[INFO] [a]: File "x" is read\nTraceback (most recent call last):\n'
-        '  File "mine.py", line 4, in <module>\n    rclpy.spin(node)\n    ~~~~~~~~~~^^^^^^\n'
-        '  File "/ros.zip/rclpy/__init__.py", line 9, in spin\n    executor.spin_once()\n    ^^^^^^^^^^^^^^\n'
-        '  File "mine.py", line 2, in heard\n    self.gain\nAttributeError: gain\n'
-    )
-    short = with_own_frames(log)
-    assert "ros.zip" not in short
-    assert "spin_once" not in short
-    assert [line for line in log.splitlines() if line not in short] == log.splitlines()[5:8]

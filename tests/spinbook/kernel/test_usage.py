@@ -13,6 +13,7 @@ from notebook_kernel import Kernel
         ("%%node\nx = 1", "required: name"),
         ("%%node a --seconds soon\nx = 1", "invalid float value"),
         ("%log nobody", "Started: none"),
+        ("%log nobody  # it's quiet", "Started: none"),
         ("%ros2 topic pub 'x", "quotation mark"),
         ("%colcon build", "run the chapter's node cells first"),
         ("%ros2 run turtlesim", "ros2 run PACKAGE EXECUTABLE"),

@@ -121,7 +121,7 @@ def test_a_recorded_robot_moves_can_be_paused_and_turned_with_the_keys(shown: Op
 def test_what_can_not_be_plotted_is_reported_as_in_a_notebook(shown: Opened) -> None:
     cell = shown.page.locator(".cell-snippet").first
 
-    run(cell, "%plot /joint_commands/positions --seconds 1")
+    run(cell, "%plot /joint_commands/positions --seconds 1  # it's a slip")
     expect(cell).to_contain_text("there is no field `positions`. The fields are: header, name", timeout=DEADLINE_MS)
     run(cell, "!ls")
     expect(cell).to_contain_text("a page has no shell", timeout=DEADLINE_MS)

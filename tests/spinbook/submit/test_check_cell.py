@@ -235,6 +235,12 @@ def test_bad_usage_is_reported_in_words(kernel: Kernel, line: str, message: str)
     assert message in kernel.run(line).error
 
 
+def test_a_folder_that_is_the_notebooks_and_the_kernels_is_named_once() -> None:
+    with pytest.raises(CellFailed) as failed:
+        check_cell.exercise_of("no_such", "", Path.cwd() / "mine.ipynb")
+    assert str(failed.value).count(f"{Path.cwd()} ") == 1
+
+
 def test_an_exercise_that_is_damaged_is_reported_as_such(kernel: Kernel, handed_out: Path) -> None:
     public = load(handed_out / "exercises" / "joint_velocity").public_file
     content = public.read_bytes()
