@@ -65,8 +65,9 @@ def _instead(module: str, exercise: Exercise) -> str:
     types = [*(topic.type for topic in exercise.topics), *(end.type for end in exercise.endpoints)]
     own = {name.partition("/")[0]: name for name in types}
     if top in own and top != module:
-        kind, name = own[top].split("/")[1:]
-        return f"{top} has no module {module.partition('.')[2]}: write from {top}.{kind} import {name}."
+        sought = module.partition(".")[2]
+        package, kind, name = next((name for name in types if f"/{sought}/" in name), own[top]).split("/")
+        return f"{top} has no module {sought}: write from {package}.{kind} import {name}."
     close = difflib.get_close_matches(top, [*exercise.packages, *own], n=1)
     meant = f" Is it a misspelling of {close[0]}?" if close else ""
     available = ", ".join([AVAILABLE, *exercise.packages])

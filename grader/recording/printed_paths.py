@@ -22,9 +22,5 @@ def with_own_frames(log: str) -> str:
 
 
 def without_paths(log: str) -> str:
-    """Return a log with the program's own frames only, whose files have names that a student knows, such as
-    `joint_velocity.py`.
-
-    The folder of the Python environment is left out everywhere.
-    """
+    """Return a log with the program's own frames only, and without the submission's and the environment's folders."""
     return _ENVIRONMENT.sub("", with_own_frames(log).replace('File "/submission/', 'File "'))

@@ -5,7 +5,6 @@ The texts of errors are those of rclpy 7.1 and of CPython 3.10 to 3.14.
 
 from __future__ import annotations
 
-import difflib
 import os
 import re
 import sys
@@ -14,6 +13,7 @@ from collections.abc import Callable, Mapping
 from grader.recording.types import message_class
 from grader.runner.node_attributes import advice_on_node_attribute
 from grader.runner.tracebacks import LastError
+from groundwork.words import similar
 
 _RESULT = "An action's execute callback has to return a Result, such as `return {action}.Result()`."
 
@@ -196,6 +196,8 @@ def _before_init(last: LastError, sources: Mapping[str, str]) -> str:
 def _of_a_callback(last: LastError, sources: Mapping[str, str]) -> str:
     """Explain an error that rclpy raises far from the line which caused it."""
     error, block = last.error, last.traceback
+    if "required positional" in error and (called := _CALLED.search(last.text)):
+        return f"Give {called[1]} without parentheses: with them, it is called at once."
     if last.raised_there:
         return ""
     if re.search(r"takes \d+ positional argument|missing \d+ required positional", error):
@@ -217,6 +219,8 @@ def _of_a_callback(last: LastError, sources: Mapping[str, str]) -> str:
     return ""
 
 
+#: A callback that is called where it should be given.
+_CALLED = re.compile(r"\b(?:create_\w+|ActionServer|add_done_callback)\(.*?(self\.\w+)\(\)")
 _ARGUMENTS = (
     "The arguments of a callback: self, and then the message for a subscription, nothing for a timer, the request and "
     "the response for a service, the future for add_done_callback(), the goal handle for an action."
@@ -267,12 +271,9 @@ def _of_an_attribute(last: LastError, sources: Mapping[str, str]) -> str:
     assigned = sorted({name for pair in names for name in pair if name})
     if match[2] in assigned:
         return f"self.{match[2]} is set only later: set it in __init__, before anything can use it."
-    close = difflib.get_close_matches(match[2], assigned, n=1, cutoff=0.7)
-    return (
-        f"Your class has self.{close[0]}: is self.{match[2]} a misspelling?"
-        if close
-        else (f"No line of your class sets self.{match[2]}.")
-    )
+    if close := similar(match[2], assigned, cutoff=0.7):
+        return f"Your class has self.{close}: is self.{match[2]} a misspelling?"
+    return f"No line of your class sets self.{match[2]}."
 
 
 def _swapped(name: str, attribute: str, sources: Mapping[str, str]) -> str:

@@ -136,6 +136,16 @@ def test_a_name_with_the_wrong_capital_letters_is_told_from_one_that_is_misspelt
 
 
 @pytest.mark.parametrize(
+    ("module", "right"),
+    [("std_msgs.srv", "std_srvs.srv import SetBool"), ("std_msgs.messages", "std_msgs.msg import Bool")],
+)
+def test_an_import_from_the_wrong_package_of_interfaces_comes_with_the_right_one(module: str, right: str) -> None:
+    message = f"ModuleNotFoundError: No module named '{module}'"
+    shown = message_of(Ending("did-not-start", message), load(ROOT / "exercises" / "motor_switch"))
+    assert shown.endswith(f": write from {right}.")
+
+
+@pytest.mark.parametrize(
     ("error", "advice"),
     [
         ("NameError: name 'Header' is not defined", "imported or defined before this line?"),

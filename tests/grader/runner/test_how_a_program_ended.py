@@ -231,6 +231,13 @@ def raised(line: int, error: str, *frames: str) -> str:
             "Your class has self.coins: is self.coin a misspelling?",
         ),
         (
+            raised(9, "TypeError: Turnstile.execute() missing 1 required positional argument: 'goal'").replace(
+                "self.execute", "self.execute()"
+            ),
+            NODE.replace("self.execute", "self.execute()"),
+            "Give self.execute without parentheses: with them, it is called at once.",
+        ),
+        (
             raised(7, "TypeError: Node.__init__() missing 1 required positional argument: 'node_name'"),
             NODE,
             "The node's name goes in here: super().__init__('name').",
