@@ -64,6 +64,8 @@ export function codeView({ parent, text, label, language, before, onchange }) {
         edited ||= update.docChanged;
         if (update.docChanged && !filling) onchange(update.state.doc.toString());
       }),
+      // The page's header covers what is scrolled to its top (px).
+      EditorView.scrollMargins.of(() => ({ top: 64 })),
       look,
       ...(language === "python" ? forPython(before, () => edited, said) : []),
     ],
