@@ -11,6 +11,7 @@ from functools import cache
 from importlib import metadata
 from pathlib import Path
 
+import ros_in_python
 from grader.exercise.data_files import data_paths
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.imported_files import with_modules
@@ -29,12 +30,13 @@ GRADER = Path(__file__).parents[1]
 
 @cache
 def versions() -> dict[str, str]:
-    """Return the versions of Python and ROS, and digests of the middleware's and the grader's own source."""
+    """Return the versions of Python and ROS, and digests of all source of ours that a program or its judging uses."""
     return {
         "python": platform.python_version(),
         "rclpy": _version("ros-jazzy-rclpy", "rclpy"),
         "rmw": digest_of([*sources(), *sorted(SOURCES.rglob("*.py"))])[:12],
         "grader": digest_of(sorted(GRADER.rglob("*.py")))[:12],
+        "ros_in_python": digest_of(sorted(Path(ros_in_python.__file__).parent.rglob("*.py")))[:12],
     }
 
 

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
+import ros_in_python
 from grader.exercise import load
-from grader.grading.reference import exercise_digest
+from grader.grading.reference import exercise_digest, versions
 
 EXERCISE = Path(__file__).parents[3] / "exercises" / "heartbeat"
 
@@ -38,3 +39,13 @@ def test_all_that_decides_a_grade_counts_and_nothing_else(
     before = exercise_digest(load(folder))
     change(folder)
     assert (exercise_digest(load(folder)) != before) is decides
+
+
+def test_a_change_of_the_modules_that_programs_import_decides(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = versions()
+    (tmp_path / "tf2.py").write_text("")
+    monkeypatch.setattr(ros_in_python, "__file__", str(tmp_path / "__init__.py"))
+    versions.cache_clear()
+    changed = {name for name, version in versions().items() if version != before[name]}
+    versions.cache_clear()
+    assert changed == {"ros_in_python"}
