@@ -6,19 +6,21 @@ import re
 import sys
 
 _ENVIRONMENT = re.compile(rf"{re.escape(sys.prefix)}(?![\w.-])/?")
-#: Of an installed Python, and of a page's; Python's own code is in `lib/python3.12` or `python312.zip`.
-_LIBRARIES = r'[^"\n]*/(?:(?:site|dist)-packages|lib\d*/python3[^/"\n]*)/|/(?:ros|check|share)\.zip/|/lib/|<frozen '
-#: A frame with its code; a launched program's has the program's name before it.
+#: Files of an installed Python, and of a page's; Python's own code is in `lib/python3.12` or `python312.zip`.
+_LIBRARY = re.compile(
+    r".*/(?:(?:site|dist)-packages|lib\d*/python3[^/]*)/|/(?:ros|check|share)\.zip/|/lib/|<frozen ",
+)
+#: A frame with its code; a launched program's has the program's name before it. Which files are libraries' is asked
+#: afterwards: a pattern of both would take quadratic time for a long line.
 _FRAME = re.compile(
-    rf'^((?:\[[\w./-]+\] )? *)File "(?:{_LIBRARIES})[^"\n]*", line \d+.*\n'
-    r'(?:\1(?: +(?!File ")|\[Previous line repeated ).*\n)*',
+    r'^((?:\[[\w./-]+\] )? *)File "([^"\n]*)", line \d+.*\n(?:\1(?: +(?!File ")|\[Previous line repeated ).*\n)*',
     re.MULTILINE,
 )
 
 
 def with_own_frames(log: str) -> str:
     """Return a log whose tracebacks have the program's own frames only."""
-    return _FRAME.sub("", log)
+    return _FRAME.sub(lambda frame: "" if _LIBRARY.match(frame[2]) else frame[0], log)
 
 
 def without_paths(log: str) -> str:
