@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import re
 import shlex
 from typing import NoReturn
 
 #: How long a node's log is shown (s).
 NODE_SECONDS = 3.0
+
+#: A comment, or what is quoted and so none. As in a shell, it begins where a word would, so `/topic#2` is one word.
+_COMMENT = re.compile(r"""("[^"]*"|'[^']*')|(?<!\S)#.*""")
 
 
 class CellFailed(Exception):
@@ -42,7 +46,7 @@ class LineReader(argparse.ArgumentParser):
 def split(line: str) -> list[str]:
     """Return the words of a line, quoted as in a shell and without a `# comment`. Raises CellFailed."""
     try:
-        return shlex.split(line, comments=True)
+        return shlex.split(_COMMENT.sub(r"\1", line))
     except ValueError as error:
         raise CellFailed(f"can't read this line: {error}. A quotation mark is missing in: {line}") from None
 

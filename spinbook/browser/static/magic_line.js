@@ -13,7 +13,7 @@ export const USAGES = {
 };
 const OPTION = /\[(--\w+)( [A-Z]+( \[[A-Z]+ \.\.\.\])?)?\] ?/g;
 const QUOTED = /"([^"]*)"|'([^']*)'/g;
-const COMMENT = /("[^"]*"|'[^']*')|#.*/g;
+const COMMENT = /("[^"]*"|'[^']*')|(?<!\S)#.*/g;
 const WORD = /(?:"[^"]*"|'[^']*'|[^\s"'])+/g;
 
 // A line that a magic does not understand.

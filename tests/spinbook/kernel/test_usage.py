@@ -14,6 +14,7 @@ from notebook_kernel import Kernel
         ("%%node a --seconds soon\nx = 1", "invalid float value"),
         ("%log nobody", "Started: none"),
         ("%log nobody  # it's quiet", "Started: none"),
+        ("%log nobody#2", "nobody#2"),
         ("%ros2 topic pub 'x", "quotation mark"),
         ("%colcon build", "run the chapter's node cells first"),
         ("%ros2 run turtlesim", "ros2 run PACKAGE EXECUTABLE"),
