@@ -26,7 +26,7 @@
       }
       if (loaded) await act(loaded, button);
     });
-    // Whoever points at the button may press it soon.
+    // A reader who points at the button is likely to press it.
     const near = () => navigator.connection?.saveData || load("download.js").then((page) => page.prepare()).catch(() => {});
     ["pointerenter", "focus"].forEach((event) => button.addEventListener(event, near, { once: true }));
     place?.prepend(button);
