@@ -150,12 +150,17 @@ def _beginning(log: str) -> int:
 
 def _shortened(error: str) -> str:
     error = _ADDRESS.sub("", error).removesuffix(" The following argument types are supported:")
-    return error if len(error) <= _LONGEST_ROW else f"{error[:_LONGEST_ROW]}…"
+    return _at_most(error)
+
+
+def _at_most(text: str) -> str:
+    """Return a text that no pattern takes long for, whatever a student wrote."""
+    return text if len(text) <= _LONGEST_ROW else f"{text[:_LONGEST_ROW]}…"
 
 
 def _row(source: str, line: int) -> str:
     rows = source.splitlines()
-    return rows[line - 1].strip() if 0 < line <= len(rows) else ""
+    return _at_most(rows[line - 1].strip()) if 0 < line <= len(rows) else ""
 
 
 def error_on_interrupt(before: str, log: str, sources: Mapping[str, str]) -> str:
