@@ -10,12 +10,12 @@ import click
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import find, load
-from grader.report.svg_file import SvgFile
 from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.submission.file_kinds import kind_of
 from grader.submission.reader import is_one, of_source, read
 from grader.submission.submission import Submission
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
+from ros_in_python.svg_file import SvgFile
 
 if TYPE_CHECKING:
     from grader.grading.grade import Grade, Options

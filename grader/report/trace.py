@@ -19,7 +19,6 @@ from grader.grading.grading import Grading
 from grader.grading.reference import solution_file
 from grader.grading.scenario_runner import ScenarioRunner
 from grader.report.bag import NoBagWriter, write_bags
-from grader.report.svg_file import SvgFile
 from grader.report.terminal import show
 from grader.report.timeline import lines_of
 from grader.sandbox.isolation import choose
@@ -28,6 +27,7 @@ from grader.scenario.scenario import Step
 from grader.submission.reader import of_source, read
 from grader.submission.submission import Submission
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
+from ros_in_python.svg_file import SvgFile
 
 #: How often --watch looks whether a file was saved (s).
 _LOOK_EVERY_S = 0.3

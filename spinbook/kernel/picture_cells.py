@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import os
 import sys
 import tempfile
@@ -18,8 +17,8 @@ from spinbook.graph.layout import drawings
 from spinbook.graph.model import NodeGraph
 from spinbook.graph.picture import in_words, node_graph_svg
 from spinbook.kernel.environment import EXECUTING
-from spinbook.kernel.plot.picture import as_png, draw, moving_plot
 from spinbook.kernel.plot.picture import in_words as plot_in_words
+from spinbook.kernel.plot.picture import plot_svg
 from spinbook.kernel.plot.recording import APPEAR_S, PlotRecording, RecordingTime
 from spinbook.kernel.process import KeptProcess
 from spinbook.package.cell_line import CellFailed
@@ -71,15 +70,15 @@ _TURTLE_LIMIT_S = 30.0
 def show_turtle() -> None:
     """Ask the running turtlesim for its picture and show it. Raises CellFailed if none answers."""
     with tempfile.TemporaryDirectory(prefix="spinbook-") as folder:
-        file, moving = Path(folder) / "turtle.png", Path(folder) / "turtle.svg"
-        argv = [sys.executable, "-m", "ros_in_python.turtlesim", os.fspath(file), "--moving", os.fspath(moving)]
+        file = Path(folder) / "turtle.svg"
+        argv = [sys.executable, "-m", "ros_in_python.turtlesim", os.fspath(file)]
         exit_code, output = _run(argv, _TURTLE_LIMIT_S)
         if exit_code != 0 or not file.exists():
             raise CellFailed(output or "turtlesim did not answer. Is it running? ros2 run turtlesim turtlesim_node")
-        pictures = {"image/png": base64.b64encode(file.read_bytes()).decode("ascii")}
-        if moving.exists():
-            pictures["image/svg+xml"] = moving.read_text(encoding="utf-8")
-        show_picture(pictures, "turtlesim's window: the turtle and the trail it has drawn")
+        show_picture(
+            {"image/svg+xml": file.read_text(encoding="utf-8")},
+            "turtlesim's window: the turtle and the trail it has drawn",
+        )
 
 
 #: The time between two drawings of a live plot (s).
@@ -145,8 +144,6 @@ def _follow(
 
 
 def _show(recording: PlotRecording, handle: Any, title: str) -> Any:
-    """Show what has been recorded so far; as a moving picture, too, if nobody was watching."""
-    pictures: dict[str, Any] = {"image/png": as_png(draw(recording, title))}
-    if EXECUTING in os.environ and (moving := moving_plot(recording, title)) is not None:
-        pictures["image/svg+xml"] = moving
-    return show_picture(pictures, plot_in_words(recording), handle)
+    """Show what has been recorded so far; the picture moves if nobody was watching."""
+    svg = plot_svg(recording, title, moves=EXECUTING in os.environ)
+    return show_picture({"image/svg+xml": svg}, plot_in_words(recording), handle)

@@ -8,10 +8,9 @@ import time
 from pathlib import Path
 
 from spinbook.kernel.picture_cells import show_picture
-from spinbook.kernel.plot.picture import as_png
 from spinbook.kernel.process import KeptProcess
 from spinbook.kernel.timeline import RecordedEvents, in_words, lanes
-from spinbook.kernel.timeline_picture import moving_timeline, span_of, still_timeline
+from spinbook.kernel.timeline_picture import span_of, timeline_svg
 from spinbook.package.cell_line import CellFailed
 
 #: How long the recorder may take to find the first name (s).
@@ -86,5 +85,4 @@ def show(timeline: TimelineProcess, title: str) -> None:
     drawn = lanes(happenings)
     if not any(lane.marks for lane in drawn):
         raise CellFailed(f"Nothing has happened on {', '.join(timeline.names)} since `%timeline --record`.")
-    pictures = {"image/png": as_png(still_timeline(drawn, title)), "image/svg+xml": moving_timeline(drawn, title)}
-    show_picture(pictures, in_words(drawn, span_of(drawn)[0]))
+    show_picture({"image/svg+xml": timeline_svg(drawn, title)}, in_words(drawn, span_of(drawn)[0]))

@@ -1,4 +1,4 @@
-"""A timeline as pictures: an SVG that moves as fast as the events did, and a still figure.
+"""A timeline as a picture: an SVG that moves as fast as the events did.
 
 In print, and for readers who prefer no motion, the SVG shows the whole timeline, still.
 """
@@ -11,15 +11,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from itertools import chain
 from textwrap import wrap
-from typing import TYPE_CHECKING
 
 from ros_in_python.animation import Cycle, coord, on_paper
 from spinbook.kernel.plot.picture import Scale, pointer_moves, shown_faster
 from spinbook.kernel.timeline import Lane, Mark, Span, in_words
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 #: A lane with more ticks than this is thinned out; otherwise they would merge into a bar.
 MOST_TICKS = 150
@@ -49,14 +44,15 @@ def span_of(lanes: Iterable[Lane]) -> tuple[float, float]:
     return min(times), max(times)
 
 
-def moving_timeline(lanes: Sequence[Lane], title: str = "", *, moves: bool = True) -> str:
+def timeline_svg(lanes: Sequence[Lane], title: str = "", *, moves: bool = True) -> str:
     """Return an SVG of lanes, at least one of which has a mark. While events are still arriving, it must not move."""
     start, end = span_of(lanes)
     across = Scale(start, max(end, start + 0.1), _LEFT, _WIDTH - _RIGHT)
     words = in_words(lanes, start)
     name = title or ", ".join(dict.fromkeys(lane.name for lane in lanes))
     key = "t" + hashlib.sha256(f"{name} {lanes if moves else ''}".encode()).hexdigest()[:8]
-    y, labels, drawn = float(_TOP), [], []
+    heading = f'<text x="{_MARGIN}" y="22" font-size="14" font-weight="600">{escape(title)}</text>'
+    y, labels, drawn = float(_TOP), [heading], []
     for lane in lanes:
         for row, line in enumerate(_lines(lane.label)):
             labels.append(
@@ -197,62 +193,3 @@ def _moving(cycle: Cycle, height: float) -> str:
     )
     window = f'<rect class="{key}w" x="0" y="0" width="{_WIDTH}" height="{coord(height)}"/>'
     return f'{rules}<clipPath id="{key}c">{window}</clipPath>'
-
-
-#: The still is laid out in the SVG's own pixels: a point of the figure is one of them.
-_POINTS_AN_INCH = 72
-
-
-def still_timeline(lanes: Sequence[Lane], title: str = "") -> Figure:
-    """Return the same as a figure of matplotlib, in the SVG's layout. Time counts from the first event."""
-    # Web pages draw the SVG and have no matplotlib.
-    from matplotlib.figure import Figure
-
-    start, end = span_of(lanes)
-    across = Scale(start, max(end, start + 0.1), _LEFT, _WIDTH - _RIGHT)
-    figure = Figure()
-    axes = figure.add_axes((0, 0, 1, 1))
-    top = float(_TOP)
-    if title:
-        axes.text(_WIDTH / 2, top / 2, title, fontsize=12, ha="center", va="center")
-    bottom = top
-    for lane in lanes:
-        bottom = _draw_lane(axes, lane, bottom, across)
-    height = _draw_axis(axes, across, top, bottom)
-    axes.set(xlim=(0, _WIDTH), ylim=(height, 0))
-    axes.axis("off")
-    figure.set_size_inches(_WIDTH / _POINTS_AN_INCH, height / _POINTS_AN_INCH)
-    return figure
-
-
-def _draw_lane(draw: Axes, lane: Lane, top: float, across: Scale) -> float:
-    """Draw a lane below `top`, as `_lane` does. Return where it ends (px)."""
-    for row, line in enumerate(_lines(lane.label)):
-        draw.text(_MARGIN, top + 8 + _ROW * row, line, fontsize=10, fontweight="bold", va="center")
-    for span in lane.spans:
-        x, (colour, _) = across.at(span.start), _SPANS[span.look]
-        width, alpha = max(1.0, across.at(span.end) - x), 0.15 if span.open else 0.45
-        height = _BAR - 2 * _INSETS[span.look]
-        draw.barh(top + _BAR / 2, width, left=x, height=height, facecolor=colour, alpha=alpha, edgecolor=colour)
-    for mark in _few(lane.marks):
-        x, y = across.at(mark.at), top + _BAR / 2
-        if mark.look == "tick":
-            draw.plot([x, x], [y - 6, y + 6], color="black", linewidth=1.2)
-            continue
-        shape = {"asked": ">", "cancel": "X", "bad": "X"}.get(mark.look, "o")
-        draw.plot([x], [y], marker=shape, color=_MARKS[mark.look][0], markersize=8)
-    rows = 0
-    for text, x, row in _placed(lane.marks, across):
-        rows = max(rows, row + 1)
-        draw.text(x, top + _BAR + _ROW * row + 7, text, fontsize=10, va="center")
-    return _end(lane, top, rows)
-
-
-def _draw_axis(draw: Axes, across: Scale, top: float, bottom: float) -> float:
-    """Draw lines at round times and the times below them, as `_axis` does. Return the picture's height (px)."""
-    seconds = Scale(0.0, across.high - across.low, across.start, across.end)
-    for mark in seconds.marks():
-        x, unit = seconds.at(mark), " s" if mark == seconds.marks()[-1] else ""
-        draw.plot([x, x], [top, bottom], color=_GREY, alpha=0.3, linewidth=1, zorder=0)
-        draw.text(x, bottom + 11, f"{mark:g}{unit}", fontsize=11, ha="center", va="center")
-    return bottom + 22

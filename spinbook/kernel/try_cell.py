@@ -24,11 +24,10 @@ from ros_in_python.robot.urdf import RobotDescription
 from spinbook.kernel.check_cell import exercise_of, notebook_file
 from spinbook.kernel.environment import EXECUTING
 from spinbook.kernel.picture_cells import show_picture
-from spinbook.kernel.plot.picture import as_png
 from spinbook.kernel.process import STOP_GRACE
 from spinbook.kernel.session import Session
 from spinbook.kernel.timeline import in_words, lanes
-from spinbook.kernel.timeline_picture import span_of, still_timeline
+from spinbook.kernel.timeline_picture import span_of, timeline_svg
 from spinbook.package.cell_line import CellFailed
 
 #: The name of what surrounds the node, for `%stop` and `%log`.
@@ -116,7 +115,8 @@ class TriedPicture:
         drawn = lanes(events_of(recording))
         if not any(lane.marks for lane in drawn):
             return {}, ""
-        return {"image/png": as_png(still_timeline(drawn, self.exercise.title))}, in_words(drawn, span_of(drawn)[0])
+        svg = timeline_svg(drawn, self.exercise.title, moves=False)
+        return {"image/svg+xml": svg}, in_words(drawn, span_of(drawn)[0])
 
     def _curves(self, recording: Recording) -> str | None:
         name, exercise = self.scenario.name, self.exercise

@@ -212,7 +212,7 @@ def alternative(output: Mapping[str, Any], cell: ChapterCell) -> str:
 
 
 def stills(chapter: Chapter, ran: ExecutedNotebook) -> dict[str, bytes]:
-    """Return still versions of the chapter's moving pictures: path in the site -> PNG or WebP."""
+    """Return still versions of the chapter's moving pictures: path in the site -> SVG or WebP."""
     outputs = [output for cell in chapter.cells for output in ran.outputs(cell.id)]
     pictures = [still for still in map(still_of, outputs) if still]
     return {still.path: still.data for still in pictures} | dict(map(robot_still, filter(is_robot, outputs)))

@@ -25,6 +25,7 @@ from PIL import Image
 
 from groundwork.child_process import run_program
 from groundwork.files import write_if_changed
+from ros_in_python.animation import still
 from spinbook.build.digest import digest
 
 # Mermaid comes from npm's registry, with a pinned version and digest, and runs in a headless Chromium.
@@ -272,12 +273,10 @@ class StillPicture:
 
 
 def still_of(output: Mapping[str, Any]) -> StillPicture | None:
-    """Return the still picture of a moving output, which is one with both an SVG and a PNG; None for any other."""
-    data = output.get("data", {})
-    if not {"image/svg+xml", "image/png"} <= set(data):
-        return None
-    png = base64.b64decode(smaller(data["image/png"]))
-    return StillPicture(f"{PICTURE_FOLDER}/{digest(png)[:16]}.png", png)
+    """Return the still picture of a moving output; None for any other."""
+    moving = "".join(output.get("data", {}).get("image/svg+xml", ""))
+    svg = still(moving)
+    return StillPicture(f"{PICTURE_FOLDER}/{digest(svg)[:16]}.svg", svg.encode()) if svg != moving else None
 
 
 def smaller(png: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from html import escape
@@ -41,7 +42,15 @@ class Cycle:
 
     def style(self, *rules: str) -> str:
         """Return a style element whose rules apply only on a screen, and not for readers who prefer no motion."""
-        return f"<style>@media screen and (prefers-reduced-motion:no-preference){{{''.join(rules)}}}</style>"
+        return f"{_MOTION}{''.join(rules)}}}</style>"
+
+
+_MOTION = "<style>@media screen and (prefers-reduced-motion:no-preference){"
+
+
+def still(svg: str) -> str:
+    """Return a picture without its motion, as print shows it."""
+    return re.sub(f"{re.escape(_MOTION)}.*?</style>", "", svg, flags=re.DOTALL)
 
 
 def coord(value: float, digits: int = 1) -> str:

@@ -25,7 +25,7 @@ def plot(paths: Sequence[str], seconds: float, title: str) -> dict[str, str]:
     problem = recording.error or ("" if recording.curves else recording.why_empty(paths))
     if problem:
         return {"picture": "", "words": "", "problem": problem}
-    return {"picture": plot_svg(recording, title) or "", "words": in_words(recording), "problem": ""}
+    return {"picture": plot_svg(recording, title), "words": in_words(recording), "problem": ""}
 
 
 def record(

@@ -17,7 +17,7 @@ def record(names: Sequence[str]) -> None:
 def drawn(names: Sequence[str], lines: Iterable[str], title: str) -> dict[str, str]:
     """Return the picture of what was recorded: `picture`, `words` and `problem`, "" if there is none."""
     from spinbook.kernel.timeline import RecordedEvents, in_words, lanes
-    from spinbook.kernel.timeline_picture import moving_timeline, span_of
+    from spinbook.kernel.timeline_picture import span_of, timeline_svg
 
     recorded = RecordedEvents()
     recorded.take(lines)
@@ -28,4 +28,4 @@ def drawn(names: Sequence[str], lines: Iterable[str], title: str) -> dict[str, s
         nothing = f"Nothing has happened on {', '.join(names)} since `%timeline --record`."
         return {"picture": "", "words": "", "problem": recorded.error or nothing}
     words = in_words(drawn_lanes, span_of(drawn_lanes)[0])
-    return {"picture": moving_timeline(drawn_lanes, title), "words": words, "problem": ""}
+    return {"picture": timeline_svg(drawn_lanes, title), "words": words, "problem": ""}

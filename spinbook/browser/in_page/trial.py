@@ -18,7 +18,7 @@ from ros_in_python.robot.drawing import RobotMotion, as_data
 from spinbook.browser.in_page.check import CheckedProgram, public_part, unpacked
 from spinbook.kernel.surroundings import SEVERAL, events_of, play, robot_of
 from spinbook.kernel.timeline import in_words, lanes
-from spinbook.kernel.timeline_picture import moving_timeline, span_of
+from spinbook.kernel.timeline_picture import span_of, timeline_svg
 
 
 def plan(name: str, chosen: str) -> dict[str, Any]:
@@ -84,5 +84,5 @@ class LivePicture:
         if not any(lane.marks for lane in drawn):
             return {}
         words = in_words(drawn, span_of(drawn)[0])
-        svg = moving_timeline(drawn, self.exercise.title, moves=False)
+        svg = timeline_svg(drawn, self.exercise.title, moves=False)
         return {"svg": svg, "words": words, "kind": "live-timeline"}

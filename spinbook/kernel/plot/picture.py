@@ -1,57 +1,22 @@
-"""Draws recordings: as a figure, and as an animated SVG of a few KB."""
+"""Draws recordings as SVG of a few KB, in which the curves appear as fast as they were recorded, or which is still."""
 
 from __future__ import annotations
 
 import hashlib
-import io
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
-from itertools import chain, pairwise
-from typing import TYPE_CHECKING
+from itertools import chain, groupby, pairwise
 
 from ros_in_python.animation import Cycle, coord, on_paper
 from ros_in_python.axis_marks import round_values
 from ros_in_python.thinning import thinned
 from spinbook.kernel.plot.recording import PlotCurve, PlotRecording
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-#: Distinct in grey and for colour-blind readers (after Okabe and Ito, 2008).
-COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
-_DASHES = ["-", "--", "-.", ":"]
-
-
-def draw(recording: PlotRecording, title: str = "") -> Figure:
-    """Return a figure of what was recorded. Time counts from the first sample."""
-    # Web pages import other parts of this module and have no matplotlib.
-    from matplotlib.figure import Figure
-
-    shown = panels(recording)
-    figure = Figure(figsize=(8, 1.2 + 2.6 * len(shown)), layout="constrained")
-    axes = figure.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
-    for axis, (name, curves) in zip(axes, shown.items(), strict=True):
-        for number, (label, curve) in enumerate(curves.items()):
-            axis.plot(
-                [time - recording.start for time in curve.times],
-                curve.values,
-                color=COLOURS[number % len(COLOURS)],
-                linestyle=_DASHES[number // len(COLOURS) % len(_DASHES)],
-                linewidth=1.6,
-                marker="." if len(curve.times) < 40 else None,
-                markersize=4,
-                label=label,
-            )
-        axis.set_ylabel(name)
-        axis.grid(alpha=0.3)
-        axis.spines[["top", "right"]].set_visible(False)
-        axis.margins(x=0.01)
-        axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize="small")
-    axes[-1].set_xlabel("time (s)")
-    figure.suptitle(title or ", ".join(dict.fromkeys(c.quantity.topic for c in recording.in_order())), fontsize=11)
-    return figure
+_GREY = "#808890"
+#: Distinct in grey and for colour-blind readers (after Okabe and Ito, 2008; grey for black, which dark paper hides).
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", _GREY)
 
 
 def panels(recording: PlotRecording) -> dict[str, dict[str, PlotCurve]]:
@@ -67,20 +32,13 @@ def panels(recording: PlotRecording) -> dict[str, dict[str, PlotCurve]]:
 
 
 def in_words(recording: PlotRecording) -> str:
-    """Describe the figure, for those who can't see it and for front ends without pictures."""
+    """Describe the picture, for those who can't see it and for front ends without pictures."""
     lines = []
     for curve in chain.from_iterable(curves.values() for curves in panels(recording).values()):
         quantity = curve.quantity
         span = f"{min(curve.values):.3f} … {max(curve.values):.3f} {quantity.unit}".rstrip()
         lines.append(f"{quantity.kind} {quantity.label}: {len(curve.values)} samples, {span}")
     return "\n".join(lines)
-
-
-def as_png(figure: Figure) -> bytes:
-    """Return the figure as a PNG, without the date or the version of what drew it."""
-    out = io.BytesIO()
-    figure.savefig(out, format="png", dpi=110, metadata={"Software": None})
-    return out.getvalue()
 
 
 @dataclass(frozen=True)
@@ -108,45 +66,54 @@ def around(values: list[float], start: float, end: float) -> Scale:
     return Scale(low - room, high + room, start, end)
 
 
-#: A curve is drawn to within this many pixels of its samples, or more coarsely if it would have more points than this.
-PRECISION_PX, MOST_POINTS = 0.5, 120
-#: Width of a plot, of the axis' numbers, and height of a panel (px).
-WIDTH, LEFT, RIGHT, HEIGHT = 420, 50, 10, 150
-_SVG_DASHES = ("", "7 4", "7 3 1.5 3", "1.5 3")
-_GREY = "#808890"
+@dataclass(frozen=True)
+class PlotSize:
+    """A plot's width (px), and how many points a curve may have: otherwise it is drawn more coarsely."""
+
+    width: int
+    most_points: int
+
+
+#: For pages, where a plot has to be small and fits a phone; and for a notebook on its reader's own screen.
+FOR_PAGES, FOR_NOTEBOOKS = PlotSize(420, 120), PlotSize(680, 2_000)
+#: A curve is drawn to within this many pixels of its samples.
+PRECISION_PX = 0.5
+#: Width of the axis' numbers and of the margin on the other side, and height of a panel (px).
+LEFT, RIGHT, HEIGHT = 50, 10, 150
+_DASHES = ("", "7 4", "7 3 1.5 3", "1.5 3")
 _NAME_CHAR = 6.9
 
 
 def panel(
-    name: str, curves: Mapping[str, PlotCurve], top: float, across: Scale, start: float, key: str
+    name: str, curves: Mapping[str, PlotCurve], top: float, across: Scale, start: float, key: str, size: PlotSize
 ) -> tuple[str, float]:
     """Return the panel of these curves below `top`, and where it ends (px).
 
     Curves are seen through the clip path `key` + "c"; the class `key` + "x" moves the pointer.
     """
     bottom = top + 24 + HEIGHT
-    up = around([value for curve in curves.values() for value in curve.values], bottom, bottom - HEIGHT)
+    values = [value for curve in curves.values() for value in curve.values if math.isfinite(value)]
+    up = around(values or [0.0], bottom, bottom - HEIGHT)
     looks = {label: _look(index) for index, label in enumerate(curves)}
     lines = "".join(
-        f'<path d="{_polyline(curve, across, up, start)}" {looks[label]} stroke-linejoin="round"/>'
+        f'<path d="{_path(curve, across, up, start, size)}" {looks[label]} {_ROUND}/>'
         for label, curve in curves.items()
     )
-    legend, end = _legend(looks, bottom + 38)
+    legend, end = _legend(looks, bottom + 38, size.width)
     title = f'<text x="{LEFT}" y="{coord(top + 17)}">{escape(name)}</text>'
     pointer = f'<path class="{key}x" d="M{LEFT} {coord(bottom)}v-{HEIGHT}" stroke="{_GREY}" opacity="0"/>'
     return f'{title}{_axes(across, up)}<g clip-path="url(#{key}c)">{lines}</g>{pointer}{legend}', end
 
 
 def _look(index: int) -> str:
-    colour = COLOURS[index % len(COLOURS)].replace("#000000", _GREY)  # black can't be seen on dark paper
-    dash = _SVG_DASHES[index // len(COLOURS) % len(_SVG_DASHES)]
+    colour, dash = COLOURS[index % len(COLOURS)], _DASHES[index // len(COLOURS) % len(_DASHES)]
     return f'stroke="{colour}" fill="none" stroke-width="2"' + (f' stroke-dasharray="{dash}"' if dash else "")
 
 
 def _axes(across: Scale, up: Scale) -> str:
     grid, texts = "", ""
     for mark in up.marks():
-        grid += f"M{LEFT} {coord(up.at(mark))}H{WIDTH - RIGHT}"
+        grid += f"M{LEFT} {coord(up.at(mark))}H{across.end:g}"
         texts += f'<text x="{LEFT - 6}" y="{coord(up.at(mark) + 4)}" text-anchor="end">{mark:g}</text>'
     for mark in across.marks():
         x = coord(across.at(mark))
@@ -156,12 +123,12 @@ def _axes(across: Scale, up: Scale) -> str:
     return f'<path d="{grid}" stroke="{_GREY}" stroke-opacity=".3" fill="none"/>{texts}'
 
 
-def _legend(looks: Mapping[str, str], y: float) -> tuple[str, float]:
-    """Return the names in rows, the first at `y`, and where they end (px)."""
+def _legend(looks: Mapping[str, str], y: float, room: float) -> tuple[str, float]:
+    """Return the names in rows of this width, the first at `y`, and where they end (px)."""
     x, texts = float(LEFT), ""
     for label, look in looks.items():
         width = 38 + _NAME_CHAR * len(label)
-        if x > LEFT and x + width > WIDTH:
+        if x > LEFT and x + width > room:
             x, y = float(LEFT), y + 18
         texts += f'<path d="M{coord(x)} {coord(y - 4)}h18" {look}/>'
         texts += f'<text x="{coord(x + 23)}" y="{coord(y)}">{escape(label)}</text>'
@@ -169,15 +136,33 @@ def _legend(looks: Mapping[str, str], y: float) -> tuple[str, float]:
     return texts, y + 14
 
 
-def _polyline(curve: PlotCurve, across: Scale, up: Scale, start: float) -> str:
-    """Return the curve's path, each point relative to the one before it."""
-    places = [(across.at(time - start), up.at(value)) for time, value in zip(curve.times, curve.values, strict=True)]
-    precision = PRECISION_PX
-    while len(points := thinned(places, precision)) > MOST_POINTS:
+_ROUND = 'stroke-linejoin="round" stroke-linecap="round"'
+#: Half the length of the line that shows a single sample (px).
+_DOT = 2
+
+
+def _path(curve: PlotCurve, across: Scale, up: Scale, start: float, size: PlotSize) -> str:
+    """Return the curve's path, with a gap where a value is no finite number."""
+    pieces, precision = list(_pieces(curve, across, up, start)), PRECISION_PX
+    drawn = [thinned(piece, precision) for piece in pieces]
+    while sum(map(len, drawn)) > size.most_points and precision < HEIGHT:
         precision *= 2
+        drawn = [thinned(piece, precision) for piece in pieces]
+    return "".join(map(_polyline, drawn))
+
+
+def _pieces(curve: PlotCurve, across: Scale, up: Scale, start: float) -> Iterator[list[tuple[float, float]]]:
+    every = zip(curve.times, curve.values, strict=True)
+    for is_drawn, samples in groupby(every, lambda sample: math.isfinite(sample[1])):
+        if is_drawn:
+            yield [(across.at(time - start), up.at(value)) for time, value in samples]
+
+
+def _polyline(points: list[tuple[float, float]]) -> str:
+    """Return these points as a path, each relative to the one before it; a single one as a short line through it."""
     whole = [(round(x, 1), round(y, 1)) for x, y in points]
     steps = (f"l{coord(b[0] - a[0])} {coord(b[1] - a[1])}".replace(" -", "-") for a, b in pairwise(whole))
-    return f"M{coord(whole[0][0])} {coord(whole[0][1])}{''.join(steps)}"
+    return f"M{coord(whole[0][0])} {coord(whole[0][1])}{''.join(steps) or f'm-{_DOT} 0h{2 * _DOT}'}"
 
 
 # In print, and for readers who prefer no motion, the whole curves are shown, still.
@@ -190,41 +175,30 @@ MOST_CURVES = 12
 _TOP = 28
 
 
-def moving_plot(recording: PlotRecording, title: str = "") -> str | None:
-    """Return the picture, or None if nothing can move: no time has passed, or there are too many curves."""
-    return plot_svg(recording, title) if sum(map(len, _shown(recording).values())) <= MOST_CURVES else None
+def plot_svg(recording: PlotRecording, title: str = "", *, moves: bool = True) -> str:
+    """Return the picture of a recording that has a curve.
 
-
-def plot_svg(recording: PlotRecording, title: str = "") -> str | None:
-    """Return the picture, without motion if there are too many curves; None if no time has passed."""
-    shown = _shown(recording)
-    curves = [curve for by_label in shown.values() for curve in by_label.values()]
-    end = max((curve.times[-1] for curve in curves), default=recording.start) - recording.start
-    if end <= 0:
-        return None
+    It moves unless it must not, or no time has passed, or there are too many curves.
+    """
+    size = FOR_PAGES if moves else FOR_NOTEBOOKS
+    curves = recording.in_order()
+    end = max(curve.times[-1] for curve in curves) - recording.start
+    across = Scale(0.0, end or 1.0, LEFT, size.width - RIGHT)
     name = title or ", ".join(dict.fromkeys(curve.quantity.topic for curve in curves))
     words = in_words(recording)
-    key = "p" + hashlib.sha256(repr((name, words, [curve.values for curve in curves])).encode()).hexdigest()[:8]
+    key = "p" + hashlib.sha256(repr((name, words, moves, [curve.values for curve in curves])).encode()).hexdigest()[:8]
     y, drawn = float(_TOP), []
-    for kind, by_label in shown.items():
-        part, y = panel(kind, by_label, y, Scale(0.0, end, LEFT, WIDTH - RIGHT), recording.start, key)
+    for kind, by_label in panels(recording).items():
+        part, y = panel(kind, by_label, y, across, recording.start, key, size)
         drawn.append(part)
     heading = f'<text x="{LEFT}" y="20" font-size="14" font-weight="600">{escape(name)}</text>'
     content = f'<g class="{key}i" font-size="12">{heading}{"".join(drawn)}</g>'
-    if len(curves) <= MOST_CURVES:
-        faster, pace = shown_faster(end)
-        content = _moving(Cycle(key, end / faster), y) + content
+    faster, pace = shown_faster(end)
+    moving = _moving(Cycle(key, end / faster), across, y) if moves and end > 0 and len(curves) <= MOST_CURVES else ""
+    if moving:
         words = f"{words}\nThe curves are drawn {pace} they were recorded, again and again."
-    return on_paper(content, WIDTH, math.ceil(y), key, name, words)
-
-
-def _shown(recording: PlotRecording) -> dict[str, dict[str, PlotCurve]]:
-    """Return the panels with the curves that can be drawn."""
-    shown = {
-        axis: {label: curve for label, curve in curves.items() if _is_drawn(curve)}
-        for axis, curves in panels(recording).items()
-    }
-    return {axis: curves for axis, curves in shown.items() if curves}
+    window = moving or _window(across, y, key)
+    return on_paper(window + content, size.width, math.ceil(y), key, name, words)
 
 
 def shown_faster(duration: float) -> tuple[int, str]:
@@ -246,17 +220,16 @@ def pointer_moves(cycle: Cycle, width: float) -> str:
     )
 
 
-def _is_drawn(curve: PlotCurve) -> bool:
-    return len(curve.values) > 1 and all(map(math.isfinite, curve.values))
-
-
-def _moving(cycle: Cycle, height: float) -> str:
+def _moving(cycle: Cycle, across: Scale, height: float) -> str:
     """Return the window through which the curves are seen, which grows to the right, and the pointers at its edge."""
-    key, width = cycle.key, WIDTH - LEFT - RIGHT
     rules = cycle.style(
         cycle.keyframes("w", [(0.0, "transform:scaleX(0)"), (cycle.moving_s, "transform:scaleX(1)")]),
-        pointer_moves(cycle, width),
-        f".{key}w{{transform-origin:{LEFT}px 0}}",
+        pointer_moves(cycle, across.end - across.start),
+        f".{cycle.key}w{{transform-origin:{LEFT}px 0}}",
     )
-    window = f'<rect class="{key}w" x="{LEFT}" y="0" width="{width}" height="{coord(height)}"/>'
-    return f'{rules}<clipPath id="{key}c">{window}</clipPath>'
+    return rules + _window(across, height, cycle.key)
+
+
+def _window(across: Scale, height: float, key: str) -> str:
+    place = f'x="{LEFT - 2 * _DOT}" y="0" width="{across.end - across.start + 4 * _DOT:g}" height="{coord(height)}"'
+    return f'<clipPath id="{key}c"><rect class="{key}w" {place}/></clipPath>'

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import re
-from base64 import b64decode
 from typing import Any
 
 import nbformat
@@ -34,7 +33,8 @@ def text(notebook: Any, cell_id: str) -> str:
 
 
 def pictures(notebook: Any) -> list[Any]:
-    return [output for c in notebook.cells for output in c.get("outputs", []) if "image/png" in output.get("data", {})]
+    outputs = (output for cell in notebook.cells for output in cell.get("outputs", []))
+    return [output for output in outputs if "image/svg+xml" in output.get("data", {})]
 
 
 def test_every_code_cell_ran_and_only_those_that_should_fail_did(notebook: Any) -> None:
@@ -63,11 +63,13 @@ def test_six_joints_are_plotted(notebook: Any) -> None:
     plots = [p for p in pictures(notebook) if all(joint in p["data"].get("text/plain", "") for joint in JOINTS)]
 
     assert plots
-    assert b64decode(plots[0]["data"]["image/png"]).startswith(b"\x89PNG")
+    assert all(f">{joint}</text>" in plots[0]["data"]["image/svg+xml"] for joint in JOINTS)
 
 
 def test_the_turtles_circle_is_shown(notebook: Any) -> None:
-    assert any("image/png" in output.get("data", {}) for output in cell(notebook, "code-drive-a-turtle").outputs)
+    drawn = [output["data"] for output in cell(notebook, "code-drive-a-turtle").outputs if "data" in output]
+
+    assert any("turtle1:" in data.get("image/svg+xml", "") for data in drawn)
 
 
 def test_the_package_is_built_and_its_executables_run(notebook: Any) -> None:

@@ -13,8 +13,8 @@ import pytest
 from browser import opened
 from playwright.sync_api import Browser
 
-from ros_in_python.animation import BEFORE_S
-from spinbook.kernel.plot.picture import MOST_CURVES, Scale, around, in_words, moving_plot
+from ros_in_python.animation import BEFORE_S, still
+from spinbook.kernel.plot.picture import FOR_NOTEBOOKS, MOST_CURVES, Scale, around, in_words, plot_svg
 from spinbook.kernel.plot.recording import PlotRecording, RecordingTime
 
 JOINTS = ["left_elbow", "right_elbow", "<b>&"]
@@ -33,41 +33,55 @@ def recorded(
     return recording
 
 
-def svg_of(recording: PlotRecording) -> str:
-    svg = moving_plot(recording)
-    assert svg is not None
-    return svg
+def curves_of(svg: str) -> list[str]:
+    """Return the paths of the curves."""
+    (group,) = (node for node in ET.fromstring(svg).iter() if node.get("clip-path"))
+    return [path.attrib["d"] for path in group]
 
 
 def test_it_has_the_curves_with_names_and_units_in_a_few_kilobytes() -> None:
-    svg = svg_of(recorded())
+    svg = plot_svg(recorded())
     root = ET.fromstring(svg)
     texts = [node.text for node in root.iter("{http://www.w3.org/2000/svg}text")]
 
     assert {"/joint_commands", "position (rad)", "4 s", *JOINTS} <= set(texts)
     assert len(svg) < 6_000
-    assert svg == svg_of(recorded())
+    assert svg == plot_svg(recorded())
     assert not re.search(r"<script|https?://(?!www\.w3\.org/2000/svg)|@import|<image", svg)
     assert "left_elbow: 41 samples" in svg
 
 
 def test_noise_is_capped() -> None:
-    assert len(svg_of(recorded(lambda t: math.sin(1e4 * t), seconds=300))) < 12_000
+    assert len(plot_svg(recorded(lambda t: math.sin(1e4 * t), seconds=300))) < 12_000
+
+
+def test_a_notebook_that_is_watched_shows_noise_as_it_is_and_nothing_moves() -> None:
+    svg = plot_svg(recorded(lambda t: math.sin(1e4 * t), seconds=150, joints=["a"]), moves=False)
+
+    (curve,) = curves_of(svg)
+    assert curve.count("l") > 1_000
+    assert f'width="{FOR_NOTEBOOKS.width}"' in svg
+    assert svg == still(svg)
 
 
 def test_a_constant_curve_and_one_with_a_hole_do_not_hurt() -> None:
-    assert "left_elbow" in svg_of(recorded(lambda t: 0.0))
-    recording = recorded(joints=["fine"])
-    recording.take([json.dumps(["sample", "/joint_commands", "position", "rad", "broken", 100.0, float("nan")])] * 2)
-    assert ">fine<" in svg_of(recording)
-    assert ">broken<" not in svg_of(recording)
+    (constant,) = curves_of(plot_svg(recorded(lambda t: 0.0, joints=["left_elbow"])))
+    assert constant.startswith("M50 ")
+    values = [1.0, 2.0, math.nan, 3.0, math.inf, 4.0, 5.0, math.nan]
+    recording = recorded(lambda t: values[round(t * 10) % 8], seconds=0.7, joints=["holes"])
+    assert [piece.count("l") for piece in curves_of(plot_svg(recording))[0].split("M")[1:]] == [1, 0, 1]
+    assert curves_of(plot_svg(recorded(lambda t: math.nan, joints=["a"]))) == [""]
+    alternating = recorded(lambda t: 1.0 if round(t * 10) % 2 else math.nan, seconds=100, joints=["a"])
+    assert curves_of(plot_svg(alternating))[0].count("M") == 500
 
 
-@pytest.mark.parametrize(
-    "recording", [PlotRecording(), recorded(seconds=0), recorded(joints=list(map(str, range(99))))]
-)
-def test_what_can_not_move_has_no_moving_picture(recording: PlotRecording) -> None:
-    assert moving_plot(recording) is None
+@pytest.mark.parametrize("recording", [recorded(seconds=0), recorded(joints=list(map(str, range(99))))])
+def test_what_can_not_move_is_drawn_without_motion(recording: PlotRecording) -> None:
+    svg = plot_svg(recording)
+    assert len(curves_of(svg)) == len(recording.curves)
+    assert all("l" in curve or "h" in curve for curve in curves_of(svg)), "a single sample is seen, too"
+    assert svg == still(svg)
+    assert still(plot_svg(recorded())) != plot_svg(recorded())
     assert MOST_CURVES < 99
 
 
@@ -87,7 +101,7 @@ _WINDOW = """ms => {
 
 
 def test_in_a_browser_the_window_grows_as_time_went_by(browser: Browser, tmp_path: Path) -> None:
-    (tmp_path / "page.html").write_text("<!doctype html><title>plot</title>" + svg_of(recorded()))
+    (tmp_path / "page.html").write_text("<!doctype html><title>plot</title>" + plot_svg(recorded()))
     with opened(browser, tmp_path / "page.html") as shown:
         for seconds, seen in ((-0.2, 0), (1.0, 0.25), (2.0, 0.5), (4.0, 1), (5.0, 1)):
             part, _ = shown.page.evaluate(_WINDOW, 1000 * (BEFORE_S + seconds))

@@ -14,10 +14,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from playwright.sync_api import Browser
 
-from ros_in_python.animation import BEFORE_S
+from ros_in_python.animation import BEFORE_S, still
 from ros_in_python.thinning import thinned
 from ros_in_python.turtlesim.events import DT, PIXELS_PER_UNIT, SIDE, TICK_NS, Pen
-from ros_in_python.turtlesim.moving import LONGEST_S, LONGEST_WAIT_S, MOST_SAMPLES, moving_svg, timeline
+from ros_in_python.turtlesim.moving import LONGEST_S, LONGEST_WAIT_S, MOST_SAMPLES, timeline, world_svg
 from ros_in_python.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, Track, TrackSample
 from ros_in_python.turtlesim.world import TurtleWorld
 from ros_in_python.turtlesim.world_picture import BLUE, WorldPicture, picture_of
@@ -48,12 +48,6 @@ def driven() -> tuple[TurtleWorld, list[tuple[float, float, float]]]:
 def picture() -> WorldPicture:
     """Return the node's picture of that world."""
     return WorldPicture.from_json(picture_of(driven()[0], BLUE).to_json())
-
-
-def svg_of(world: WorldPicture) -> str:
-    svg = moving_svg(world)
-    assert svg is not None
-    return svg
 
 
 steps = st.tuples(st.floats(-0.2, 0.2), st.floats(-0.2, 0.2), st.floats(-3, 3)) | st.just((0.0, 0.0, 0.0))
@@ -113,12 +107,18 @@ def test_a_long_way_is_shown_faster_and_says_so() -> None:
     assert times.seconds <= LONGEST_S
 
 
-def test_a_world_in_which_nothing_moved_has_no_moving_picture() -> None:
+def test_a_world_in_which_nothing_moved_or_too_little_to_see_has_a_still_picture() -> None:
     world = TurtleWorld()
     world.start()
     for n in range(20):
         world.tick(n * TICK_NS)
-    assert moving_svg(picture_of(world, BLUE)) is None
+    svg = world_svg(picture_of(world, BLUE))
+    assert svg == still(svg)
+    world.command("turtle1", 0.1, None, 0.0, 20 * TICK_NS)
+    world.tick(20 * TICK_NS)
+    nudged = picture_of(world, BLUE)
+    assert nudged.tracks
+    assert world_svg(nudged) == still(world_svg(nudged))
 
 
 def test_clear_and_reset_begin_the_way_anew() -> None:
@@ -136,15 +136,15 @@ def test_a_lifted_pen_drives_and_draws_nothing() -> None:
     world.command("turtle1", 2.0, None, 0.0, 0)
     for n in range(1, 40):
         world.tick(n * TICK_NS)
-    svg = svg_of(picture_of(world, BLUE))
+    svg = world_svg(picture_of(world, BLUE))
     assert "stroke-dashoffset" not in svg
     assert "translate(" in svg
 
 
 def test_it_is_a_few_kilobytes_of_xml_without_script_and_the_same_each_time() -> None:
-    svg = svg_of(picture())
+    svg = world_svg(picture())
 
-    assert svg == svg_of(picture())
+    assert svg == world_svg(picture())
     assert ET.fromstring(svg).tag.endswith("svg")
     assert len(svg) < 10_000
     assert not re.search(r"<script|https?://(?!www\.w3\.org/2000/svg)|@import|<image", svg)
@@ -157,7 +157,7 @@ def test_ten_minutes_of_driving_are_thinned_and_the_error_is_reported() -> None:
     for n in range(9_000):
         world.command("turtle1", 2 + math.sin(n / 60), None, 1.0, n * TICK_NS)
         world.tick(n * TICK_NS)
-    svg = svg_of(picture_of(world, BLUE))
+    svg = world_svg(picture_of(world, BLUE))
 
     assert svg.count("rotate(") <= MOST_SAMPLES + 2
     assert re.search(r"within \.\d+ units, \d times the original speed", svg)
@@ -176,7 +176,7 @@ _STATE = """ms => {
 
 def test_in_a_browser_the_turtle_is_where_it_was_at_each_time(browser: Browser, tmp_path: Path) -> None:
     world, places = driven()
-    (tmp_path / "page.html").write_text("<!doctype html><title>turtle</title>" + svg_of(picture_of(world, BLUE)))
+    (tmp_path / "page.html").write_text("<!doctype html><title>turtle</title>" + world_svg(picture_of(world, BLUE)))
     with opened(browser, tmp_path / "page.html") as shown:
         for tick in (20, 60, TURN_TICKS, TURN_TICKS + WAIT_TICKS + 30, len(places)):
             shift = 0.0 if tick <= TURN_TICKS else WAIT_TICKS * DT - LONGEST_WAIT_S
@@ -196,7 +196,7 @@ def test_in_print_and_for_who_wants_no_motion_it_is_the_whole_way_and_still(
     browser: Browser, tmp_path: Path, media: dict[str, str]
 ) -> None:
     world, places = driven()
-    (tmp_path / "page.html").write_text("<!doctype html><title>turtle</title>" + svg_of(picture_of(world, BLUE)))
+    (tmp_path / "page.html").write_text("<!doctype html><title>turtle</title>" + world_svg(picture_of(world, BLUE)))
     with opened(browser, tmp_path / "page.html") as shown:
         shown.page.emulate_media(**media)  # type: ignore[arg-type]
         state = shown.page.evaluate(_STATE, 0)

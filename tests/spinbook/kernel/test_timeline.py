@@ -9,8 +9,9 @@ from xml.etree import ElementTree as ET
 from browser import opened
 from playwright.sync_api import Browser
 
+from ros_in_python.animation import still
 from spinbook.kernel.timeline import Lane, RecordedEvents, in_words, lanes
-from spinbook.kernel.timeline_picture import moving_timeline, still_timeline
+from spinbook.kernel.timeline_picture import timeline_svg
 
 Event = tuple[float, str, str]
 
@@ -89,9 +90,12 @@ def test_the_words_say_how_long_a_topic_was_silent() -> None:
 
 def test_the_picture_is_still_for_who_wants_no_motion_and_has_no_faults(browser: Browser, tmp_path: Path) -> None:
     drawn = recorded("/<move>", "action", (0.0, "goal", "a"), (0.1, "EXECUTING", "a"), (2.0, "SUCCEEDED", "a"))
-    svg = moving_timeline(drawn)
+    svg = timeline_svg(drawn)
     ET.fromstring(svg)
-    assert still_timeline(drawn).axes
+    live = timeline_svg(drawn, "Moving <slowly>", moves=False)
+    texts = {node.text for node in ET.fromstring(live).iter("{http://www.w3.org/2000/svg}text")}
+    assert {"Moving <slowly>", "/<move> goal 1", "SUCCEEDED", "2 s"} <= texts
+    assert live == still(live)
     (tmp_path / "page.html").write_text("<!doctype html><title>timeline</title>" + svg)
     animations = "document.getAnimations().length"
     with opened(browser, tmp_path / "page.html") as shown:

@@ -103,17 +103,12 @@ flowchart LR
 ## Draw
 
 ```python
-import base64
-import io
-import matplotlib.pyplot as plt
 from IPython.display import display
-plt.plot([0, 1, 0])
-still = io.BytesIO()
-plt.savefig(still)
-plt.show()
-moving = '<svg xmlns="http://www.w3.org/2000/svg" width="42" height="24"></svg>'
-png = base64.b64encode(still.getvalue()).decode()
-display({{'image/svg+xml': moving, 'image/png': png, 'text/plain': 'A curve.'}}, raw=True)
+from ros_in_python.animation import Cycle, on_paper
+cycle = Cycle("a", 1.0)
+moves = cycle.style(cycle.keyframes("x", [(0.0, "opacity:0"), (1.0, "opacity:1")]))
+moving = on_paper(f'{{moves}}<path class="ax" d="M0 9h9"/>', 300, 200, "a", "A curve", "A curve.")
+display({{'image/svg+xml': moving, 'text/plain': 'A curve.'}}, raw=True)
 ```
 
 | Joint | Highest |

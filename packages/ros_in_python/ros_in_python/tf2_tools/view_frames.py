@@ -2,15 +2,17 @@
 
     ros2 run tf2_tools view_frames
 
-Writes a picture (PDF, by matplotlib), and the same as a graph for Graphviz (.gv).
+Writes a picture (SVG), and the same as a graph for Graphviz (.gv), of which `dot -Tpdf FILE.gv` makes a PDF.
 """
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +20,13 @@ import rclpy
 import yaml
 from rclpy.node import Node
 
+from ros_in_python.animation import coord, on_paper
+
 #: How long it listens (s).
 LISTENS_S = 5.0
 
-#: The distance between two frames in the picture (inches), beside and below each other.
-_BESIDE, _BELOW = 2.6, 1.5
+#: The distance between two frames in the picture, next to and below each other; a frame's height, half a letter (px).
+_BESIDE, _BELOW, _HEIGHT, _HALF_CHAR = 260, 120, 34, 4.2
 
 
 @dataclass(frozen=True)
@@ -35,7 +39,7 @@ class FrameInTree:
 
 
 def main(words: Sequence[str]) -> int:
-    """Listen, then write `frames_TIME.pdf` and `frames_TIME.gv` here; return the exit code."""
+    """Listen, then write `frames_TIME.svg` and `frames_TIME.gv` here; return the exit code."""
     rclpy.init(args=list(words))
     try:
         node = Node("view_frames")
@@ -50,8 +54,8 @@ def main(words: Sequence[str]) -> int:
         return 1
     stem = Path(time.strftime("frames_%Y-%m-%d_%H.%M.%S"))
     stem.with_name(f"{stem.name}.gv").write_text(as_graph(frames), encoding="utf-8")
-    draw(frames, stem.with_name(f"{stem.name}.pdf"))
-    print(f"Wrote {stem}.pdf and {stem}.gv: {len(frames)} transforms.")
+    stem.with_name(f"{stem.name}.svg").write_text(as_svg(frames), encoding="utf-8")
+    print(f"Wrote {stem}.svg and {stem}.gv: {len(frames)} transforms.")
     return 0
 
 
@@ -100,35 +104,45 @@ def _place(name: str, depth: int, children: Mapping[str, list[str]], drawn: dict
     return across
 
 
-def draw(frames: Mapping[str, Mapping[str, Any]], file: Path) -> None:
-    """Draw the frames into a file of any type that matplotlib knows. Raises SystemExit without matplotlib."""
-    try:
-        from matplotlib.figure import Figure
-    except ModuleNotFoundError:
-        sys.exit(f"{file.with_suffix('.gv')} is written. The PDF needs matplotlib: pip install matplotlib")
+def as_svg(frames: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return the frames as a picture: each below its parent, with how often it comes next to its arrow."""
     tree = places(frames)
-    width = max(one.across for one in tree.values()) + 1
-    depth = max(one.depth for one in tree.values()) + 1
-    figure = Figure(figsize=(_BESIDE * width, _BELOW * depth))
-    axes = figure.add_axes((0, 0, 1, 1))
-    axes.set_axis_off()
-    axes.set(xlim=(-0.5, width - 0.5), ylim=(depth - 0.5, -0.5))
-    for name, one in frames.items():
-        if name in tree:
-            _draw_arrow(axes, tree[str(one["parent"])], tree[name], _label(one).replace("\\n", "\n"))
-    for frame in tree.values():
-        axes.text(frame.across, frame.depth, frame.name, ha="center", va="center", bbox=_BOX)
-    figure.savefig(file)
+    width = math.ceil(max(one.across for one in tree.values()) + 1) * _BESIDE
+    height = (max(one.depth for one in tree.values()) + 1) * _BELOW
+    arrows = [
+        _arrow(tree[str(one["parent"])], tree[name], _label(one).split("\\n"))
+        for name, one in frames.items()
+        if name in tree
+    ]
+    head = f'<marker id="head" markerWidth="8" markerHeight="8" refX="7" refY="4" orient="auto">{_HEAD}</marker>'
+    content = f'<g class="fi" text-anchor="middle">{head}{"".join(arrows)}{"".join(map(_box, tree.values()))}</g>'
+    return on_paper(content, width, height, "f", "The tree of frames", as_graph(frames))
 
 
-_BOX = {"boxstyle": "round,pad=0.5", "facecolor": "#eef4fb", "edgecolor": "#33658a"}
+_BLUE = "#4a86b8"
+_HEAD = f'<path d="M0 0L8 4L0 8z" fill="{_BLUE}"/>'
 
 
-def _draw_arrow(axes: Any, parent: FrameInTree, child: FrameInTree, label: str) -> None:
-    start, end = (parent.across, parent.depth + 0.2), (child.across, child.depth - 0.2)
-    axes.annotate("", xy=end, xytext=start, arrowprops={"arrowstyle": "->", "color": "#33658a"})
-    middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2)
-    axes.text(*middle, label, ha="left", va="center", fontsize=7, color="#444444")
+def _middle(frame: FrameInTree) -> tuple[float, float]:
+    return (frame.across + 0.5) * _BESIDE, (frame.depth + 0.5) * _BELOW
+
+
+def _box(frame: FrameInTree) -> str:
+    x, y = _middle(frame)
+    half = _HALF_CHAR * len(frame.name) + 12
+    box = f'x="{coord(x - half)}" y="{coord(y - _HEIGHT / 2)}" width="{coord(2 * half)}" height="{_HEIGHT}" rx="8"'
+    look = f'fill="{_BLUE}" fill-opacity=".15" stroke="{_BLUE}"'
+    return f'<rect {box} {look}/><text x="{coord(x)}" y="{coord(y + 5)}">{escape(frame.name)}</text>'
+
+
+def _arrow(parent: FrameInTree, child: FrameInTree, label: Sequence[str]) -> str:
+    (x, y), (end_x, end_y) = _middle(parent), _middle(child)
+    y, end_y = y + _HEIGHT / 2, end_y - _HEIGHT / 2 - 2
+    line = f'<path d="M{coord(x)} {coord(y)}L{coord(end_x)} {coord(end_y)}" stroke="{_BLUE}" marker-end="url(#head)"/>'
+    at = f'x="{coord((x + end_x) / 2 + 8)}"'
+    top = (y + end_y) / 2 + 4 - 7 * (len(label) - 1)
+    rows = (f'<tspan {at} y="{coord(top + 14 * row)}">{escape(text)}</tspan>' for row, text in enumerate(label))
+    return f'{line}<text font-size="11" text-anchor="start">{"".join(rows)}</text>'
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""`python -m ros_in_python.turtlesim OUT.png|OUT.svg`: draw the running turtlesim."""
+"""`python -m ros_in_python.turtlesim OUT.svg`: draw the running turtlesim."""
 
 from ros_in_python.turtlesim.command import turtle
 

@@ -14,7 +14,18 @@ from ros_in_python.turtlesim.events import DT, PIXELS_PER_UNIT, Pen
 from ros_in_python.turtlesim.trail import HEADING_TOLERANCE, PLACE_TOLERANCE, TrackSample
 from ros_in_python.turtlesim.trail import thinned as thinned_track
 from ros_in_python.turtlesim.world_picture import TrackPicture, WorldPicture, caption
-from ros_in_python.turtlesim.world_svg import BOTTOM, LEFT, RIGHT, TOP, axes, ground, path, position, turtle_mark
+from ros_in_python.turtlesim.world_svg import (
+    framed,
+    ground,
+    name_position,
+    named,
+    path,
+    position,
+    sizes,
+    still_content,
+    turtle_mark,
+    turtle_name,
+)
 
 #: A wait of all turtles that is longer is shown as this long (s).
 LONGEST_WAIT_S = 0.6
@@ -48,7 +59,7 @@ class AnimationSchedule:
 
 
 def timeline(tracks: Sequence[Sequence[TrackSample]]) -> AnimationSchedule:
-    """Return the timeline of these tracks, of which at least one moves."""
+    """Return the timeline of these tracks; it has no spans if none moves."""
     spans = _joined(sorted(span for track in tracks for span in _moving(track)))
     starts, time = [], 0.0
     for index, (first, last) in enumerate(spans):
@@ -88,13 +99,24 @@ MOST_SAMPLES = 200
 MOST_TRAILS = 30
 
 
-def moving_svg(world: WorldPicture) -> str | None:
-    """Return the picture, the same for the same world, or None if no turtle has moved."""
-    tracks, error = _few(world.tracks)
-    if not tracks:
-        return None
-    times = timeline([track.samples for track in tracks])
+def world_svg(world: WorldPicture, *, moves: bool = True) -> str:
+    """Return the picture, the same for the same world. If `moves`, the turtles that have moved drive again."""
     key = "t" + hashlib.sha256(world.to_json().encode()).hexdigest()[:8]
+    tracks, error = _few(world.tracks if moves else ())
+    times = timeline([track.samples for track in tracks])
+    rules, content, words = "", still_content(world, key), caption(world)
+    if times.spans:
+        rules, content = _moving_content(world, tracks, times, key)
+        words = _words(world, times, error)
+    whole = PANEL.format(key=key) + rules + framed(world, key, content)
+    title = "The turtle's way" if len(world.turtles) == 1 else "The turtles' ways"
+    return on_paper(whole, *sizes(world), key, title, words)
+
+
+def _moving_content(
+    world: WorldPicture, tracks: Sequence[TrackPicture], times: AnimationSchedule, key: str
+) -> tuple[str, str]:
+    """Return the style that moves, and what is within the world's frame."""
     cycle = Cycle(key, times.seconds)
     trails = [(track.turtle, list(run)) for track in tracks for run in _drawn(track.samples)]
     rules, content = [], [ground(world, key)]
@@ -111,12 +133,12 @@ def moving_svg(world: WorldPicture) -> str | None:
         content.append(turtle_mark(turtle, coat, f"{key}m{coat}" if track else "", world.size))
         if track:
             rules.append(cycle.keyframes(f"m{coat}", _driving(track.samples, times, world.size)))
-    side = round(world.size * PIXELS_PER_UNIT)
-    frame = f'<svg x="{LEFT}" y="{TOP}" width="{side}" height="{side}">{"".join(content)}</svg>'
-    whole = PANEL.format(key=key) + cycle.style(*rules) + axes(world, key) + frame
-    title = "The turtle's way" if len(world.turtles) == 1 else "The turtles' ways"
-    words = _words(world, times, error)
-    return on_paper(whole, LEFT + side + RIGHT, TOP + side + BOTTOM, key, title, words)
+    for number, turtle in enumerate(named(world)):
+        track = moved.get(turtle.name)
+        content.append(turtle_name(turtle, f"{key}n{number}" if track else "", world.size))
+        if track:
+            rules.append(cycle.keyframes(f"n{number}", _following(track.samples, times, world.size)))
+    return cycle.style(*rules), "".join(content)
 
 
 def _few(tracks: Sequence[TrackPicture]) -> tuple[list[TrackPicture], float]:
@@ -169,6 +191,12 @@ def _driving(samples: Sequence[TrackSample], times: AnimationSchedule, size: flo
         turn = coord(-math.degrees(sample.theta), 0)
         frames.append((times.shown(sample.tick), f"transform:translate({coord(x)}px,{coord(y)}px)rotate({turn}deg)"))
     return frames
+
+
+def _following(samples: Sequence[TrackSample], times: AnimationSchedule, size: float) -> list[tuple[float, str]]:
+    """A turtle's name stays next to it, and upright."""
+    places = [(times.shown(sample.tick), *name_position(sample.x, sample.y, size)) for sample in samples]
+    return [(time, f"transform:translate({coord(x)}px,{coord(y)}px)") for time, x, y in places]
 
 
 def _trail(samples: Sequence[TrackSample], name: str, size: float) -> str:

@@ -35,22 +35,40 @@ EYE, PUPIL = (22, 3.5, 1.9), (22.6, 3.6, 1.1)
 #: Space around the world for its axes and caption (px).
 LEFT, TOP, RIGHT, BOTTOM = 26, 30, 10, 26
 LINE = "#16301f"
+#: What is farther outside than this (units) is drawn as if it were here.
+_FAR = 1e4
 
 
 def still_svg(world: WorldPicture, key: str) -> str:
     """Return the world as it is now: an SVG element for a page that gives the class `key` + "i" the colour of text,
     and dims `key` + "b" in the dark."""
-    side = round(world.size * PIXELS_PER_UNIT)
+    width, height = sizes(world)
+    return f'<svg viewBox="0 0 {width} {height}">{framed(world, key, still_content(world, key))}</svg>'
+
+
+def still_content(world: WorldPicture, key: str) -> str:
+    """Return what is within the world's frame as it is now."""
     trails = "".join(path(stroke.points, stroke.color, stroke.width, "", world.size) for stroke in world.trails)
     turtles = "".join(turtle_mark(turtle, coat, "", world.size) for coat, turtle in enumerate(world.turtles))
-    return (
-        f'<svg viewBox="0 0 {LEFT + side + RIGHT} {TOP + side + BOTTOM}">{axes(world, key)}'
-        f'<svg x="{LEFT}" y="{TOP}" width="{side}" height="{side}">{ground(world, key)}{trails}{turtles}</svg></svg>'
-    )
+    names = "".join(turtle_name(turtle, "", world.size) for turtle in named(world))
+    return ground(world, key) + trails + turtles + names
+
+
+def framed(world: WorldPicture, key: str, content: str) -> str:
+    """Return the world's axes and caption, and within its frame this content."""
+    side = round(world.size * PIXELS_PER_UNIT)
+    return f'{axes(world, key)}<svg x="{LEFT}" y="{TOP}" width="{side}" height="{side}">{content}</svg>'
+
+
+def sizes(world: WorldPicture) -> tuple[int, int]:
+    """Return the width and height of the whole picture (px)."""
+    side = round(world.size * PIXELS_PER_UNIT)
+    return LEFT + side + RIGHT, TOP + side + BOTTOM
 
 
 def position(x: float, y: float, size: float) -> tuple[float, float]:
-    """Pixels from the upper left corner."""
+    """Pixels from the upper left corner; what is very far outside is as far as SVG can draw."""
+    x, y = (max(-_FAR, min(part, _FAR)) for part in (x, y))
     return x * PIXELS_PER_UNIT, (size - y) * PIXELS_PER_UNIT
 
 
@@ -83,6 +101,25 @@ def turtle_mark(turtle: TurtlePicture, coat: int, name: str, size: float) -> str
         f'<g fill="{skin}" stroke="{LINE}" stroke-width=".8">{_drawn("L", TAIL)}{limbs}'
         f'{head}/>{body} fill="{shell}"/></g><g fill="{plate}">{_drawn("L", PLATE)}</g>{eyes}</g>'
     )
+
+
+def named(world: WorldPicture) -> Sequence[TurtlePicture]:
+    """Return the turtles whose names are written next to them: where there is one, the caption has its name."""
+    return world.turtles if len(world.turtles) > 1 else ()
+
+
+def turtle_name(turtle: TurtlePicture, name: str, size: float) -> str:
+    """A turtle's name, readable on any background; `name` is the class that moves it."""
+    x, y = name_position(turtle.x, turtle.y, size)
+    moving = f' class="{name}"' if name else ""
+    look = f'fill="#fff" stroke="{LINE}" stroke-width="3" paint-order="stroke" font-size="13" text-anchor="middle"'
+    return f'<text{moving} transform="translate({coord(x)} {coord(y)})" {look}>{escape(turtle.name)}</text>'
+
+
+def name_position(x: float, y: float, size: float) -> tuple[float, float]:
+    """Where a turtle's name begins to be written (px): below it, or above it near the lower wall."""
+    middle, base = position(min(max(x, 0.6), size - 0.6), y, size)
+    return middle, base + (42 if y > 1.2 else -32)
 
 
 def _drawn(command: str, places: Sequence[Place], side: int = 1) -> str:

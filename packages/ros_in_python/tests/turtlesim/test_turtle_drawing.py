@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
+import re
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-import matplotlib.image
-import numpy as np
 import pytest
-from matplotlib.colors import to_rgb
+from click.testing import CliRunner
 
+from ros_in_python.turtlesim.command import turtle
 from ros_in_python.turtlesim.events import SIDE, TICK_NS, Pen
-from ros_in_python.turtlesim.picture import draw, save
+from ros_in_python.turtlesim.moving import world_svg
+from ros_in_python.turtlesim.picture import save
 from ros_in_python.turtlesim.world import TurtleWorld
 from ros_in_python.turtlesim.world_picture import BLUE, StrokePicture, TurtlePicture, WorldPicture, picture_of
-from ros_in_python.turtlesim.world_svg import COATS
+from ros_in_python.turtlesim.world_svg import BOTTOM, COATS, HEAD, LEFT, RIGHT, TOP
 
 RED = (255, 0, 0)
+SVG = "{http://www.w3.org/2000/svg}"
 
 
 def driven(seconds: float) -> TurtleWorld:
@@ -32,16 +35,18 @@ def driven(seconds: float) -> TurtleWorld:
     return world
 
 
-def pixels(picture: WorldPicture, tmp_path: Path) -> np.ndarray:
-    """Return the colours 0..255 of the picture's PNG, rows from the top."""
-    save(picture, tmp_path / "world.png")
-    image: np.ndarray = matplotlib.image.imread(tmp_path / "world.png")[:, :, :3] * 255
-    return np.asarray(image.round(), dtype=int)
+def world_of(picture: WorldPicture) -> ET.Element:
+    """Return what is within the frame of the still picture, in which 45 pixels are a unit."""
+    world = ET.fromstring(world_svg(picture, moves=False)).find(f"{SVG}svg")
+    assert world is not None
+    return world
 
 
-def near(image: np.ndarray, color: tuple[int, int, int]) -> int:
-    """Return how many pixels have nearly that colour."""
-    return int((np.abs(image - color).max(axis=2) <= 3).sum())
+def corners(path: ET.Element) -> list[complex]:
+    """Return the corners of a polyline (px from the upper left corner)."""
+    numbers = re.findall(r"-?\d*\.?\d+", path.attrib["d"])
+    steps = [complex(float(x), float(y)) for x, y in zip(numbers[::2], numbers[1::2], strict=True)]
+    return list(itertools.accumulate(steps))
 
 
 def test_the_picture_of_a_new_world_shows_turtle1_in_the_middle() -> None:
@@ -96,73 +101,76 @@ def test_what_is_no_picture_is_refused(text: str) -> None:
         WorldPicture.from_json(text)
 
 
-@pytest.mark.parametrize("kind", ["png", "svg"])
-def test_the_same_world_gives_the_same_file(kind: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("moves", [True, False])
+def test_the_same_world_gives_the_same_file_and_nothing_else_is_left_in_its_folder(moves: bool, tmp_path: Path) -> None:
     for name in ("one", "two"):
-        save(picture_of(driven(3), BLUE), tmp_path / f"{name}.{kind}")
-    one, two = ((tmp_path / f"{name}.{kind}").read_bytes() for name in ("one", "two"))
+        save(picture_of(driven(3), BLUE), tmp_path / f"{name}.svg", moves=moves)
+    one, two = ((tmp_path / f"{name}.svg").read_bytes() for name in ("one", "two"))
     assert one == two
+    assert {each.name for each in tmp_path.iterdir()} == {"one.svg", "two.svg"}
 
 
-def test_an_svg_is_xml_of_moderate_size(tmp_path: Path) -> None:
-    save(picture_of(driven(7), BLUE), tmp_path / "world.svg")
-    assert ET.parse(tmp_path / "world.svg").getroot().tag.endswith("svg")
-    assert (tmp_path / "world.svg").stat().st_size < 100_000
+def test_a_picture_is_xml_of_moderate_size_with_the_world_and_its_axes() -> None:
+    svg = world_svg(picture_of(driven(7), BLUE), moves=False)
+    root = ET.fromstring(svg)
+    side = 499
+    assert (int(root.attrib["width"]), int(root.attrib["height"])) == (LEFT + side + RIGHT, TOP + side + BOTTOM)
+    texts = [node.text or "" for node in root.iter(f"{SVG}text")]
+    assert [text for text in texts if text.isdigit()] == [str(n) for n in (0, 2, 4, 6, 8, 10) for _ in "xy"]
+    assert texts[-1].startswith("turtle1:  x ")
+    assert len(svg) < 5_000
 
 
-def test_nothing_but_the_picture_is_left_in_its_folder(tmp_path: Path) -> None:
-    save(picture_of(driven(0), BLUE), tmp_path / "world.png")
-    assert [each.name for each in tmp_path.iterdir()] == ["world.png"]
+def test_the_background_has_the_colour_of_the_parameters() -> None:
+    square, *_ = world_of(WorldPicture(SIDE, (10, 120, 60), (), ()))
+    assert square.attrib["fill"] == "#0a783c"
+    assert square.attrib["d"] == "M0 0H499V499H0z"
 
 
-def test_the_name_of_a_picture_tells_its_kind(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"must end in \.png or \.svg"):
-        save(picture_of(driven(0), BLUE), tmp_path / "world.gif")
-
-
-def test_the_background_has_the_colour_of_the_parameters(tmp_path: Path) -> None:
-    image = pixels(WorldPicture(SIDE, (10, 120, 60), (), ()), tmp_path)
-    assert near(image, (10, 120, 60)) > image.shape[0] * image.shape[1] * 0.6
-
-
-def test_a_trail_is_as_wide_as_its_pen_and_where_it_was_drawn(tmp_path: Path) -> None:
+def test_a_trail_is_as_wide_as_its_pen_and_where_it_was_drawn() -> None:
     # From wall to wall at a height of 8, 45 pixels wide: one unit.
     line = StrokePicture("turtle1", RED, 45, ((0.0, 8.0), (SIDE, 8.0)))
-    image = pixels(WorldPicture(SIDE, (0, 0, 0), (), (line,)), tmp_path)
-    rows, columns = np.nonzero(np.abs(image - RED).max(axis=2) <= 3)
-    width = columns.max() - columns.min()
-    assert (rows.max() - rows.min()) / width == pytest.approx(1 / SIDE, rel=0.05)
-    frame = np.nonzero(image.max(axis=2) < 20)[0]
-    assert rows.mean() - frame.min() == pytest.approx((SIDE - 8.0) / SIDE * width, abs=4)
+    *_, drawn = world_of(WorldPicture(SIDE, (0, 0, 0), (), (line,)))
+    assert (drawn.attrib["stroke"], drawn.attrib["stroke-width"]) == ("#ff0000", "45")
+    assert corners(drawn) == pytest.approx([complex(0, (SIDE - 8) * 45), complex(SIDE * 45, (SIDE - 8) * 45)], abs=0.1)
 
 
 @pytest.mark.parametrize("theta", [0.0, 2.0, -1.0])
-def test_the_turtle_looks_where_it_heads(theta: float, tmp_path: Path) -> None:
-    turtle = TurtlePicture("turtle1", 5.0, 5.0, theta, Pen(off=True))
-    figure = draw(WorldPicture(SIDE, (0, 0, 0), (turtle,), ()))
-    (axes,) = figure.axes
-    shapes = [shape for shape in axes.get_children() if shape.get_zorder() >= 10]
-    head = next(shape for shape in shapes if shape.get_gid() == "head")
-    box = axes.transData.inverted().transform_bbox(head.get_window_extent())
-    ahead = complex((box.x0 + box.x1) / 2 - 5.0, (box.y0 + box.y1) / 2 - 5.0)
-    assert math.remainder(math.atan2(ahead.imag, ahead.real) - theta, 2 * math.pi) == pytest.approx(0, abs=0.02)
-    assert 0.3 < abs(ahead) < 0.6
+def test_the_turtle_looks_where_it_heads(theta: float) -> None:
+    turtle = TurtlePicture("turtle1", 5.0, 4.0, theta, Pen(off=True))
+    *_, drawn = world_of(WorldPicture(SIDE, (0, 0, 0), (turtle,), ()))
+    place = re.fullmatch(r"translate\((\S+) (\S+)\)rotate\((\S+)\)", drawn.attrib["transform"])
+    assert place
+    x, y, degrees = map(float, place.groups())
+    assert (x, y) == pytest.approx((225, (SIDE - 4) * 45), abs=0.1)
+    # SVG's y axis points down, and the head is ahead on the turtle's own x axis.
+    assert math.remainder(-math.radians(degrees) - theta, 2 * math.pi) == pytest.approx(0, abs=0.01)
+    assert HEAD[0] > 0
 
 
-def test_each_turtle_has_a_coat_of_its_own(tmp_path: Path) -> None:
-    turtles = tuple(TurtlePicture(f"turtle{n}", 2.0 + 2 * n, 5.0, 0.0, Pen()) for n in range(3))
-    image = pixels(WorldPicture(SIDE, (0, 0, 0), turtles, ()), tmp_path)
-    for shell, _, _ in COATS[:3]:
-        r, g, b = (round(255 * part) for part in to_rgb(shell))
-        assert near(image, (r, g, b)) > 50
+def test_each_turtle_has_a_coat_of_its_own_and_its_name() -> None:
+    turtles = tuple(TurtlePicture(name, 2.0 + n, n, 0.0, Pen()) for n, name in enumerate(("a<b", "$x$", "&c")))
+    world = world_of(WorldPicture(SIDE, (0, 0, 0), turtles, ()))
+    colours = {node.get("fill") for node in world.iter()}
+    assert {shell for shell, _, _ in COATS[:3]} <= colours
+    names = {node.text: node.attrib["transform"] for node in world.iter(f"{SVG}text")}
+    assert set(names) == {"a<b", "$x$", "&c"}
+    assert names["a<b"] == "translate(90 467)", "above the turtle, for below it is the wall"
+    assert names["&c"] == "translate(180 451)"
 
 
-def test_a_name_is_written_as_it_is(tmp_path: Path) -> None:
-    turtles = tuple(TurtlePicture(name, 2.0, 5.0, 0.0, Pen()) for name in ("$\\frac{", "a$b$c"))
-    save(WorldPicture(SIDE, BLUE, turtles, ()), tmp_path / "world.png")
-
-
-def test_strokes_far_outside_do_not_hurt(tmp_path: Path) -> None:
+def test_strokes_far_outside_do_not_hurt() -> None:
     far = StrokePicture("turtle1", RED, 3, ((1.0, 1.0), (3e38, 3e38), (1.0, 5.0)))
-    image = pixels(WorldPicture(SIDE, BLUE, (), (far, StrokePicture("a", RED, 1, ()))), tmp_path)
-    assert near(image, RED) > 100
+    *_, drawn, empty = world_of(WorldPicture(SIDE, BLUE, (), (far, StrokePicture("a", RED, 1, ()))))
+    first, outside, last = corners(drawn)
+    assert first == pytest.approx(complex(45, (SIDE - 1) * 45), abs=0.1)
+    assert 1e5 < abs(outside) < 1e6, "more than SVG's smallest numbers can hold"
+    assert last == pytest.approx(complex(45, (SIDE - 5) * 45), abs=0.1)
+    assert empty.attrib["d"] == "M0 0"
+
+
+@pytest.mark.parametrize("name", ["turtle.png", "turtle.gif"])
+def test_a_picture_of_another_kind_is_refused_before_anything_is_looked_for(name: str) -> None:
+    refused = CliRunner().invoke(turtle, [name])
+    assert refused.exit_code == 2
+    assert f"{name}: pictures are SVG files. Choose a name that ends in .svg." in refused.output

@@ -1,4 +1,4 @@
-"""The option's type for the file of a plot."""
+"""The type of a command's argument or option that names the file of a picture."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import click
 
 
 class SvgFile(click.Path):
-    """The file that a plot is written into; another kind of picture is refused before anything runs."""
+    """The file that a picture is written into; another kind of picture is refused before anything runs."""
 
     def __init__(self) -> None:
         """A file that need not exist."""
@@ -19,5 +19,5 @@ class SvgFile(click.Path):
         """Return the file. Its name ends in `.svg`, or has no ending."""
         file = Path(str(super().convert(value, param, ctx)))
         if file.suffix.lower() not in ("", ".svg"):
-            self.fail(f"{file}: plots are SVG files. Choose a name that ends in .svg.", param, ctx)
+            self.fail(f"{file}: pictures are SVG files. Choose a name that ends in .svg.", param, ctx)
         return file
