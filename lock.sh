@@ -25,7 +25,7 @@ compile() {
 # lark is the newer lark-parser, in the same place, and warns of nothing on a new Python.
 printf '%s\n' lark-parser lark >"$new/sourced.in"
 echo "Pinning what Spinbook needs ..." >&2
-needed="--extra notebooks --extra colcon --extra bag --extra site --extra audit --extra cluster --extra lab"
+needed="--extra notebooks --extra plots --extra colcon --extra bag --extra site --extra audit --extra cluster --extra lab"
 compile pyproject.toml "$new/sourced.in" $needed --extra dev --output-file "$new/tested.txt"
 compile pyproject.toml "$new/sourced.in" $needed --constraints "$new/tested.txt" --output-file "$new/constraints.txt"
 echo "Pinning ROS 2 ..." >&2

@@ -90,8 +90,11 @@ EXTRAS = {
     "rosbags": "bag",
     "rclpy": "ros",
     "Fast DDS": "ros",
-    **dict.fromkeys(("IPython", "ipykernel", "jupytext", "matplotlib", "nbclient", "nbformat", "PIL"), "notebooks"),
-    **dict.fromkeys(("sphinx", "myst_nb", "myst_parser", "latex2mathml", "livereload", "sphinx_book_theme"), "site"),
+    **dict.fromkeys(("IPython", "ipykernel", "jupytext", "nbclient", "nbformat"), "notebooks"),
+    "matplotlib": "plots",
+    **dict.fromkeys(
+        ("PIL", "sphinx", "myst_nb", "myst_parser", "latex2mathml", "livereload", "sphinx_book_theme"), "site"
+    ),
 }
 
 

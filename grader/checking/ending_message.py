@@ -22,8 +22,10 @@ NO_NAME = re.compile(r"ImportError: cannot import name '([^']+)' from '([^']+)'"
 #: An error to which `grader.runner.program_end` has added advice, behind the line that it quotes.
 ADVISED = re.compile(r" in line \d+[^`]*: `.*`\. \S")
 
-#: Modules that every notebook has, and so the programs of students, but not every installation that grades.
-OF_NOTEBOOKS = {"matplotlib", "mpl_toolkits", "pylab", "PIL", "IPython", "nbformat"}
+#: Modules that notebooks have, or that students install to draw, but not every installation that grades; and what pip
+#: calls them.
+OF_NOTEBOOKS = {"IPython": "ipython", "nbformat": "nbformat", "PIL": "pillow"}
+OF_NOTEBOOKS |= dict.fromkeys(("matplotlib", "mpl_toolkits", "pylab"), "matplotlib")
 
 ADVICE = (
     (
@@ -71,6 +73,9 @@ def _instead(module: str, exercise: Exercise) -> str:
     close = difflib.get_close_matches(top, [*exercise.packages, *own], n=1)
     meant = f" Is it a misspelling of {close[0]}?" if close else ""
     available = ", ".join([AVAILABLE, *exercise.packages])
+    if top in OF_NOTEBOOKS:
+        name = OF_NOTEBOOKS[top]
+        return f"{top} is not installed here. Install it: pip install {name}, or in a notebook %pip install {name}."
     return f"The module {module} is not available here. Available are Python's own modules, {available}.{meant}"
 
 

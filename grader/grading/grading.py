@@ -56,9 +56,10 @@ class Grading:
             return self._grade(submission, {}, (), "host-error", f"This is not your fault: {text}", began)
         endings = [recording.ending for recording in recordings.values()]
         missing = (lacks_a_notebooks_module(ending, submission.sources) for ending in endings)
-        if module := next(filter(None, missing), None):
-            text = f"This is not your fault: {module}, which notebooks have, is missing here. "
-            text += "Instructors: pip install 'spinbook[notebooks]', or name it in exercise.toml (packages)."
+        # A student's own check says how to install it.
+        if not self.public and (module := next(filter(None, missing), None)):
+            text = f"This is not your fault: {module}, which notebooks may have, is missing here. "
+            text += "Instructors: pip install 'spinbook[notebooks,plots]', or name it in exercise.toml (packages)."
             # Without the recordings: once it is installed, they must not be judged again.
             return self._grade(submission, {}, (), "host-error", text, began)
         broken = [verdict for verdict in verdicts if verdict.status == "error"]

@@ -27,7 +27,7 @@ from spinbook import __version__
 from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course, find_course
 from spinbook.handout.leaks import Secret, authors_code, located, secrets_of_all
-from spinbook.handout.pins import declared_pins, jupyterlab_pins, students_pins
+from spinbook.handout.pins import declared_pins, imports_matplotlib, jupyterlab_pins, students_pins
 from spinbook.handout.student_copy import exercise_files, for_students
 from spinbook.handout.wheels import interface_wheels, package_of, requirement, spinbook_wheel
 from spinbook.interfaces.definitions import compile_course
@@ -68,11 +68,12 @@ def guide_files(
     compiled: list[str],
     packages: list[str],
     texts: bytes,
+    plots: bool,
 ) -> dict[str, bytes]:
     """Return README.md and the files that install, by name.
 
     `compiled` are names of wheels of compiled code, `packages` what exercises let programs use. `texts`
-    are what students get to read.
+    are what students get to read. With `plots` matplotlib is installed, too.
     """
     # Plain text and JSON, not HTML.
     environment = Environment(
@@ -90,7 +91,8 @@ def guide_files(
         "wheel": wheel,
         "notebooks": notebooks,
         "exercises": exercises,
-        "pinned": (pinned := students_pins(texts)),
+        "pinned": (pinned := students_pins(texts, plots=plots)),
+        "plots": ",plots" if plots else "",
         # Every package is in the list: pip need not look for more.
         "options": " --no-deps --no-compile" if pinned else "",
         "pins": [*(pinned or _pins(distro)), *declared_pins(packages, pinned)],
@@ -149,7 +151,16 @@ def handout(course: Course) -> Handout:
     slug = re.sub(r"[^a-z0-9]+", "-", course.title.lower()).strip("-") or "course"
     packages = sorted({package for exercise in exercises for package in exercise.packages})
     files |= guide_files(
-        course.title, slug, course.ros_distro, name, list(notebooks), listings, sorted(compiled), packages, texts
+        course.title,
+        slug,
+        course.ros_distro,
+        name,
+        list(notebooks),
+        listings,
+        sorted(compiled),
+        packages,
+        texts,
+        imports_matplotlib(_code(files, every)),
     )
     files |= base_files(files)
     _prove(files, known)
@@ -171,6 +182,18 @@ def _nodes(notebooks: dict[str, bytes]) -> Iterator[str]:
         for cell in json.loads(content)["cells"]:
             if cell["metadata"].get("spinbook", {}).get("kind") == "node":
                 yield cell["source"]
+
+
+def _code(files: dict[str, bytes], exercises: list[Exercise]) -> Iterator[str]:
+    """Yield the code of cells, starters and solutions."""
+    for name, content in files.items():
+        if name.endswith(".ipynb"):
+            yield from ("".join(cell["source"]) for cell in json.loads(content)["cells"] if cell["cell_type"] == "code")
+        elif name.endswith(".py"):
+            yield content.decode()
+    for exercise in exercises:
+        if exercise.solution_file:
+            yield exercise.solution_file.read_text(encoding="utf-8")
 
 
 def _used(course: Course, notebooks: dict[str, bytes]) -> list[str]:

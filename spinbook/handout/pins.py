@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from importlib.metadata import distributions
 from pathlib import Path
 
@@ -15,20 +15,28 @@ from grader.gradescope.pins import LOCKS, needed
 #: Required by IPython and ipykernel, which do without: guesses at code that has not run, and a debugger (55 MB).
 _LEFT_OUT = {"jedi", "parso", "debugpy"}
 
+_IMPORTS_MATPLOTLIB = re.compile(r"^\s*(import|from)\b[^\n#]*\b(matplotlib|mpl_toolkits|pylab)\b", re.MULTILINE)
 
-def students_pins(texts: bytes) -> list[str]:
+
+def imports_matplotlib(sources: Iterable[str]) -> bool:
+    """Return whether any of these cells and programs does: matplotlib takes 75 MB, and nothing else needs it."""
+    return any(map(_IMPORTS_MATPLOTLIB.search, sources))
+
+
+def students_pins(texts: bytes, *, plots: bool = False) -> list[str]:
     """Return the lines for what notebooks and checks need; none if Spinbook is not installed from a checkout.
 
-    `texts` are what students get to read: test_msgs, which is large, is left out unless they name it.
+    `texts` are what students get to read: test_msgs, which is large, is left out unless they name it. With `plots`
+    matplotlib is among them.
     """
-    names = needed("spinbook", "student") | needed("spinbook", "colcon")
+    names = _needed(("student", "colcon", "plots") if plots else ("student", "colcon"))
     unused = set() if b"test_msgs" in texts else {"ros-test-msgs", "ros-jazzy-test-msgs"}
     return list(_pins(names - unused))
 
 
 def jupyterlab_pins() -> list[str]:
     """Return the lines for what JupyterLab needs besides; without pins, its name."""
-    known = needed("spinbook", "student") | needed("spinbook", "colcon")
+    known = _needed(("student", "colcon"))
     return list(_pins(needed("jupyterlab", "") - known)) or ["jupyterlab>=4.2"]
 
 
@@ -43,6 +51,10 @@ def declared_pins(packages: Sequence[str], pinned: Sequence[str]) -> list[str]:
     names = {name for package in packages for name in needed(canonicalize_name(package.partition("==")[0]), "")}
     versions: dict[str, str] = {canonicalize_name(wheel.metadata["Name"]): wheel.version for wheel in distributions()}
     return [f"{name}=={versions[name]}" for name in sorted(names - known) if name in versions]
+
+
+def _needed(extras: Sequence[str]) -> set[str]:
+    return {name for extra in extras for name in needed("spinbook", extra)}
 
 
 def _pins(names: set[str]) -> Iterator[str]:

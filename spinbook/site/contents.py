@@ -300,7 +300,7 @@ class _Collector:
 
         `copies` are the files that a check needs, by exercise and path.
         """
-        spinbook = requirement(self.repository)
+        spinbook = requirement(self.repository, (cell.source for chapter in self.chapters for cell in chapter.cells))
         wheels = interface_wheels(self.course, self.contents.copies.values())
         written: list[str] = []
 

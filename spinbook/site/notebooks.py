@@ -16,6 +16,7 @@ from rich.console import Console
 from spinbook.build.execution import NotebookJob, execute
 from spinbook.build.notebooks import BuildResult, build_notebooks, report
 from spinbook.course.course import FILE, Course
+from spinbook.handout.pins import imports_matplotlib
 from spinbook.interfaces.definitions import compile_course
 from spinbook.problem import SpinbookError
 from spinbook.site.page import Repository
@@ -138,9 +139,12 @@ _SPINBOOK = "git+https://github.com/spinbook/spinbook"
 _NAMED = re.compile(r"^spinbook(?:\[[\w,]*\])?\s*@\s*(\S+)", re.MULTILINE)
 
 
-def requirement(repository: Repository) -> str:
-    """Return pip's requirement to run a notebook: Spinbook with ROS 2 and colcon, from the course's own source."""
-    return f"spinbook[ros,colcon,notebooks] @ {_origin(repository)}"
+def requirement(repository: Repository, cells: Iterable[str] = ()) -> str:
+    """Return pip's requirement to run notebooks with these cells: Spinbook with ROS 2 and colcon, from the course's own
+    source.
+    """
+    plots = ",plots" if imports_matplotlib(cells) else ""
+    return f"spinbook[ros,colcon,notebooks{plots}] @ {_origin(repository)}"
 
 
 def _origin(repository: Repository) -> str:

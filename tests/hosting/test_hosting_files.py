@@ -99,3 +99,9 @@ def test_a_courses_requirements_that_are_no_utf8_name_no_other_place_for_spinboo
         requirement(Repository(tmp_path, ""))
         == "spinbook[ros,colcon,notebooks] @ git+https://github.com/spinbook/spinbook"
     )
+
+
+def test_a_notebook_that_draws_with_matplotlib_is_opened_elsewhere_with_it(tmp_path: Path) -> None:
+    cells = ["import rclpy\n", "from matplotlib import pyplot\n"]
+
+    assert requirement(Repository(tmp_path, ""), cells).startswith("spinbook[ros,colcon,notebooks,plots] @ ")

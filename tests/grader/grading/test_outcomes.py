@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from few_scenarios import in_scenarios
 
@@ -9,6 +11,7 @@ from grader.checking import ending_message
 from grader.exercise import Exercise
 from grader.grading import Grade
 from grader.grading.grading import Grading
+from grader.grading.public import PublicPart
 from grader.submission.reader import of_source
 
 NODE = """
@@ -79,9 +82,14 @@ def test_a_module_that_only_notebooks_have_costs_nobody_a_point(
     grade = grade_of(grading, imports)
 
     assert (grade.outcome, grade.has_score) == ("host-error", False)
-    assert "matplotlib, which notebooks have, is missing here. Instructors: pip install" in grade.message
+    assert "matplotlib, which notebooks may have, is missing here. Instructors: pip install" in grade.message
     assert not grade.recordings, "to judge them again, once it is installed, would give a zero"
     assert grade_of(grading, pretends).has_score, "a zero, as for any error that a program raises itself"
+
+    self_check = replace(grading, public=PublicPart((), {}, 0, 0.0))
+    advised = grade_of(self_check, imports)
+    assert (advised.outcome, advised.has_score) == ("did-not-start", True)
+    assert "matplotlib is not installed here. Install it: pip install matplotlib," in advised.message
 
 
 def test_a_crash_in_one_scenario_costs_only_its_checks(grading: Grading) -> None:

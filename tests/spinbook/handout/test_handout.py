@@ -24,8 +24,9 @@ from grader.gradescope import own_wheel
 from handout.conftest import NOTE, ROOT, HandedOut, append, copy_course, write_small_course
 from interface_compiler.wheel_file import zipped
 from spinbook.chapter.comments import without_comments
+from spinbook.handout.contents import guide_files
 from spinbook.handout.leaks import Secret, hidden_names, leaks, secrets
-from spinbook.handout.pins import declared_pins, students_pins
+from spinbook.handout.pins import declared_pins, imports_matplotlib, students_pins
 from spinbook.handout.student_copy import for_students
 from spinbook.handout.wheels import spinbook_wheel
 
@@ -150,6 +151,7 @@ def test_the_means_to_install_are_there_and_can_be_read(real: HandedOut) -> None
     assert f"./wheels/{wheel.name}" in lines
     names = {line.partition("==")[0] for line in lines if "==" in line}
     assert {"ipykernel", "decorator", "six", "numpy", "ros-rmw-fastrtps-cpp", "colcon-core"} <= names
+    assert not {"matplotlib", "pillow", "fonttools"} & names, "nothing in the course imports it"
     lab = {line.partition("==")[0] for line in (real.folder / "jupyterlab.txt").read_text().splitlines()}
     assert {"jupyterlab", "tornado"} - lab == {"tornado"}, "what notebooks have anyway is not named twice"
     assert not (names | lab) & {"sphinx", "mypy", "jedi", "debugpy"}
@@ -166,6 +168,26 @@ def test_packages_that_exercises_declare_are_installed_with_what_they_need() -> 
     assert {line.partition("==")[0] for line in lines} >= {"rosbags", "lz4"}
     assert not [line for line in lines if line.startswith("numpy")], "it is pinned for each Python"
     assert declared_pins(["rosbags==0.11.9"], []) == ["rosbags==0.11.9"]
+
+
+@pytest.mark.parametrize(
+    ("source", "draws"),
+    [
+        ("import matplotlib.pyplot as plt\n", True),
+        ("def draw():\n    import numpy as np, matplotlib\n", True),
+        ("from matplotlib import pyplot\n", True),
+        ("%matplotlib inline\nfrom pylab import plot\n", True),
+        ("# import matplotlib\nimport numpy  # not matplotlib\n%plot /ticks\n", False),
+    ],
+)
+def test_matplotlib_is_installed_only_if_the_course_imports_it(source: str, draws: bool) -> None:
+    assert imports_matplotlib(["import rclpy\n", source]) is draws
+    more = set(students_pins(b"", plots=draws)) - set(students_pins(b""))
+    assert ({"matplotlib", "pillow", "fonttools"} <= {line.partition("==")[0] for line in more}) is draws
+    files = guide_files("Robots", "robots", "jazzy", "spinbook.whl", ["a.ipynb"], [], [], [], b"", draws)
+    assert (b"# matplotlib and what it needs, because" in files["requirements.txt"]) is draws
+    assert (b"spinbook.whl[notebooks,plots]" in files["environment.yml"]) is draws
+    assert (b"[colcon,notebooks,lab,plots]" in files[".devcontainer/devcontainer.json"]) is draws
 
 
 def test_messages_for_tests_are_installed_only_if_students_read_of_them() -> None:
