@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import sys
+from pathlib import Path
 
 import click
 from rich.console import Console
@@ -12,6 +13,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from ros_in_python.ros2.cli import CONTEXT, CommandError
 from ros_in_python.ros2.hello import hello
+from spinbook.doctor.copies import link_copies
 from spinbook.doctor.diagnosis import (
     CHECKS,
     OF_GRADING,
@@ -30,12 +32,14 @@ from spinbook.doctor.diagnosis import (
 @click.command()
 @click.argument("checks", nargs=-1, type=click.Choice([check.word for check in CHECKS]), metavar="[CHECK]...")
 @click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON, for programs and bug reports.")
-def doctor(checks: tuple[str, ...], as_json: bool) -> None:
+@click.option("--save-space", is_flag=True, help="Make identical copies of libraries in the environment one file each.")
+def doctor(checks: tuple[str, ...], as_json: bool, save_space: bool) -> None:
     """Say what works on this machine, and how to fix what does not.
 
     Each CHECK really tries it: a message goes from one process to another, a kernel starts, colcon builds a package, a
-    program runs in each sandbox. Nothing is changed. Without CHECK, all checks run, in a few seconds; in a handout's
-    folder, those that notebooks and self-checks need; with the extra `grade`, those that grading needs:
+    program runs in each sandbox. Nothing is changed, except by --save-space. Without CHECK, all checks run, in a few
+    seconds; in a handout's folder, those that notebooks and self-checks need; with the extra `grade`, those that
+    grading needs:
 
     \b
       python       folder       libraries    ros
@@ -51,6 +55,9 @@ def doctor(checks: tuple[str, ...], as_json: bool) -> None:
 
     Exit code: 0 everything needed works (there may be warnings), 1 something needed does not work.
     """
+    if save_space:
+        _save_space()
+        return
     words = checks or (OF_GRADING if only_grades() else OF_STUDENTS if in_handout() else ())
     chosen = [check for check in CHECKS if not words or check.word in words]
     findings = _with_progress(chosen)
@@ -60,6 +67,14 @@ def doctor(checks: tuple[str, ...], as_json: bool) -> None:
     else:
         show(Console(highlight=False), findings)
     sys.exit(0 if is_able(findings) else 1)
+
+
+def _save_space() -> None:
+    try:
+        saved = link_copies(Path(sys.prefix))
+    except OSError as error:
+        raise click.ClickException(f"{error.filename}: {error.strerror}. Every library is there, as before.") from None
+    click.echo(f"{saved / 1e6:.0f} MB saved in {sys.prefix}: identical copies of a library are one file now.")
 
 
 def _with_progress(chosen: list[MachineCheck]) -> list[MachineFinding]:

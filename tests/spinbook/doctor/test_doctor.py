@@ -14,6 +14,7 @@ from running import doctor, finding_of
 
 from ros_in_python.ros2.command import ros2
 from spinbook.doctor import command
+from spinbook.doctor.copies import link_copies
 from spinbook.doctor.diagnosis import CHECKS, MachineCheck, MachineFinding, State, is_able, show
 
 
@@ -53,6 +54,31 @@ def test_help_names_every_check_and_the_exit_code() -> None:
     text = doctor("--help").stdout
     assert all(check.word in text for check in CHECKS)
     assert "Exit code: 0" in text
+
+
+def test_copies_of_a_library_become_one_file_and_all_else_is_left_alone(tmp_path: Path) -> None:
+    for name, content in (("a.so", b"a"), ("b/a.so.1", b"a"), ("b/other.so", b"b"), ("text.txt", b"a")):
+        file = tmp_path / name
+        file.parent.mkdir(exist_ok=True)
+        file.write_bytes(content * 200_000)
+    (tmp_path / "small.so").write_bytes(b"a")
+    (tmp_path / "link.so").symlink_to("a.so")
+    before = {file: (file.read_bytes(), file.is_symlink()) for file in tmp_path.rglob("*.*") if file.is_file()}
+
+    assert link_copies(tmp_path) == 200_000
+    assert link_copies(tmp_path) == 0
+
+    assert (tmp_path / "a.so").samefile(tmp_path / "b/a.so.1")
+    assert [file.stat().st_nlink for file in (tmp_path / "text.txt", tmp_path / "b/other.so")] == [1, 1]
+    assert {file: (file.read_bytes(), file.is_symlink()) for file in tmp_path.rglob("*.*") if file.is_file()} == before
+
+
+def test_an_environment_that_can_not_be_written_stays_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(command, "link_copies", lambda folder: os.link(folder / "no.so", folder / "none" / "no.so"))
+    said = CliRunner().invoke(command.doctor, ["--save-space"])
+    assert said.exit_code == 1
+    assert said.output.startswith(f"Error: {sys.prefix}")
+    assert "No such file or directory. Every library is there, as before." in said.output
 
 
 def test_ros2_doctor_says_whether_ros_works(monkeypatch: pytest.MonkeyPatch) -> None:
