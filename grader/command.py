@@ -188,10 +188,9 @@ def _class(exercise: Exercise, submissions: Path, out: Path, options: dict[str, 
     from rich.console import Console
 
     from grader.classroom.class_run import grade_class
-    from grader.classroom.deadline import OverridesError
     from grader.classroom.formats.registry import FORMATS
     from grader.classroom.request import ClassRequest, NoCluster
-    from grader.classroom.results import Busy, NotWritable, OtherExercise
+    from grader.classroom.results import FolderInUse, NotWritable
     from grader.classroom.submissions import SubmissionsError
 
     if of_class["format"] not in ("", *FORMATS):
@@ -201,7 +200,7 @@ def _class(exercise: Exercise, submissions: Path, out: Path, options: dict[str, 
         return grade_class(exercise, class_request, Console(soft_wrap=False, highlight=False))
     except NotWritable as error:
         _stop(f"{error} Give another folder with --out.")
-    except (SubmissionsError, OverridesError, Busy, OtherExercise, NoCluster) as error:
+    except (SubmissionsError, FolderInUse, NoCluster) as error:
         raise click.UsageError(str(error)) from None
 
 

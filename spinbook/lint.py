@@ -13,6 +13,7 @@ import click
 from grader.checking.proofreader import problems_of
 from groundwork.files import from_here
 from groundwork.problem import Problem, Severity
+from groundwork.words import counted
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.read import ReadResult
 from spinbook.chapters import read_all
@@ -57,7 +58,8 @@ def lint(start: Path, strict: bool, show_static: bool, as_json: bool) -> None:
     not_run = sum(problem.severity is Severity.NOT_RUN for problem in problems)
     if not as_json:
         words = f"{not_run} not run, " if not_run else ""
-        click.echo(f"{errors} errors, {words}{len(problems) - errors - not_run} warnings")
+        warnings = counted(len(problems) - errors - not_run, "warning")
+        click.echo(f"{counted(errors, 'error')}, {words}{warnings}")
     sys.exit(1 if errors or (strict and problems) else 0)
 
 

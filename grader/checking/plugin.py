@@ -21,6 +21,7 @@ from grader.checking.verdict import CheckOptions, Finding, ListedCheck, Verdict,
 from grader.exercise.computing_limit import computing_limit
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.modules import error_in
+from groundwork.words import look_alike
 
 #: How hints begin that are for a node which works nowhere: a check that depends on others knows better.
 _BASIC = tuple(hints(name)[0].partition("{")[0] for name in ("not_published", "only_zeros", "some_zeros"))
@@ -232,6 +233,8 @@ class Checks:
             text = str(error) or f"“{verdict.title}” is not so."  # an assert without a message
             wrong = error if isinstance(error, Wrong) else Wrong(Finding(text))
             finding = suited(wrong.finding.shortened(), check)
+            if advice := look_alike(finding.got, finding.expected):
+                finding = replace(finding, text=f"{finding.text} {advice}")
             return replace(verdict, status="failed", finding=finding, share=wrong.share, partial=check.partial)
         advice = ""
         if isinstance(error, NameError) and error.name in self.scenarios:
@@ -251,5 +254,5 @@ def _is_defined_here(item: pytest.Item) -> bool:
 
 
 def _describe(error: BaseException, file: Path) -> str:
-    problem = error_in(error, file.parent, file).problem
-    return f"{problem.place}: {problem.problem}"
+    problem = error_in(error, file.parent, file, fix="").problem
+    return f"{problem.place}: {problem.problem}. {problem.fix}".removesuffix(". ")

@@ -191,6 +191,8 @@ def check(
     rules = (rule,) if isinstance(rule, str) else tuple(rule)
 
     def mark(test: Test) -> Test:
+        if not test.__name__.startswith("test"):
+            raise ValueError(f"a check's name begins with test_: call it test_{test.__name__}")
         setattr(test, ATTRIBUTE, CheckOptions(points, hint, names, misconception, rules, partial, todo, untested))
         return test
 

@@ -47,6 +47,8 @@ def walk(root: Path) -> Iterator[File | SkippedFile]:
             if is_noise(name):
                 yield SkippedFile((inside / name).as_posix(), WHY_NOISE)
         folders[:] = sorted(name for name in folders if not is_noise(name))
+        if folder != str(root) and all(map(is_noise, [*folders, *names])):
+            yield SkippedFile(inside.as_posix(), "a folder without a file")
         for name in sorted(names):
             if not is_noise(name):
                 path = Path(folder, name)

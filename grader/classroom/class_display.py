@@ -55,7 +55,13 @@ def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[E
         points = entries[0].grade.points
         full = sum(final >= points for final in finals)
         median = statistics.median(finals)
-        say(console, f"{len(finals)} grades: median {median:g} of {points:g} points, {full} with full marks.", "bold")
+        late = sum(any(a.kind == "late" and a.points for a in entry.adjustments) for entry in entries)
+        after = f", after {counted(late, 'late submission')} lost points" if late else ""
+        say(
+            console,
+            f"{len(finals)} grades: median {median:g} of {points:g} points, {full} with full marks{after}.",
+            "bold",
+        )
     unknown = unknown_to_moodle(entries)
     if 0 < unknown < len(entries):  # a class that Moodle knows
         say(
@@ -64,16 +70,11 @@ def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[E
             "Give its grading worksheet with --roster.",
             "dim",
         )
-    for entry in (entry for entry in unscored if entry.grade.outcome == "undecided"):
-        say(console, f"needs your decision: {entry.student.id}: {entry.grade.message}", "yellow")
-    faults = [entry for entry in unscored if entry.grade.outcome != "undecided"]
-    for entry in faults:
-        say(
-            console,
-            f"not graded, because of a fault of Spinbook or the machine: {entry.student.id}: {entry.grade.message}",
-            "red",
-        )
-    if faults:
+    for entry in unscored:
+        undecided = entry.grade.outcome == "undecided"
+        why = "needs your decision" if undecided else "not graded, because of a fault of Spinbook or the machine"
+        say(console, f"{why}: {entry.student.id}: {entry.grade.message}", "yellow" if undecided else "red")
+    if any(entry.grade.outcome != "undecided" for entry in unscored):
         say(console, "Run the same command to try them again.", "red")
 
 
@@ -104,9 +105,10 @@ class ProgressDisplay:
         grade = entry.grade
         score = f"{grade.score:g} of {grade.points:g} points" if grade.has_score else "not graded"
         text = f"{self._done}/{self._total} {entry.student.id}: {changed or score}"
-        if grade.has_score and grade.outcome != "graded" and not changed:
-            text += f" ({grade.outcome})"
-        self._console.print(Text(printable(text)), soft_wrap=True)
+        if grade.has_score and not changed:
+            text += f", {entry.final:g} after adjustments" if entry.final != grade.score else ""
+            text += f" ({grade.outcome})" if grade.outcome != "graded" else ""
+        say(self._console, text)
 
     def __enter__(self) -> ProgressDisplay:
         self._bar.start()

@@ -46,9 +46,8 @@ DONE, QUESTIONS, FAULTS, STOPPED = 0, 1, 3, 130
 def grade_class(exercise: Exercise, class_request: ClassRequest, console: Console) -> int:
     """Grade a class and print the result; return the exit code.
 
-    Raises `SubmissionsError` if there is nothing to grade, `OverridesError` for a mistake in the overrides, `Busy`
-    when another run is using the same results folder, `OtherExercise` when it has another exercise's grades,
-    `NotWritable` when the results can't be written, and what `grading_of` raises.
+    Raises `SubmissionsError` if there is nothing to grade, or for a mistake in a table, `FolderInUse` if the results
+    folder is another run's or another exercise's, `NotWritable` if it can't be written, and what `grading_of` raises.
     """
     with tempfile.TemporaryDirectory(prefix="spinbook-class-") as unpacked, _ended_by_signals():
         deadline = deadline_of(exercise)
@@ -184,7 +183,8 @@ def _finish(
         raise NotWritable(folder, error) from None
     others = class_grading.results.others({entry.student.id for entry in every})
     if others:
-        say(console, f"from an earlier run, unchanged: {', '.join(others)}", "yellow")
+        say(console, f"graded earlier, handed in nothing now, not in the tables: {', '.join(others)}", "yellow")
+        say(console, f"  `spinbook gradebook` counts them as long as their folders are in {folder}/students.")
     show_result(console, entries, unscored)
     if published:
         say(console, f"One zip per student: {published}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import tzinfo
 from pathlib import Path
@@ -151,6 +151,8 @@ class Collector:
         chosen = [_only(several) for several in theirs.values()]
         chosen += [question for question in found.odd if normal(question.student.id) not in theirs]
         rows = match(self.options.roster, [one.student for one in chosen])
+        strangers = [one.student for one in chosen if one.student.id not in rows] if self.options.roster else []
+        unlisted = [f"not on the roster: {', '.join(one.id for one in strangers)}"] if strangers else []
         missing = self._missing([one.student for one in chosen], rows)
         missing = [student for student in missing if normal(student.id) not in theirs]
         ids = unique_ids([*(one.student.id for one in chosen), *(student.id for student in missing)])
@@ -163,8 +165,9 @@ class Collector:
             tuple(sorted((*found.skipped, *extras), key=lambda one: one.file)),
             tuple(questions),
             tuple(replace(student, id=ids[normal(student.id)]) for student in missing),
-            (*_notes(handed_in), *_not_gradable(handed_in), *self._strangers(chosen, rows)),
+            (*_notes(handed_in), *_not_gradable(handed_in), *unlisted),
             found.dates,
+            tuple(_mismatches(strangers, missing, bool(rows))),
         )
 
     def _chosen(self, unit: Unit, number: int, extras: list[SkippedFile]) -> list[StudentSubmission | Question]:
@@ -218,18 +221,22 @@ class Collector:
         """Return the students of the roster and of the groups who submitted nothing."""
         there = {id(row) for row in rows.values()}
         missing = [row.student for row in self.options.roster if id(row) not in there]
-        known = {
-            sign
-            for student in (*students, *missing, *(row.student for row in rows.values()))
-            for sign in signs(student)
-        }
+        listed = [row.student for row in self.options.roster]
+        known = {sign for student in (*students, *listed) for sign in signs(student)}
         members = [member for group in self.options.groups for member in group.members]
         missing += [member for member in members if not signs(member) & known]
         return missing
 
-    def _strangers(self, chosen: Sequence[StudentSubmission | Question], rows: dict[str, RosterRow]) -> list[str]:
-        strangers = [one.student.id for one in chosen if one.student.id not in rows]
-        return [f"not on the roster: {', '.join(strangers)}"] if self.options.roster and strangers else []
+
+def _mismatches(strangers: Sequence[Student], missing: Sequence[Student], some_match: bool) -> Iterator[str]:
+    """Yield what suggests that the roster names those who handed in otherwise than the files do."""
+    if strangers and missing and not some_match:
+        yield f"nobody is in both: {missing[0].id} is on the roster, {strangers[0].id} handed in"
+        return
+    bare = {sign.lstrip("0"): one.id for one in missing for sign in signs(one)}  # spreadsheets drop zeros
+    for one in strangers:
+        listed = {bare[sign.lstrip("0")] for sign in signs(one) if sign.lstrip("0") in bare}
+        yield from (f"{same} is on the roster, {one.id} handed in" for same in listed)
 
 
 def _units(uploads: Sequence[tuple[File, UploadedFile]]) -> list[Unit]:

@@ -18,12 +18,7 @@ from grader.exercise.exercise_toml import read_toml
 from grader.grading.grade import Adjustment, Entry
 from groundwork.words import counted
 
-UNITS = {
-    "minute": timedelta(minutes=1),
-    "hour": timedelta(hours=1),
-    "day": timedelta(days=1),
-    "week": timedelta(weeks=1),
-}
+UNITS = {unit: timedelta(**{f"{unit}s": 1}) for unit in ("minute", "hour", "day", "week")}
 LENGTH = re.compile(r"(\d+) *(minute|hour|day|week)s?")
 RULE = re.compile(r"(\d+(?:\.\d+)?) *% +(?:an?|per) +(minute|hour|day|week)(?: +up +to +(\d+(?:\.\d+)?) *%)?")
 
@@ -134,10 +129,6 @@ def _rule(value: Any, file: Path) -> tuple[float, timedelta, float]:
 NUMBER = re.compile(r"[+-]?\d+(\.\d+)?")
 
 
-class OverridesError(Exception):
-    """Raised for a row with a mistake; the text is for the instructor."""
-
-
 @dataclass(frozen=True)
 class Override:
     """One row: `points` that replace the score or, if `added`, are added to it; or another `due` date."""
@@ -153,33 +144,32 @@ def overrides_in(file: Path, students: set[str], zone: tzinfo | None = None) -> 
     """Return the rows by student. Each student must be one of `students`.
 
     Columns: student, reason, and either points or due. A due date without a zone is in `zone`. `85` replaces the
-    points; `+5` and `-5` are added to the score. Raises `OverridesError`.
+    points; `+5` and `-5` are added to the score. Raises `SubmissionsError`.
     """
     found: dict[str, tuple[Override, ...]] = {}
-    try:
-        for number, row in table_rows(file, ("student", "reason"), ("points", "due")):
-            override = _override(row, f"{file}:{number}", students, zone)
-            found[override.student] = (*found.get(override.student, ()), override)
-    except SubmissionsError as error:
-        raise OverridesError(str(error)) from None
+    for number, row in table_rows(file, ("student", "reason"), ("points", "due")):
+        override = _override(row, f"{file}:{number}", students, zone)
+        found[override.student] = (*found.get(override.student, ()), override)
     return found
 
 
 def _override(row: dict[str, str], place: str, students: set[str], zone: tzinfo | None) -> Override:
     student, points, due = normal(row["student"]), row.get("points", ""), row.get("due", "")
     if student not in students:
-        raise OverridesError(f"{place}: no student is called {student!r}. Write the name of a folder in the results.")
+        raise SubmissionsError(f"{place}: no student is called {student!r}. Write the name of a folder in the results.")
     if not row["reason"]:
-        raise OverridesError(f"{place}: the reason is missing. Write one: the student will read it.")
+        raise SubmissionsError(f"{place}: the reason is missing. Write one: the student will read it.")
     if bool(points) == bool(due):
-        raise OverridesError(f"{place}: points = {points!r}, due = {due!r}. Give one of the two.")
+        raise SubmissionsError(f"{place}: points = {points!r}, due = {due!r}. Give one of the two.")
     if due:
         date = moment(due if ":" in due else f"{due} 23:59:59", zone)
         if date is None:
-            raise OverridesError(f"{place}: due = {due!r}. Write it as 2026-11-22 23:59.")
+            raise SubmissionsError(f"{place}: due = {due!r}. Write it as 2026-11-22 23:59.")
         return Override(student, row["reason"], due=date)
     if not NUMBER.fullmatch(points):
-        raise OverridesError(f"{place}: points = {points!r}. Write 85 to replace the points, +5 or -5 to change them.")
+        raise SubmissionsError(
+            f"{place}: points = {points!r}. Write 85 to replace the points, +5 or -5 to change them."
+        )
     if points[0] in "+-":
         return Override(student, row["reason"], added=float(points))
     return Override(student, row["reason"], points=float(points))

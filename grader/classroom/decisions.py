@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rich.console import Console
 
 from grader.classroom.class_display import say
 from grader.classroom.deadline import Adjuster
-from grader.classroom.submissions import File, StudentSubmission, Submissions, Unclear
+from grader.classroom.submissions import Submissions, Unclear
 from grader.submission.submission import Submission
 from groundwork.words import counted
 
@@ -54,7 +54,7 @@ def decisions(
 ) -> list[Decision]:
     """Return what is not clear about a class. `submissions` are those of `collected` after reading, by student."""
     programs = [f"{who}: {one.question}" for who, tries in submissions.items() for one in tries if one.question]
-    unread = [f"{one.student.id}: {file.time.fault}" for one, file in _faults(collected.handed_in)]
+    unread = [f"{s.student.id}: {file.time.fault}" for s in collected.handed_in for file in s.files if file.time.fault]
     questions: dict[Unclear, list[str]] = {unclear: [] for unclear in QUESTION_TEXTS}
     for question in collected.questions:
         questions[question.unclear].append(str(question))
@@ -73,13 +73,14 @@ def decisions(
             tuple(programs),
             "If the student must say which program counts, keep only that one.",
         ),
+        Decision(
+            "the roster seems to name students otherwise than the files do",
+            collected.mismatches,
+            "Write the names of the files into the roster's column student, or rename the files.",
+        ),
         _undated(collected, adjuster),
     ]
     return [decision for decision in found if decision.about]
-
-
-def _faults(handed_in: Iterable[StudentSubmission]) -> Iterator[tuple[StudentSubmission, File]]:
-    return ((one, file) for one in handed_in for file in one.files if file.time.fault)
 
 
 def _undated(collected: Submissions, adjuster: Adjuster) -> Decision:

@@ -38,11 +38,9 @@ def grades(exercise: Exercise, entries: Sequence[Entry]) -> str:
     return csv_text([*header, "message", "file", "submitted", *checks], rows)
 
 
-# For the instructor only: it names hidden checks and says why they fail.
-
-
 def junit(exercise: Exercise, entries: Sequence[Entry]) -> str:
-    """Return all entries as one JUnit XML document, in the form that Jenkins and pytest share.
+    """Return all entries as one JUnit XML document, in the form that Jenkins and pytest share. It is for the instructor
+    only, as it names hidden checks and says why they fail.
 
     A blocked check is skipped. A run that did not complete has an additional test case, `outcome`, which failed; a
     fault of ours is an error there.

@@ -130,17 +130,14 @@ def grouped(entries: Sequence[Entry], signatures: Sequence[Signature]) -> Miscon
     other: list[Entry] = []
     for entry in entries:
         failed = failures_of(entry.grade)
-        made = mistakes_in(failed, _blocked(entry.grade), signatures)
+        blocked = frozenset(verdict.name for verdict in entry.grade.verdicts if verdict.status == "blocked")
+        made = mistakes_in(failed, blocked, signatures)
         for number in made:
             found.setdefault(number, []).append(entry)
         if failed and not made:
             other.append(entry)
     groups = [MisconceptionGroup(signatures[number], tuple(members)) for number, members in sorted(found.items())]
     return Misconceptions(tuple(sorted(groups, key=lambda group: -len(group.entries))), tuple(other))
-
-
-def _blocked(grade: Grade) -> frozenset[str]:
-    return frozenset(verdict.name for verdict in grade.verdicts if verdict.status == "blocked")
 
 
 def mistakes_in(failed: Mapping[str, Failure], blocked: Set[str], signatures: Sequence[Signature]) -> list[int]:

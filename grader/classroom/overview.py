@@ -163,25 +163,23 @@ def overview_page(
     `students/STUDENT/feedback.html` next to the page. The page is one HTML file; its one script sorts the table,
     which is also sorted without it.
     """
-    unscored = [*faults, *(entry for entry in entries if entry.final is None and entry not in faults)]
-    scored = [entry for entry in entries if entry.final is not None]
-    rows = [row(entry, misconceptions) for entry in scored]
+    rows = [row(entry, misconceptions) for entry in entries]
     rows.sort(key=lambda row: (row.name.casefold(), row.entry.student.id))
-    broken = Counter(OUTCOMES[entry.grade.outcome] for entry in scored if entry.grade.outcome != "graded")
-    scores = [entry.final for entry in scored if entry.final is not None]
+    broken = Counter(OUTCOMES[entry.grade.outcome] for entry in entries if entry.grade.outcome != "graded")
+    scores = [entry.final for entry in entries if entry.final is not None]
     return render(
         "classroom/overview.html",
         script="classroom/sort.js",
         exercise=exercise,
         rows=rows,
-        distribution=distribution(scores, scored[0].grade.points) if scored else None,
-        most=scored[0].grade.points if scored else exercise.points,
-        tallies=tallies(scored),
+        distribution=distribution(scores, entries[0].grade.points) if entries else None,
+        most=entries[0].grade.points if entries else exercise.points,
+        tallies=tallies(entries),
         misconceptions=misconceptions,
         broken=broken,
         skipped=skipped,
-        faults=[entry for entry in unscored if entry.grade.outcome != "undecided"],
-        undecided=[entry for entry in unscored if entry.grade.outcome == "undecided"],
+        faults=[entry for entry in faults if entry.grade.outcome != "undecided"],
+        undecided=[entry for entry in faults if entry.grade.outcome == "undecided"],
         page_of=page_of,
-        several=sum(len(misconceptions.of(entry)) > 1 for entry in scored),
+        several=sum(len(misconceptions.of(entry)) > 1 for entry in entries),
     )

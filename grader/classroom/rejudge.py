@@ -6,15 +6,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from rich.console import Console
-from rich.text import Text
 
+from grader.classroom.class_display import say
 from grader.classroom.request import GradedSubmission
 from grader.classroom.results import ClassGrading, Tries, recordings_key
 from grader.classroom.submissions import StudentSubmission, Submissions
 from grader.grading.grade import Grade
 from grader.grading.grading import Grading
 from grader.report.feedback_plot import picture
-from grader.report.printable import printable
 
 
 @dataclass(frozen=True)
@@ -66,13 +65,11 @@ def rejudge(
 def _report(console: Console, found: list[NewGrade], missing: list[str]) -> None:
     for one in found:
         if one.changed:
-            console.print(Text(printable(f"{one.graded.who}: {one.changed}")), soft_wrap=True)
+            say(console, f"{one.graded.who}: {one.changed}")
     same = sum(not one.changed for one in found)
     console.print(f"{len(found)} judged again from their recordings, {same} with the same result.")
     if missing:
-        names = ", ".join(missing)
-        text = f"no recordings that fit, so grade them without --rejudge: {names}"
-        console.print(Text(printable(text), style="yellow"), soft_wrap=True)
+        say(console, f"no recordings that fit, so grade them without --rejudge: {', '.join(missing)}", "yellow")
 
 
 def difference(before: Grade, after: Grade) -> str:

@@ -48,12 +48,8 @@ class NotWritable(Exception):
         super().__init__(f"{error.filename or folder}: the results can't be written: {why}.")
 
 
-class Busy(Exception):
-    """Raised if another grading is writing to the same folder."""
-
-
-class OtherExercise(Exception):
-    """Raised if a folder holds the grades of another exercise, which would be replaced."""
+class FolderInUse(Exception):
+    """Raised if another grading is writing to the folder, or if it holds the grades of another exercise."""
 
 
 class Results:
@@ -69,11 +65,11 @@ class Results:
         return read_grade(folder_of(self.folder, student) / "grade.json")
 
     def check_exercise(self, exercise: str) -> None:
-        """Raise `OtherExercise` if the folder has grades of another exercise than this one."""
+        """Raise `FolderInUse` if the folder has grades of another exercise than this one."""
         for file in sorted(self.folder.glob(f"{STUDENTS}/*/grade.json")):
             stored = self.entry(file.parent.name)
             if stored and stored[0].grade.exercise != exercise:
-                raise OtherExercise(
+                raise FolderInUse(
                     f"{self.folder} holds the grades of the exercise {stored[0].grade.exercise}, which those of "
                     f"{exercise} would replace. Give each exercise a folder of its own with --out."
                 )
@@ -129,13 +125,8 @@ class Results:
 
     def others(self, students: set[str]) -> tuple[str, ...]:
         """Return the ids of students with results here who are not in `students`."""
-        return tuple(
-            sorted(
-                file.parent.name
-                for file in self.folder.glob(f"{STUDENTS}/*/grade.json")
-                if file.parent.name not in students
-            )
-        )
+        stored = {file.parent.name for file in self.folder.glob(f"{STUDENTS}/*/grade.json")}
+        return tuple(sorted(stored - students))
 
     def __enter__(self) -> Results:
         try:
@@ -148,7 +139,7 @@ class Results:
         except OSError as error:
             raise NotWritable(self.folder, error) from None
         if lock is None:
-            raise Busy(f"{self.folder}: another grading is writing to this folder. Wait until it has finished.")
+            raise FolderInUse(f"{self.folder}: another grading is writing to this folder. Wait until it has finished.")
         self._lock = lock
         for folder in (self.folder, *self.folder.glob(f"{STUDENTS}/*/")):
             remove_parts(folder)

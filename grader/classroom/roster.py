@@ -53,12 +53,17 @@ def read_roster(table: Path, zone: tzinfo | None) -> tuple[RosterRow, ...]:
         student = _student(row)
         if student is None:
             raise SubmissionsError(
-                f"{table}:{number}: no column says who this is. Add a column student, or give the list of students, "
-                "grades or submissions that your platform exports (Moodle's worksheet: with English or one of "
-                f"{', '.join(LANGUAGES)} as your language there)."
+                f"{table}:{number}: nothing in this row says who it is. Fill in a column student, or give the "
+                "list of students, grades or submissions that your platform exports (Moodle's worksheet: with English "
+                f"or one of {', '.join(LANGUAGES)} as your language there)."
             )
         if student.id:  # a student in two sections is listed twice
-            rows.setdefault(student.id, RosterRow(student, _time(row, f"{table}:{number}", zone)))
+            listed = rows.setdefault(student.id, RosterRow(student, _time(row, f"{table}:{number}", zone)))
+            if listed.student.name != student.name:
+                raise SubmissionsError(
+                    f"{table}:{number}: {student.id} is {student.name!r} here and {listed.student.name!r} above. Two "
+                    "students can't share an id: correct one of the rows."
+                )
     return tuple(rows.values())
 
 
@@ -177,5 +182,9 @@ def with_row(student: Student, row: RosterRow | None) -> Student:
         student,
         name=listed.name or student.name,
         email=listed.email or student.email,
-        lms={**listed.lms, **student.lms, **{name: listed.lms[name] for name in ("Identifier",) if name in listed.lms}},
+        lms={
+            **listed.lms,
+            **student.lms,
+            **{name: listed.lms[name] for name in ("Identifier", "Full name") if name in listed.lms},
+        },
     )

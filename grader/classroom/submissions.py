@@ -81,7 +81,8 @@ class Submissions:
     """What a class submitted, sorted by student; what was left out and why; and the open questions.
 
     `kind` says in words how it was read, such as "a download from Moodle". `missing` are students of the roster who
-    submitted nothing. `notes` say how something ambiguous was read, `dates` where the platform keeps dates.
+    submitted nothing. `notes` say how something ambiguous was read, `dates` where the platform keeps dates, and
+    `mismatches` whom the roster seems to name otherwise than the files do.
     """
 
     kind: str
@@ -91,6 +92,7 @@ class Submissions:
     missing: tuple[Student, ...] = ()
     notes: tuple[str, ...] = ()
     dates: str = ""
+    mismatches: tuple[str, ...] = ()
 
     @property
     def students(self) -> tuple[Student, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+import unicodedata
 from collections.abc import Callable, Iterable, Sequence
 from itertools import zip_longest
 from pathlib import Path
@@ -105,6 +106,8 @@ def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
 
 
 def _text(cell: str | None) -> str:
-    text = printable(cell or "", LONGEST_CELL)
+    # Invisible characters of names stay, so that a platform finds its students again.
+    text = "".join(char if unicodedata.category(char) in ("Cf", "Zs") else printable(char) for char in cell or "")
+    text = text if len(text) <= LONGEST_CELL else f"{text[:LONGEST_CELL]}…"
     formula = text.lstrip(" ").startswith(FORMULA) and text.strip() != "-"
     return f"'{text}" if formula else text

@@ -89,6 +89,8 @@ def _remedy(error: BaseException, folder: Path) -> str:
         return did_you_mean(error.name, there, f"Put {error.name}.py next to this file, or install it.")
     if isinstance(error, ImportError):
         return _of_import(error)
+    if isinstance(error, AttributeError) and error.name:
+        return did_you_mean(error.name, dir(error.obj), "")
     if isinstance(error, SyntaxError) and "unicode error" in str(error):
         return "Save the file as UTF-8."
     if isinstance(error, FileNotFoundError):

@@ -15,7 +15,7 @@ from grader.report.pages import render
 from grader.report.printable import printable
 
 if TYPE_CHECKING:  # which needs a sandbox, and a web page has none
-    from grader.grading.grade import Adjustment, Entry, Grade, Outcome
+    from grader.grading.grade import Entry, Grade, Outcome
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ def feedback_page(entry: Entry, exercise: Exercise, plot_svg: str | None) -> str
         public=[check for check in checks if not check.hidden],
         hidden=[check for check in checks if check.hidden],
         first=next((check for check in checks if check.status == "failed" and (check.finding or check.hints)), None),
-        adjustments=[(_kind(adjustment), adjustment) for adjustment in entry.adjustments],
+        adjustments=[(KINDS.get(adjustment.kind, adjustment.kind), adjustment) for adjustment in entry.adjustments],
         plot=_picture(plot_svg) if plot_svg else "",
         plot_says=described(plot_svg) if plot_svg else "",
         log=log,
@@ -137,10 +137,6 @@ def feedback_page(entry: Entry, exercise: Exercise, plot_svg: str | None) -> str
         count=len(checks),
         share=_share(entry),
     )
-
-
-def _kind(adjustment: Adjustment) -> str:
-    return KINDS.get(adjustment.kind, adjustment.kind)
 
 
 def _share(entry: Entry) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+from collections.abc import Callable
 from datetime import datetime
 from functools import cache
 from importlib import resources
@@ -44,22 +45,22 @@ def render(page: str, script: str = "", **values: Any) -> str:
 
 def template(name: str) -> Template:
     """Return a template by its path below grader/. Whatever it shows is escaped and harmless."""
-    return _environment().get_template(name)
+    return environment(_source).get_template(name)
 
 
 @cache
-def _environment() -> Environment:
-    environment = Environment(
-        loader=FunctionLoader(_source),
+def environment(source: Callable[[str], str]) -> Environment:
+    """Return the environment of templates whose texts `source` returns by their names."""
+    made = Environment(
+        loader=FunctionLoader(source),
         autoescape=True,
         undefined=StrictUndefined,
         finalize=_harmless,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["points"] = points
-    environment.filters["moment"] = moment
-    return environment
+    made.filters |= {"points": points, "moment": moment}
+    return made
 
 
 def _source(name: str) -> str:

@@ -30,7 +30,8 @@ def lines_of(
     messages only some are shown, and the last line says how many are not. Of a message's fields, those that change
     come first. `steps` are the scenario's: what a recording does not have of them, such as a push, is shown, too.
     """
-    every = sorted([*_with_truth(recording), *_of_steps(steps)], key=lambda event: event.at_ns)
+    truth = [Event(one.at_ns, "truth", one) for one in recording.truth]
+    every = sorted([*recording.timeline, *truth, *_of_steps(steps)], key=lambda event: event.at_ns)
     events = [event for event in every if not only or any(part in event.what for part in only)]
     constant = _constants(filter(_is_message, events))
     left_out: dict[str, int] = {}
@@ -42,11 +43,6 @@ def lines_of(
             yield f"{event.at:9.3f} s  {printable(_words(event, constant.get(event.what, frozenset())))}"
     for name, count in left_out.items():
         yield f"{count} more messages of {name.partition(' ')[2] or name} are not shown: --all shows them."
-
-
-def _with_truth(recording: Recording) -> list[Event]:
-    truth = [Event(one.at_ns, "truth", one) for one in recording.truth]
-    return [*recording.timeline, *truth]
 
 
 def _of_steps(steps: Iterable[Step]) -> Iterator[Event]:

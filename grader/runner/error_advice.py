@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from grader.recording.types import message_class
 from grader.runner.node_attributes import advice_on_node_attribute
 from grader.runner.tracebacks import LastError
-from groundwork.words import similar
+from groundwork.words import look_alike, similar
 
 _RESULT = "An action's execute callback has to return a Result, such as `return {action}.Result()`."
 
@@ -156,6 +156,7 @@ def advice_on(last: LastError, sources: Mapping[str, str]) -> str:
     """Return what to do about an error, in one to three sentences; "" if the error says enough."""
     advisers: tuple[Callable[[LastError, Mapping[str, str]], str], ...] = (
         _of_newer_ros,
+        _of_an_invalid_name,
         advice_on_node_attribute,
         _before_init,
         _of_a_callback,
@@ -182,6 +183,11 @@ def _of_newer_ros(last: LastError, sources: Mapping[str, str]) -> str:
         f"This is ROS 2 {here}, in which rclpy.init() can't follow `with`, as in newer versions. Write rclpy.init() on "
         "a line of its own, and call rclpy.try_shutdown() at the end."
     )
+
+
+def _of_an_invalid_name(last: LastError, sources: Mapping[str, str]) -> str:
+    """Name the character of a name that can't be seen, or that looks like another one."""
+    return look_alike(last.text.partition("#")[0]) if re.match(r"[\w.]*Invalid\w*NameException", last.error) else ""
 
 
 def _before_init(last: LastError, sources: Mapping[str, str]) -> str:

@@ -38,7 +38,7 @@ from grader.submission.problems import AmbiguousProgram, Unreadable, merge_confl
 from grader.submission.program_choice import choose, digest_of
 from grader.submission.python_version import newer_syntax
 from grader.submission.several_files import MOST_FILES, files_in, joined, parts
-from grader.submission.unreadable import not_python, text_of
+from grader.submission.unreadable import not_python, other_kind, text_of
 
 #: The starter's file in a web page's copy of an exercise.
 STARTER = "starter.py"
@@ -94,7 +94,7 @@ def code_of(name: str, content: bytes, exercise: Exercise) -> Code:
     if kind == "launch file" and exercise.nodes:
         return _launched({launch_file_name(name, content, exercise): content}, exercise, text_of(content))
     reason = NOT_UNPACKED if content.startswith(OTHER_ARCHIVES) else NEITHER
-    raise Unreadable(f"Your file is {reason}. Hand in a .py, .ipynb or .zip file.")
+    raise Unreadable(other_kind(content) or f"Your file is {reason}. Hand in a .py, .ipynb or .zip file.")
 
 
 def code_of_python(content: bytes, exercise: Exercise) -> Code:

@@ -14,6 +14,7 @@ from grader.submission.assembled_program import AssembledProgram, assemble, is_c
 from grader.submission.file_kinds import not_graded
 from grader.submission.notebook import Notebook, NotebookCell
 from grader.submission.problems import AmbiguousProgram, Unreadable
+from groundwork.words import similar
 
 #: No person writes more versions of a program into a notebook; comparing them takes time.
 MOST_CANDIDATES = 50
@@ -182,6 +183,9 @@ def _no_cell(notebook: Notebook, target: ProgramFile) -> str:
         )
     if is_program(notebook.text, target):
         return f"The {code} is in a text cell of the notebook, which is not run. Make it a code cell, and run %check."
+    for cell in notebook.cells:
+        if not cell.is_python and similar(f"{cell.magic.name} {cell.magic.line}".lower(), [f"node {stem}"], cutoff=0.8):
+            return f"{cell.title} begins with a command that does not exist. Write %%node {stem}, and run %check."
     return (
         f"None of the notebook's {len(notebook.cells)} code cells is the exercise's. Write the {code} in the cell that "
         f"the chapter gives for it; it begins with %%node {stem}."

@@ -8,9 +8,30 @@ import re
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
+#: What is handed in under a wrong name, by its first bytes, and what to do.
+_HAND_IN = "Hand in your code as a .py file or a notebook."
+_OTHER_KINDS = {
+    rb"\s*<(?i:!doctype|html)\b": ("a web page", "Download the file itself: on GitHub, with Download raw file."),
+    rb"\{\\rtf": ("rich text", "Save it as plain text: in TextEdit, choose Format > Make Plain Text."),
+    rb"%PDF-": ("a PDF document", _HAND_IN),
+    rb"\xd0\xcf\x11\xe0": ("a document of an office program", _HAND_IN),
+    rb"\x89PNG|\xff\xd8\xff|GIF8": ("a picture", _HAND_IN),
+    rb"\x7fELF|MZ.{0,200}\0": ("a compiled program", _HAND_IN),
+    rb"..\r\n[\0-\3]\0\0\0": ("Python's compiled code", "Hand in the .py file that you wrote."),
+}
+
+
 def text_of(code: bytes) -> str:
     """Return a file's text without its byte order mark: UTF-8, or UTF-16 if it begins with such a mark."""
     return code.decode("utf-16" if code.startswith(UTF_16) else "utf-8-sig", errors="replace")
+
+
+def other_kind(content: bytes) -> str:
+    """Return what a file is that is neither Python nor a notebook nor an archive, and what to do; "" if not known."""
+    for start, (kind, todo) in _OTHER_KINDS.items():
+        if re.match(start, content, re.DOTALL):
+            return f"Your file is {kind}, not Python. {todo}"
+    return ""
 
 
 def not_python(code: bytes) -> str:
@@ -19,12 +40,8 @@ def not_python(code: bytes) -> str:
         return (
             "Your file is saved as UTF-16, which Python can't read. Save it as UTF-8: in VS Code, click UTF-16 below."
         )
-    if re.match(rb"\s*<(?:!doctype|html)\b", code, re.IGNORECASE):
-        return "Your file is a web page, not Python. Download the file itself: on GitHub, with Download raw file."
-    if code.startswith(b"{\\rtf"):
-        return (
-            "Your file is rich text, not Python. Save it as plain text: in TextEdit, choose Format > Make Plain Text."
-        )
+    if problem := other_kind(code):
+        return problem
     if b"\0" in code:
         line = code[: code.index(b"\0")].count(b"\n") + 1
         return (

@@ -41,9 +41,7 @@ _FOLDED = frozenset(
 )
 _PICTURE = r"[^\"'`{}]+\.(?:png|jpe?g|gif|svg|webp|avif)"
 _PICTURE_PATH = re.compile(rf"""["'`]({_PICTURE})["'`]""", re.IGNORECASE)
-_PICTURE_IMPORT = re.compile(
-    rf"""^import\s+(\w+)\s+from\s+["']({_PICTURE})["'];?[ \t]*$""", re.MULTILINE | re.IGNORECASE
-)
+_IMPORT = re.compile(r"""^import\s+(\w+)\s+from\s+["'](!!raw-loader!)?([^"']+)["'];?[ \t]*$""", re.MULTILINE)
 #: A tag of HTML in a line, with a property that is code; code between backticks is matched so that it is skipped.
 _JSX = re.compile(r"`[^`]*`|<[a-z]\w*\s(?:[^<>{}]|\{(?:[^{}]|\{[^{}]*\})*\})*>")
 _PROPERTY = re.compile(r"\s+([\w-]+)=\{((?:[^{}]|\{[^{}]*\})*)\}")
@@ -224,11 +222,17 @@ def words_of(name: str, properties: str) -> list[str]:
     return [f"> **{title or in_words(name)}**", ">", *(f"> - {text}" for text in sentences), ""] if sentences else []
 
 
-def imported_pictures(text: str) -> str:
-    """Return an MDX chapter with the paths of the pictures that it imports, where their names are used: `src={arm}`."""
-    for name, path in _PICTURE_IMPORT.findall(text):
+def with_imports(text: str) -> str:
+    """Return an MDX chapter with the paths of what it imports, where their names are used.
+
+    `src={arm}` shows a picture, `<Steps />` a text, and `<CodeBlock>{Source}</CodeBlock>` the content of a file.
+    """
+    for name, is_source, path in _IMPORT.findall(text):
         quoted = f'"{path}"'.replace("\\", r"\\")
         text = re.sub(rf"(?<=\bsrc=)\{{\s*{name}(?:\.\w+)?\s*\}}", quoted, text)
+        if is_source or path.endswith((".md", ".mdx")):
+            shown = rf"<{name}\s*/>|(?:<CodeBlock\b[^>\n]*>)?\{{\s*{name}\s*\}}(?:</CodeBlock>)?"
+            text = re.sub(rf"(?m)^[ \t]*(?:{shown})[ \t]*$", f"--8<-- {quoted}", text)
     return text
 
 

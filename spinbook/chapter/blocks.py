@@ -9,6 +9,7 @@ import itertools
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import PurePosixPath
 
 from markdown_it.token import Token
 
@@ -35,6 +36,9 @@ from spinbook.chapter.flavours import parser
 #: Reads a file that a chapter includes: its text, or None if there is no such file.
 Include = Callable[[str], str | None]
 _DEEPEST = 12
+#: Files whose text becomes part of the chapter when they are included. Any other is shown as a fence.
+_CHAPTERS = (".md", ".mdx", ".qmd", ".markdown")
+_TEXTS = (*_CHAPTERS, ".txt", ".html", ".rst", "")
 
 #: Containers of plain Markdown. They stay as they are unless a block inside is not plain Markdown.
 _CONTAINERS = frozenset({"container_any_open", "container_slash_open"})
@@ -172,20 +176,11 @@ class _Reader:
         new = _at(directive.lines, *title, *(f"| {' | '.join(row)} |" for row in table), "")
         return [Block(BlockKind.TEXT, directive.lines, title=directive.argument, new=new)]
 
-    def _include(self, directive: Directive) -> list[Block]:
-        text = self.include(directive.argument)
-        if not text:
-            return [Block(BlockKind.DROPPED, directive.lines)]
-        return list(self.inside(_at(directive.lines, *text.split("\n"))))
-
     def _image(self, directive: Directive) -> list[Block]:
         image = attributes.image(directive.argument, directive.options)
         new = (*_at(directive.lines, image, ""), *directive.body)
         caption = next((line.text.strip() for line in directive.body if line.text.strip()), "")
         return [Block(BlockKind.TEXT, directive.lines, title=caption, new=new)]
-
-    def _unseen(self, directive: Directive) -> list[Block]:
-        return [Block(BlockKind.DROPPED, directive.lines)]
 
     def _mermaid(self, directive: Directive) -> list[Block]:
         fence, new = make_fence("mermaid", directive.code, 1), directive.between("```mermaid", "```")
@@ -206,9 +201,16 @@ class _Reader:
         return [Block(BlockKind(kind), directive.lines, self.inside(inner), title, style)]
 
     def _snippet(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
-        text = self.include(token.info)
+        return self._blocks_of(token.info, lines)
+
+    def _blocks_of(self, name: str, lines: tuple[SourceLine, ...]) -> list[Block]:
+        """Return the blocks of an included file; a fence for a program, and for a file that is not there."""
+        text, path = self.include(name), PurePosixPath(name.partition(":")[0])
         if text is None:
-            return [Block(BlockKind.TEXT, lines)]
+            return [fence_block(make_fence("", f'--8<-- "{name}"\n', lines[0].number), lines)]
+        if path.suffix not in _TEXTS:
+            info = f'{path.suffix[1:]} title="{path.name}"'
+            return [fence_block(make_fence(info, text.rstrip("\n") + "\n", lines[0].number), lines)]
         return [
             replace(block, new=block.new or block.lines) if block.kind is BlockKind.TEXT else block
             for block in self.inside(_at(lines, *text.split("\n")))
@@ -268,6 +270,9 @@ class _Reader:
             source = next((properties[key] for key in ("image_path", "src", "url", "file") if key in properties), "")
             if source:
                 return [Block(BlockKind.TEXT, lines, new=_at(lines, attributes.image(source, properties)))]
+            name = token.info.split(" ")[0].strip("\"'")
+            if name.endswith(_CHAPTERS):
+                return self._blocks_of(name, lines)
             return [Block(BlockKind.DROPPED, lines)]
         if token.tag.startswith("end"):
             return self._marked(token, lines, "close", token.tag[3:])
@@ -324,7 +329,7 @@ class _Reader:
 
 def read_blocks(text: str, include: Include) -> tuple[Block, ...]:
     """Return the blocks of a chapter's text."""
-    text = unindented(attributes.imported_pictures(text))
+    text = unindented(attributes.with_imports(text))
     lines = [SourceLine(content, number) for number, content in enumerate(text.split("\n"), start=1)]
     return _Reader(include).blocks(lines)
 
@@ -332,9 +337,9 @@ def read_blocks(text: str, include: Include) -> tuple[Block, ...]:
 #: MyST's directives, except those that hold blocks.
 _DIRECTIVES: dict[str, Callable[[_Reader, Directive], list[Block]]] = {
     **dict.fromkeys(attributes.CODE, _Reader._code),
-    **dict.fromkeys(attributes.UNSEEN, _Reader._unseen),
+    **dict.fromkeys(attributes.UNSEEN, lambda reader, directive: [Block(BlockKind.DROPPED, directive.lines)]),
     "literalinclude": _Reader._literal,
-    "include": _Reader._include,
+    "include": lambda reader, directive: reader._blocks_of(directive.argument, directive.lines),
     "prompt": _Reader._prompt,
     "list-table": _Reader._list_table,
     "image": _Reader._image,

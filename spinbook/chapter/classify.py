@@ -179,13 +179,13 @@ def _is_no_launch_file(code: str) -> bool:
 
 
 def _by_content(fence: Fence, file: Path) -> ClassifiedFence:
-    if fence.is_shell:
-        return _shell(fence, file)
-    if fence.is_python and (name := not_included(fence.code)):
+    if (fence.is_python or fence.is_shell or not fence.language) and (name := not_included(fence.code)):
         fix = "Write the path relative to the chapter's folder, or to the course's."
-        text, group = f"the fence includes `{name}`, and there is no such file.", "files that are not there"
+        text, group = f"the chapter includes `{name}`, and there is no such file.", "files to include"
         why = f"it includes `{name}`, which is not here"
         return static(fence, why, Problem(file, fence.line, text, fix, Severity.NOT_RUN, group), sign=f"{why}.")
+    if fence.is_shell:
+        return _shell(fence, file)
     if fence.is_python:
         code, output = split_session(fence.code)
         return replace(_python(replace(fence, code=code), file), output=output)

@@ -10,6 +10,8 @@ from urllib.parse import unquote
 
 #: Folders whose content a site's root shows (Docusaurus, VitePress, MkDocs, Jekyll, Hugo).
 _SITE_FOLDERS = ("static", "docs", "public", "assets", "source", "content", "_static", "img", "images")
+#: Folders at the root with files to include (Jekyll; pymdownx.snippets, in which `base_path` names it).
+_INCLUDES = ("_includes", "includes", "snippets")
 _ELSEWHERE = re.compile(r"[a-z][a-z0-9+.-]*:|//", re.IGNORECASE)
 #: What may follow a link to a chapter that leaves its ending out.
 _CHAPTER_ENDINGS = (".md", ".mdx", "/index.md", "/README.md", "/index.mdx", "/readme.md")
@@ -66,8 +68,8 @@ def _upwards(folder: str) -> list[str]:
 
 def read_included(root: Path, folder: str, name: str, included: list[Path]) -> str | None:
     """Return the text of an included file, and add the file to `included`; None if it is not in the course."""
-    name, _, section = name.partition(":")
-    for place in _upwards(folder):
+    name, _, section = name.removeprefix("@site/").partition(":")
+    for place in (*_upwards(folder), *_INCLUDES):
         full = posixpath.normpath(posixpath.join(place, name.lstrip("/")))
         file = root / full
         if not full.startswith("..") and file.is_file() and file.resolve().is_relative_to(root.resolve()):

@@ -48,15 +48,9 @@ def read_source(file: Path, shown_as: Path) -> tuple[Source | None, list[Problem
         return None, [Problem(shown_as, None, f"the file can't be read: {error.strerror}.", fix)]
     if data.startswith(b"\xef\xbb\xbf"):
         data = data[3:]
-        problems.append(
-            Problem(
-                shown_as,
-                1,
-                "the file begins with a byte-order mark (BOM).",
-                "It is ignored here, but it confuses other tools: save the file as UTF-8 without BOM.",
-                Severity.WARNING,
-            )
-        )
+        fix = "It is ignored here, but it confuses other tools: save the file as UTF-8 without BOM."
+        wrong = "the file begins with a byte-order mark (BOM)."
+        problems.append(Problem(shown_as, 1, wrong, fix, Severity.WARNING))
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
@@ -65,15 +59,8 @@ def read_source(file: Path, shown_as: Path) -> tuple[Source | None, list[Problem
         return None, [*problems, Problem(shown_as, line, problem, "Save the file as UTF-8.")]
     if "\r" in text:
         line = text[: text.index("\r")].count("\n") + 1
-        problems.append(
-            Problem(
-                shown_as,
-                line,
-                "lines end as on Windows (CRLF).",
-                "They are read as if they ended in LF: save the file with LF, or set `* text=auto` in .gitattributes.",
-                Severity.WARNING,
-            )
-        )
+        fix = "They are read as if they ended in LF: save the file with LF, or set `* text=auto` in .gitattributes."
+        problems.append(Problem(shown_as, line, "lines end as on Windows (CRLF).", fix, Severity.WARNING))
         text = text.replace("\r\n", "\n").replace("\r", "\n")
     for number, content in enumerate(text.split("\n"), start=1):
         if control := _CONTROL.search(content):

@@ -20,6 +20,7 @@ _WORDS = {
     ),
     "a file name": ("chapter has nodes without a file name", "chapters have nodes without a file name"),
     "files that are not there": ("link leads to a file that is not there", "links lead to files that are not there"),
+    "files to include": ("file to include is not there", "files to include are not there"),
     "labels that no chapter has": (
         "reference leads to a label that no chapter has",
         "references lead to labels that no chapter has",

@@ -18,10 +18,6 @@ from spinbook.importing.pages import ENDINGS, Pages
 from spinbook.importing.toctree import pages_below
 from spinbook.problem import SpinbookError
 
-# The known files are mkdocs.yml, _toc.yml (Jupyter Book), myst.yml, _quarto.yml, sidebars.js (Docusaurus),
-# astro.config.mjs (Starlight), SUMMARY.md (mdBook, GitBook), _sidebar.md (docsify) and conf.py (Sphinx). In a folder
-# without any of them, all files that Spinbook reads are chapters.
-
 #: Texts that Spinbook does not read, and pandoc does.
 _OTHER_TEXTS = frozenset({".adoc", ".docx", ".html", ".odt", ".org", ".tex", ".textile", ".wiki"})
 
@@ -31,7 +27,7 @@ class Book:
     """An existing book. `root` is the folder that becomes the course; `chapters` are relative to it, in order.
 
     `contents` is the file that defines the order, None if there is none. `left_out` are listed pages that do not exist
-    or that Spinbook does not read.
+    or that Spinbook does not read, `unlisted` are pages that it does not list.
     """
 
     root: Path
@@ -40,6 +36,7 @@ class Book:
     contents: Path | None
     left_out: tuple[str, ...] = ()
     repository: str = ""
+    unlisted: tuple[Path, ...] = ()
 
 
 class _Yaml(yaml.SafeLoader):
@@ -91,15 +88,15 @@ def _book(root: Path, pages: Pages, contents: Path | None, title: str, folder: P
     chapters: dict[Path, None] = {}
     left_out: list[str] = []
     for item in listed:
-        found = item if isinstance(item, Path) else pages.find(folder, item)
-        if found is None:
-            left_out.append(str(item))
-        else:
-            chapters[found.relative_to(root)] = None
+        found = [item] if isinstance(item, Path) else pages.find_all(folder, item)
+        left_out += [] if found else [str(item)]
+        chapters |= {file.relative_to(root): None for file in found}
     if not chapters:
         raise SpinbookError(_nothing_in(root))
     title = title or _title_of(root) or pages.title_of(root / next(iter(chapters)))
-    return Book(root, title, tuple(chapters), contents, tuple(left_out), _repository(root))
+    unlisted = [page.relative_to(root) for page in pages.in_folder(folder)] if contents else []
+    unlisted = [page for page in unlisted if page not in chapters]
+    return Book(root, title, tuple(chapters), contents, tuple(left_out), _repository(root), tuple(unlisted))
 
 
 def _nothing_in(root: Path) -> Problem:
@@ -145,7 +142,7 @@ def _quarto(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
 
 
 def _docusaurus(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
-    folder = next((path for path in (file.parent / "docs", file.parent) if path.is_dir()), file.parent)
+    folder = file.parent / "docs" if (file.parent / "docs").is_dir() else file.parent
     listed: list[str | Path] = []
     for sidebars in objects_in(file.read_text(encoding="utf-8", errors="replace")):
         for sidebar in sidebars.values() if isinstance(sidebars, dict) else ():
@@ -177,8 +174,8 @@ def _items(item: Any, folder: Path, pages: Pages) -> Iterator[str | Path]:
 def _starlight(file: Path, pages: Pages) -> tuple[str, Path, list[str | Path]]:
     """Read astro.config.*: the title and the `sidebar` of Starlight. The file is read, never run."""
     text = file.read_text(encoding="utf-8", errors="replace")
-    folder = next((path for path in (file.parent / "src/content/docs", file.parent / "docs") if path.is_dir()), None)
-    folder = folder or file.parent
+    places = (file.parent / "src/content/docs", file.parent / "docs")
+    folder = next((path for path in places if path.is_dir()), file.parent)
     start = re.search(r"\bsidebar\s*:\s*(?=\[)", text)
     sidebar = value_in(text[start.end() :]) if start else []
     title = re.search(r"""starlight\(\{.*?\btitle\s*:\s*(["'`])(.+?)\1""", text, re.DOTALL)
@@ -271,14 +268,9 @@ def _title_of(root: Path) -> str:
     for name in ("_config.yml", "docs/_config.yml"):
         if (root / name).is_file() and (title := _load(root / name).get("title")):
             return str(title)
-    for name in ("docusaurus.config.js", "docusaurus.config.ts"):
-        if (root / name).is_file():
-            match = re.search(
-                r"""\btitle:\s*(["'`])(.+?)\1""", (root / name).read_text(encoding="utf-8", errors="replace")
-            )
-            if match:
-                return match[2]
-    return ""
+    texts = (file.read_text(encoding="utf-8", errors="replace") for file in root.glob("docusaurus.config.[jt]s"))
+    titles = (re.search(r"""\btitle:\s*(["'`])(.+?)\1""", text) for text in texts)
+    return next((match[2] for match in titles if match), "")
 
 
 def _repository(root: Path) -> str:

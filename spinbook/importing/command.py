@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
@@ -16,6 +18,7 @@ from markupsafe import Markup, escape
 
 from groundwork.files import write_if_changed
 from groundwork.problem import Problem
+from groundwork.words import counted
 from spinbook.build.notebooks import BuildResult, build_notebooks
 from spinbook.chapter.chapter import Chapter
 from spinbook.chapter.classify import CellKind
@@ -38,7 +41,7 @@ def report_page(course: Course, chapters: Sequence[Chapter], problems: Sequence[
     environment.filters["code"] = _code
     rows = [_row(chapter, course) for chapter in chapters]
     causes = [
-        {"words": item.in_words, "blocks": item.blocks, "places": _places(item.problems), "more": len(item.problems)}
+        {"words": item.in_words, "places": [one.place for one in item.problems[:_PLACES]], "more": len(item.problems)}
         for item in obstacles(problems)
     ]
     single = list(by_itself(problems))
@@ -51,7 +54,6 @@ def report_page(course: Course, chapters: Sequence[Chapter], problems: Sequence[
         cells=sum(row["runs"] for row in rows),
         static=sum(len(row["static"]) for row in rows),
         nodes=sum(row["nodes"] for row in rows),
-        empty=sum(not row["runs"] for row in rows),
     )
 
 
@@ -74,10 +76,6 @@ def _row(chapter: Chapter, course: Course) -> dict[str, Any]:
         "counts": ", ".join(f"{count} {kind.value}" for kind, count in counts.items() if count),
         "static": [fence for fence in chapter.static_fences if fence.sign],
     }
-
-
-def _places(problems: Sequence[Problem]) -> list[str]:
-    return [f"{problem.file.as_posix()}:{problem.line}" for problem in problems[:_PLACES]]
 
 
 _SHOWN = 6
@@ -111,11 +109,14 @@ def import_book(book: Path, title: str | None, package: str | None) -> None:
     text = course_toml(read, title or read.title, package or package_of(title or read.title))
     write_if_changed(read.root / FILE, text)
     course = read_course(read.root)
-    click.echo(f"{course.title}: {len(read.chapters)} chapters, in the order of {_shown(read.contents, read.root)}")
+    order = read.contents.relative_to(read.root).as_posix() if read.contents else "their names"
+    click.echo(f"{course.title}: {counted(len(read.chapters), 'chapter')}, in the order of {order}")
     if originals:
         click.echo(f"Converted to Markdown, next to the originals: {', '.join(map(str, originals))}")
     if read.left_out:
         click.echo(f"Left out because they are missing or of another kind: {', '.join(read.left_out)}")
+    if read.unlisted:
+        click.echo(f"Not listed there, so no chapters: {', '.join(map(str, read.unlisted))}")
     built = list(build_notebooks(course))
     _report(course, built)
 
@@ -130,12 +131,13 @@ def _in_markdown(book: Book) -> Book:
 
 
 def course_toml(book: Book, title: str, package: str) -> str:
-    """Return the course.toml of a book."""
-    chapters = "".join(f"  {_quoted(chapter.as_posix())},\n" for chapter in book.chapters)
-    repository = f"repository = {_quoted(book.repository)}\n" if book.repository else ""
+    """Return the course.toml of a book. JSON's texts are basic strings of TOML, too."""
+    quoted = partial(json.dumps, ensure_ascii=False)
+    chapters = "".join(f"  {quoted(chapter.as_posix())},\n" for chapter in book.chapters)
+    repository = f"repository = {quoted(book.repository)}\n" if book.repository else ""
     return (
         "# The course's title, and the order of its chapters: see docs/writing-chapters.md.\n"
-        f"title = {_quoted(title)}\n{repository}chapters = [\n{chapters}]\n\n"
+        f"title = {quoted(title)}\n{repository}chapters = [\n{chapters}]\n\n"
         "# The chapters that `spinbook site` runs, besides those that `spinbook build --execute` has run.\n"
         "run = []\n\n"
         "# The ROS 2 package that the chapters' nodes make: `spinbook package`.\n"
@@ -147,16 +149,6 @@ def package_of(title: str) -> str:
     """Return a name for a ROS package from a title."""
     name = re.sub(r"[^a-z0-9]+", "_", title.lower()).strip("_")[:40].strip("_")
     return name if name[:1].isalpha() else f"course_{name}".strip("_")
-
-
-def _quoted(text: str) -> str:
-    """Return a basic string of TOML."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{"".join(letter if letter.isprintable() else " " for letter in escaped)}"'
-
-
-def _shown(contents: Path | None, root: Path) -> str:
-    return contents.relative_to(root).as_posix() if contents else "their names"
 
 
 def _report(course: Course, built: Iterable[BuildResult]) -> None:
@@ -172,7 +164,7 @@ def _report(course: Course, built: Iterable[BuildResult]) -> None:
     nodes = sum(cell.kind is CellKind.NODE for cell in cells)
     made = sum(not item.failed for item in built)
     click.echo(f"{made} of {len(built)} chapters built: {len(cells)} cells, {nodes} of them nodes")
-    click.echo(f"{static} pieces of code are shown and not run")
+    click.echo(f"shown and not run: {counted(static, 'piece')} of code")
     for line in ranked(problems)[: _SHOWN + 1]:
         click.echo(line)
     folder = os.path.relpath(course.root)

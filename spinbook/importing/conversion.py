@@ -16,8 +16,8 @@ from groundwork.files import write_if_changed
 from groundwork.problem import Problem
 from spinbook.problem import SpinbookError
 
-#: Suffix -> the package that reads such files, and the command that installs it.
-_NEEDS = {".ipynb": ("jupytext", "pip install jupytext"), ".rst": ("docutils", "pip install docutils")}
+#: Suffix -> the package that reads such files.
+_NEEDS = {".ipynb": "jupytext", ".rst": "docutils"}
 _COMMAND = re.compile(r"^\s*!\s*(?=(?:ros2|colcon|rqt_plot|rqt_graph)\b)", re.MULTILINE)
 #: An opening and closing fence with only commands that begin with `!`.
 _COMMANDS_ONLY = re.compile(r"^```python[^\n]*\n((?:\s*(?:!|#)[^\n]*\n|\s*\n)+)```$", re.MULTILINE)
@@ -31,10 +31,10 @@ def as_markdown(file: Path) -> Path:
     target = file.with_suffix(".md")
     if target.exists():
         return target
-    package, install = _NEEDS[file.suffix]
+    package = _NEEDS[file.suffix]
     if importlib.util.find_spec(package) is None:
         problem = f"a {file.suffix} file is read with {package}, which is not installed."
-        raise SpinbookError(Problem(file, None, problem, f"Install it: {install}"))
+        raise SpinbookError(Problem(file, None, problem, f"Install it: pip install {package}"))
     try:
         text = _CONVERTERS[file.suffix](file)
     except Exception as error:  # what the libraries raise for broken files is not documented

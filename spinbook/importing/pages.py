@@ -25,10 +25,7 @@ _SKIPPED = frozenset(
 )
 #: Files about a repository, not of a book.
 _NOT_CHAPTERS = frozenset(
-    {
-        *("contributing", "changelog", "license", "code_of_conduct", "security", "summary", "_sidebar", "_navbar"),
-        "_coverpage",
-    }
+    {"contributing", "changelog", "license", "code_of_conduct", "security", "summary"}
     | {"claude", "agents", "gemini", "authors", "pull_request_template"}
 )
 _NUMBER = re.compile(r"^\d+\s*[-_.]+\s*(?=.)")
@@ -52,6 +49,11 @@ class Pages:
                 if (path / index).is_file() and self._is_inside(path):
                     return (path / index).resolve()
         return self._by_id(folder).get(name)
+
+    def find_all(self, folder: Path, name: str) -> list[Path]:
+        """Return the file of this name, or, for a pattern such as `more/*.md`, all that match it."""
+        matches = sorted(folder.glob(name), key=self._place) if "*" in name else [self.find(folder, name)]
+        return [match.resolve() for match in matches if match and match.suffix in ENDINGS]
 
     def _is_inside(self, path: Path) -> bool:
         return path.resolve().is_relative_to(self._root)
@@ -103,7 +105,11 @@ class Pages:
         if entry.suffix in CONVERTED and any(entry.with_suffix(ending).is_file() for ending in _MARKDOWN):
             # A notebook beside its Markdown, as jupytext keeps them.
             return False
-        return entry.suffix in ENDINGS and entry.stem.lower() not in _NOT_CHAPTERS and not is_root_readme
+        # Docusaurus and Quarto include files whose names begin with `_`; Hugo's `_index.md` is a page.
+        is_part = entry.stem.startswith("_") and entry.stem != "_index"
+        return (
+            entry.suffix in ENDINGS and entry.stem.lower() not in _NOT_CHAPTERS and not is_root_readme and not is_part
+        )
 
     def _place(self, entry: Path) -> tuple[float, bool, list[tuple[int, str]]]:
         first = entry.stem.lower() in {"index", "readme", "intro", "introduction"} and entry.is_file()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -23,29 +24,15 @@ _CODE = frozenset({"code-block", "sourcecode", "code"})
 #: Directives that hold what is typed in a terminal or in Python, and the language if they do not name it.
 _TYPED = {"prompt": "bash", "terminal": "bash", "ipython": "python", "jupyter-execute": "python"}
 #: Sphinx's directives whose first line is a title, and what they are in MyST.
-_TITLED = {
-    "tab": "tab-item",
-    "group-tab": "tab-item",
-    "code-tab": "tab-item",
-    "tab-item": "tab-item",
-    "dropdown": "dropdown",
-}
+_TITLED = {**dict.fromkeys(("tab", "group-tab", "code-tab", "tab-item"), "tab-item"), "dropdown": "dropdown"}
 #: Roles that MyST has, too; chapters turn them into links.
 _REFERENCES = frozenset({"ref", "doc", "numref"})
 _BOLD = frozenset({"guilabel", "menuselection", "kbd"})
 #: What Markdown would read as a mark in plain text.
 _SPECIAL = re.compile(r"[*`\[\]<\\]|(?<!\w)_|_(?!\w)")
+#: Takes every option, as text. docutils takes an empty one for none.
+_ANY_OPTION = defaultdict(lambda: directives.unchanged, name=directives.unchanged)
 _ADMONITIONS = ("note", "tip", "hint", "important", "warning", "caution", "danger", "error", "attention")
-
-
-class _AnyOption(dict[str, Any]):
-    """The options of a directive that takes any."""
-
-    def __bool__(self) -> bool:
-        return True
-
-    def __missing__(self, name: str) -> Any:
-        return directives.unchanged
 
 
 class _Anything(Directive):  # type: ignore[misc]  # docutils has no types
@@ -54,7 +41,7 @@ class _Anything(Directive):  # type: ignore[misc]  # docutils has no types
     optional_arguments = 1
     final_argument_whitespace = True
     has_content = True
-    option_spec = _AnyOption()
+    option_spec = _ANY_OPTION
 
     def run(self) -> list[nodes.Node]:
         """Return a container with what is in it; code stays as it is."""
@@ -88,7 +75,7 @@ def markdown_of(text: str, file: Path) -> str:
     with _known(set(_DIRECTIVE.findall(text)), set(_ROLE.findall(text))):
         document = publish_doctree(text, source_path=str(file), settings_overrides=settings)
     lines = _Writer().blocks(document.children, 0)
-    return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip("\n") + "\n"
+    return "\n".join(lines).strip("\n") + "\n"
 
 
 @contextlib.contextmanager
@@ -117,6 +104,8 @@ class _Writer:
         for child in children:
             write = getattr(self, f"_{type(child).__name__}", None)
             new = write(child, level) if write else self._other(child, level)
+            while new and not new[-1]:
+                new.pop()
             lines += [*new, ""] if new else []
         return lines
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from spinbook.importing.pages import ENDINGS, Pages
+from spinbook.importing.pages import Pages
 
 
 def pages_below(page: Path, root: Path, pages: Pages, seen: set[Path]) -> Iterator[str | Path]:
@@ -18,13 +18,10 @@ def pages_below(page: Path, root: Path, pages: Pages, seen: set[Path]) -> Iterat
     text = page.read_text(encoding="utf-8", errors="replace") if page.suffix != ".ipynb" else ""
     for entry in _toctree(text.split("\n")):
         folder = root if entry.startswith("/") else page.parent
-        name = entry.lstrip("/")
-        found = sorted(folder.glob(name)) if "*" in name else [pages.find(folder, name)]
-        for child in found:
-            if child is None:
-                yield entry
-            elif child.suffix in ENDINGS and child.is_file():
-                yield from pages_below(child.resolve(), root, pages, seen)
+        children = pages.find_all(folder, entry.lstrip("/"))
+        yield from () if children else (entry,)
+        for child in children:
+            yield from pages_below(child, root, pages, seen)
 
 
 def _toctree(lines: list[str]) -> Iterator[str]:

@@ -205,9 +205,9 @@ def _topic(topic: Topic) -> Iterator[str]:
         yield f"{name}_quality = {quality}"
         quality = f"{name}_quality"
     if topic.direction == "publish":
-        yield f"self.{name}_publisher = self.create_publisher({type_}, {_quoted(topic.name)}, {quality})"
+        yield f"self.{name}_publisher = self.create_publisher({type_}, {json.dumps(topic.name)}, {quality})"
     else:
-        yield f"self.create_subscription({type_}, {_quoted(topic.name)}, self.on_{name}, {quality})"
+        yield f"self.create_subscription({type_}, {json.dumps(topic.name)}, self.on_{name}, {quality})"
 
 
 def _quality(topic: Topic) -> str:
@@ -218,7 +218,7 @@ def _quality(topic: Topic) -> str:
 
 def _end(endpoint: ServiceOrAction) -> str:
     return _ENTRY[endpoint.role].format(
-        name=_name(endpoint.name), type=endpoint.type.rpartition("/")[2], topic=_quoted(endpoint.name)
+        name=_name(endpoint.name), type=endpoint.type.rpartition("/")[2], topic=json.dumps(endpoint.name)
     )
 
 
@@ -269,7 +269,3 @@ _ACTION_ENDS: dict[Role, str] = {"action": "ActionServer", "action_client": "Act
 def _name(topic: str) -> str:
     """Return the name of a topic, a service or an action as a part of a Python name."""
     return re.sub(r"\W+", "_", topic).strip("_").lower()
-
-
-def _quoted(name: str) -> str:
-    return json.dumps(name)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import base64
 import io
 from dataclasses import dataclass
-from typing import Any
+from importlib import resources
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from rich.console import Console
 
@@ -19,6 +18,7 @@ from grader.report.checks import ShownCheck, first_hints, public_total, shown_ch
 from grader.report.facts import facts, plot_says
 from grader.report.feedback import advice
 from grader.report.feedback_plot import feedback_plot
+from grader.report.pages import environment
 from grader.report.printable import printable
 from grader.report.terminal import show
 
@@ -74,37 +74,33 @@ def next_step(grade: Grade, exercise: Exercise) -> str:
 
 def as_html(grade: Grade, exercise: Exercise) -> str:
     """Return HTML that loads and runs nothing, with all text from the student escaped."""
-    environment = Environment(
-        loader=PackageLoader("spinbook.submit", "."),
-        autoescape=True,
-        undefined=StrictUndefined,
-        finalize=_harmless,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     plot = feedback_plot(grade, exercise)
-    return environment.get_template("self_check_view.html").render(
-        title=exercise.title,
-        total=public_total(grade.verdicts),
-        full=grade.full_marks,
-        message=grade.message,
-        step=_first_step(grade, exercise),
-        log=_end(grade.log),
-        log_open=grade.outcome != "graded",
-        rows=[_row(check, grade, exercise) for check in shown_checks(grade)],
-        fold_hints=not exercise.count_hints,
-        # In an <img>, an SVG can neither run nor load anything.
-        plot=Markup("data:image/svg+xml;base64,") + base64.b64encode(plot.encode()).decode() if plot else "",
-        plot_says=plot_says(shown_checks(grade), plot) if plot else "",
-        more_help=more_help(exercise) if first_hints(grade)[1] else "",
-        next_step=next_step(grade, exercise),
-        to_come=terminal.hidden_checks_to_come(grade),
-        standing=terminal.self_check_standing(grade),
+    return (
+        environment(_source)
+        .get_template("self_check_view.html")
+        .render(
+            title=exercise.title,
+            total=public_total(grade.verdicts),
+            full=grade.full_marks,
+            message=grade.message,
+            step=_first_step(grade, exercise),
+            log=_end(grade.log),
+            log_open=grade.outcome != "graded",
+            rows=[_row(check, grade, exercise) for check in shown_checks(grade)],
+            fold_hints=not exercise.count_hints,
+            # In an <img>, an SVG can neither run nor load anything.
+            plot=Markup("data:image/svg+xml;base64,") + base64.b64encode(plot.encode()).decode() if plot else "",
+            plot_says=plot_says(shown_checks(grade), plot) if plot else "",
+            more_help=more_help(exercise) if first_hints(grade)[1] else "",
+            next_step=next_step(grade, exercise),
+            to_come=terminal.hidden_checks_to_come(grade),
+            standing=terminal.self_check_standing(grade),
+        )
     )
 
 
-def _harmless(value: Any) -> Any:
-    return printable(value, LONGEST) if isinstance(value, str) and not isinstance(value, Markup) else value
+def _source(name: str) -> str:
+    return (resources.files("spinbook.submit") / name).read_text(encoding="utf-8")
 
 
 def _first_step(grade: Grade, exercise: Exercise) -> str:

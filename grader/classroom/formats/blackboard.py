@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Mapping
 
 from grader.classroom.formats.format import Export, Format, Interpretation, Parts, UploadedFile, person
-from grader.classroom.times import Time, read_time
+from grader.classroom.times import read_time
 from grader.grading.grade import Student
 
 NAME = re.compile(
@@ -33,12 +33,11 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
         user = match["before"].removeprefix(common)
         if who and match["before"].endswith(f"_{who['user']}"):
             user = who["user"]
-        time = _time(match, export)
+        attempt = f"{match['day']} {match['h']}{match['m']}{match['s']}"
+        time = read_time(attempt, SOURCE, export.zone)
         student = person(user, who["name"] if who else "", Username=user)
         inside = (match["file"] or parts[-1],)
-        return UploadedFile(
-            (student,), inside, f"{match['day']} {match['h']}{match['m']}{match['s']}", time, aside=bool(match["own"])
-        )
+        return UploadedFile((student,), inside, attempt, time, aside=bool(match["own"]))
 
     return understand
 
@@ -60,10 +59,6 @@ def _assignment(before: list[str]) -> str:
     while same < most and len({words[same] for words in split}) == 1:
         same += 1
     return "".join(f"{word}_" for word in split[0][:same])
-
-
-def _time(match: re.Match[str], export: Export) -> Time:
-    return read_time(f"{match['day']} {match['h']}:{match['m']}:{match['s']}", SOURCE, export.zone)
 
 
 def of_row(row: Mapping[str, str]) -> Student | None:

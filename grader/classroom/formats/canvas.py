@@ -21,7 +21,7 @@ from grader.classroom.formats.format import (
     Interpretation,
     Parts,
     UploadedFile,
-    last_first,
+    last_and_first,
     person,
 )
 from grader.classroom.tables import Cell, csv_text
@@ -65,17 +65,15 @@ def _user(match: re.Match[str]) -> str:
 
 def _attempt(file: str, others: set[str]) -> tuple[str, str]:
     """Return a file's attempt and name. `-1` counts as an attempt only if there is another file of the same name."""
-    again = AGAIN.fullmatch(file)
-    stem = f"{again['stem']}{again['suffix']}" if again else file
-    same = [other for other in others if other == stem or _without_number(other) == stem]
-    if len(same) < 2:
-        return "", file
-    return (f"{int(again['number']):03}" if again else "000"), stem
+    number, stem = _numbered(file)
+    same = [other for other in others if stem in (other, _numbered(other)[1])]
+    return (number, stem) if len(same) > 1 else ("", file)
 
 
-def _without_number(file: str) -> str:
+def _numbered(file: str) -> tuple[str, str]:
+    """Return the number that Canvas added to a file's name, and the name without it."""
     again = AGAIN.fullmatch(file)
-    return f"{again['stem']}{again['suffix']}" if again else file
+    return (f"{int(again['number']):03}", f"{again['stem']}{again['suffix']}") if again else ("000", file)
 
 
 def of_row(row: Mapping[str, str]) -> Student | None:
@@ -103,7 +101,8 @@ def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = N
         lms = entry.student.lms
         login = lms.get("SIS Login ID", "" if "ID" in lms else entry.student.id)
         cells = {**lms, "SIS Login ID": login}
-        name = lms.get("Student") or last_first(entry.student)
+        # Canvas sorts by "Müller, Jörg".
+        name = lms.get("Student") or ", ".join(filter(None, last_and_first(entry.student))) or entry.student.id
         rows.append([name, *(cells.get(column, "") for column in identity), entry.final])
     return csv_text(["Student", *identity, assignment], rows)
 

@@ -102,8 +102,3 @@ def last_and_first(student: Student) -> tuple[str, str]:
     else:
         first, _, last = name.rpartition(" ")
     return last.strip(), first.strip()
-
-
-def last_first(student: Student) -> str:
-    """Return the name as Canvas sorts it: "Müller, Jörg"; the id of a student without a name."""
-    return ", ".join(filter(None, last_and_first(student))) or student.id

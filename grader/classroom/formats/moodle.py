@@ -62,9 +62,11 @@ def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = N
     Moodle finds students by Identifier, "Participant 1234567", which is only in Moodle's own download or a table: it is
     empty if neither had it, and Moodle then does not find the student. Moodle ignores rows whose grade is above the
     maximum, so extra credit is cut off, and the comment says so. It also ignores rows without a grade, so a fault of
-    ours changes nothing. Columns of a worksheet that was read are returned unchanged.
+    ours changes nothing. The columns of a worksheet that was read are returned, in its order.
     """
     language = next((one for entry in entries if (one := entry.student.lms.get(LANGUAGE))), "")
+    worksheet = next((entry.student.lms for entry in entries if COLUMNS[-1] in entry.student.lms), COLUMNS)
+    columns = [column for column in worksheet if column != LANGUAGE]
     rows: list[list[Cell]] = []
     for entry in entries:
         final, most = entry.final, entry.grade.points
@@ -76,13 +78,13 @@ def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = N
             "Grade can be changed": "Yes",
             "Last modified (submission)": "-",
             "Last modified (grade)": "-",
-            **{name: value for name, value in entry.student.lms.items() if name in COLUMNS},
+            **{name: value for name, value in entry.student.lms.items() if name in columns},
             "Grade": None if final is None else min(final, most),
             "Maximum Grade": most,
             "Feedback comments": _comment(entry),
         }
-        rows.append([cells[column] for column in COLUMNS])
-    return csv_text([LANGUAGES.get(language, {}).get(column, column) for column in COLUMNS], rows)
+        rows.append([cells.get(column, "") for column in columns])
+    return csv_text([LANGUAGES.get(language, {}).get(column, column) for column in columns], rows)
 
 
 def unknown_to_moodle(entries: Sequence[Entry]) -> int:

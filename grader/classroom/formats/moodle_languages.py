@@ -8,7 +8,6 @@ pluginname), in the order of mod/assign/gradingtable.php. Source of the months: 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 
 #: The columns in English, in Moodle's order.
 COLUMNS = (
@@ -57,17 +56,13 @@ _WITH_NAMES = re.compile(
 
 def in_english(row: dict[str, str]) -> dict[str, str]:
     """Return a row of a worksheet with its columns as in English, and `LANGUAGE`; any other row unchanged."""
-    fitting = {language: len(words.keys() & _english(words, row)) for language, words in LANGUAGES.items()}
+    fitting = {language: sum(word in row for word in words.values()) for language, words in LANGUAGES.items()}
     language = max(fitting, key=lambda one: fitting[one])
     words = LANGUAGES[language]
     if not {words["Identifier"], words["Full name"]} <= row.keys() or fitting[language] < 4:
         return row
     names = {translated: english for english, translated in words.items()}
     return {**{names.get(name, name): value for name, value in row.items()}, LANGUAGE: language}
-
-
-def _english(words: Mapping[str, str], row: Mapping[str, str]) -> set[str]:
-    return {english for english, translated in words.items() if translated in row}
 
 
 def time_in_english(text: str, language: str) -> str:

@@ -12,9 +12,8 @@ from grader.submission.file_kinds import kind_of, kind_of_content, original_name
 
 SUFFIX = re.compile(r"(\.py\.txt|\.launch\.\w+|\.ipynb\.(json|txt)|\.tar\.\w+|\.[^.]+)$", re.IGNORECASE)
 
-#: Instructors' own tables and notes, next to the submissions.
-NOT_WORK = (".csv", ".tsv", ".xls", ".xlsx", ".ods", ".md", ".yml", ".yaml", ".toml", ".html")
-README = re.compile(r"(?:readme|licen[sc]e)(?:\.txt)?", re.IGNORECASE)
+#: Instructors' own tables and notes, next to the submissions. Any other page or note may be what a student handed in.
+NOT_WORK = re.compile(r".*\.(?:csv|tsv|xlsx?|ods|ya?ml|toml)|(?:readme|licen[sc]e|index)(?:\.\w+)?", re.IGNORECASE)
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation]:
@@ -29,8 +28,8 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
         is_work = len(parts) > 1 or kind_of(parts[0]) == "launch file"
         if (
             not is_work
-            and (parts[0].lower().endswith(NOT_WORK) or README.fullmatch(parts[0]))
-            and not (export.exercise.nodes and _is_launch_file(export.text(*parts)))
+            and NOT_WORK.fullmatch(parts[0])
+            and not (export.exercise.nodes and kind_of_content(export.text(*parts).encode(), "other") == "launch file")
         ):
             return "a table, a note or a page, not a submission"
         name = _name(parts)
@@ -41,11 +40,6 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
         return UploadedFile((student,), parts[1:] or parts, time=file.time if file else UNKNOWN)
 
     return understand
-
-
-def _is_launch_file(text: str) -> bool:
-    """Return whether the content of `anna.yaml` is that of a launch file, and not a table of the instructor's."""
-    return kind_of_content(text.encode(), "other") == "launch file"
 
 
 def _name(parts: Parts) -> str:

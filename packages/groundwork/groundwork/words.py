@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import unicodedata
 from collections.abc import Iterable
 
 
@@ -27,3 +28,19 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str, shown: str = "
     """
     near = similar(name, known, cutoff)
     return f"Did you mean {shown.format(near)}?" if near else otherwise
+
+
+def look_alike(text: str, expected: str = "") -> str:
+    """Return a sentence on the character because of which `text` is not `expected`, although both look the same.
+
+    Without `expected`, on the first character that is not in ASCII. "" if there is none.
+    """
+    strange = next((char for char in text if not char.isascii()), "")
+    bare = "".join(filter(str.isascii, text))
+    replaced = len(text) == len(expected) and all(
+        not a.isascii() or a == b for a, b in zip(text, expected, strict=True)
+    )
+    if not strange or not expected.isascii() or (expected and bare != expected and not replaced):
+        return ""
+    name = unicodedata.name(strange, "a character without a name")
+    return f"It has the character U+{ord(strange):04X} ({name}), which is easily overlooked: type it again."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundwork.words import counted, did_you_mean, similar
+from groundwork.words import counted, did_you_mean, look_alike, similar
 
 
 def test_a_number_has_its_noun_in_the_right_form() -> None:
@@ -17,3 +17,10 @@ def test_the_most_similar_name_is_suggested_and_otherwise_something_else() -> No
     assert did_you_mean("/talk", (), "") == ""
     assert did_you_mean("talkr", ["talker"], "", "`{}`") == "Did you mean `talker`?"
     assert similar("talkr", ["talker"], 0.99) == ""
+
+
+def test_a_character_that_can_not_be_seen_or_that_looks_like_another_is_named() -> None:
+    assert "U+200B (ZERO WIDTH SPACE)" in look_alike("torso\u200b", "torso")
+    assert "U+043E (CYRILLIC SMALL LETTER O)" in look_alike("t\u043erso", "torso")
+    assert "U+00A0" in look_alike("self.a = '/a\u00a0'")
+    assert [look_alike(text, "torso") for text in ("torso", "Rümpfe", "", "chest")] == [""] * 4

@@ -8,7 +8,8 @@ from pathlib import Path
 import plain_grades as plain
 import pytest
 
-from grader.classroom.deadline import Adjuster, Deadline, OverridesError, deadline_of, overrides_in
+from grader.classroom.deadline import Adjuster, Deadline, deadline_of, overrides_in
+from grader.classroom.submissions import SubmissionsError
 from grader.exercise import Exercise, ExerciseError, load
 
 DUE = datetime(2026, 11, 22, 23, 59, tzinfo=timezone.utc)
@@ -156,6 +157,6 @@ def test_nobody_gets_less_than_nothing(tmp_path: Path) -> None:
     ],
 )
 def test_a_row_with_a_mistake_is_reported_with_its_line(tmp_path: Path, row: str, message: str) -> None:
-    with pytest.raises(OverridesError, match=r"overrides.csv:2: ") as error:
+    with pytest.raises(SubmissionsError, match=r"overrides.csv:2: ") as error:
         adjuster(tmp_path, row)
     assert message in str(error.value)

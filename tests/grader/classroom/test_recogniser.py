@@ -9,7 +9,11 @@ from pathlib import Path
 import pytest
 from classes import archive, collected, files, folder
 
+from grader.classroom.deadline import Adjuster
+from grader.classroom.decisions import decisions
+from grader.classroom.roster import RosterRow
 from grader.classroom.submissions import SubmissionsError
+from grader.grading.grade import Student
 
 LURES = [
     "x_7_assignsubmission_file_node.py",
@@ -112,9 +116,33 @@ def test_a_copy_of_a_file_with_its_owner_before_it_is_that_owners(tmp_path: Path
 
 
 def test_a_class_that_handed_in_another_language_has_its_rows(tmp_path: Path) -> None:
-    found = collected(folder(tmp_path / "class", {"anna.cpp": "", "bert.rs": "", "carl.txt": "import rclpy\n"}))
-    assert list(files(found)) == ["anna", "bert", "carl"]
-    assert found.notes == ("handed in, but not one of .py, .ipynb, .zip: anna.cpp, bert.rs",)
+    made = {"anna.cpp": "", "bert.rs": "", "carl.txt": "import rclpy\n", "dora.html": "<html>", "emil.md": "# Mine"}
+    found = collected(folder(tmp_path / "class", made))
+    assert list(files(found)) == ["anna", "bert", "carl", "dora", "emil"]
+    assert found.notes == ("handed in, but not one of .py, .ipynb, .zip: anna.cpp, bert.rs, dora.html, emil.md",)
+
+
+def test_a_students_folder_without_a_file_is_named(tmp_path: Path) -> None:
+    source = folder(tmp_path / "class", ["anna/node.py", "bert/.git/HEAD"])
+    (source / "carl").mkdir()
+    skipped = {one.file: one.why for one in collected(source).skipped}
+    assert {who: skipped[who] for who in ("bert", "carl")} == dict.fromkeys(("bert", "carl"), "a folder without a file")
+
+
+@pytest.mark.parametrize(
+    ("names", "listed", "asked"),
+    [
+        (["week1-anna.py", "week1-bert.py"], ["anna", "bert"], ["nobody is in both: anna is on the roster"]),
+        (["0042.py", "bert.py"], ["42", "bert"], ["42 is on the roster, 0042 handed in"]),
+        (["0042.py", "bert.py"], ["0042", "carl"], []),
+    ],
+)
+def test_a_roster_with_other_names_than_the_files_is_a_question(
+    names: list[str], listed: list[str], asked: list[str], tmp_path: Path
+) -> None:
+    found = collected(folder(tmp_path / "class", names), roster=tuple(RosterRow(Student(one)) for one in listed))
+    assert [mismatch.partition(", week1")[0] for mismatch in found.mismatches] == asked
+    assert any("the roster seems to name" in one.what for one in decisions(found, Adjuster(), {})) == bool(asked)
 
 
 def test_a_table_beside_the_folder_of_a_class_does_not_make_it_a_student(tmp_path: Path) -> None:

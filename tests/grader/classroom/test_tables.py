@@ -50,7 +50,9 @@ REFUSED = {
     ),
     "a quotation mark": (b'student,name\n"anna,Anna\nbert,Bert\n', "Is a quotation mark missing?"),
     "a column twice": (b"student,student\nanna,bert\n", "1: two columns are called 'student'"),
-    "no student": (b"name,points\nAnna,3\n", "2: no column says who this is. Add a column student"),
+    "no student": (b"name,points\nAnna,3\n", "2: nothing in this row says who it is. Fill in a column student"),
+    "nobody in a row": (b"student,name\nanna,Anna\n,Bert\n", "3: nothing in this row says who it is."),
+    "two students with one id": (b"student,name\n007,Anna\n007,Bert\n", "3: 007 is 'Bert' here and 'Anna' above."),
     "a time": (b"student,submitted\nanna,11/12/2026 10:00\n", "2: submitted = '11/12/2026 10:00'. Write it as"),
     "Moodle in another language": (
         b"Identyfikator;Nazwa;Status\nUczestnik 7;Anna;x\n",
@@ -113,3 +115,14 @@ def test_columns_of_our_own_tables_may_be_in_any_case(tmp_path: Path) -> None:
     (tmp_path / "groups.csv").write_text("Group;STUDENT\nA;anna\nA;bert\n")
     (group,) = read_groups(tmp_path / "groups.csv")
     assert (group.name, [member.id for member in group.members]) == ("A", ["anna", "bert"])
+
+
+def test_a_worksheet_comes_back_with_all_its_columns_and_names(tmp_path: Path) -> None:
+    columns = [*COLUMNS[:2], "ID number", *COLUMNS[2:]]
+    values = ["Participant 77", "An Nguy\u1ec5n\u3000V\u0103n\u200c", "0042", *[""] * 7, "old comment"]
+    with (tmp_path / "roster.csv").open("w", encoding="utf-16") as file:
+        csv.writer(file, delimiter=";").writerows([columns, values])
+    (row,) = read_roster(tmp_path / "roster.csv", None)
+    student = with_row(Student("x_77", "x", "", {"Identifier": "Participant 77", "Full name": "x"}), row)
+    back = list(csv.reader(moodle.table(plain.exercise(), [plain.entry(plain.RIGHT, student)]).splitlines()))
+    assert (back[0], back[1][:3]) == (columns, values[:3])

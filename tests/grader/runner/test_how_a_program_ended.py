@@ -332,6 +332,11 @@ def raised(line: int, error: str, *frames: str) -> str:
             NODE,
             "The arguments of a callback: self, and then the message for a subscription",
         ),
+        (
+            raised(5, "rclpy.exceptions.InvalidTopicNameException: Invalid topic name: must not contain …"),
+            NODE.replace(NODE.splitlines()[4], "        self.a = self.create_publisher(Bool, '/a\u200b', 10)"),
+            "It has the character U+200B (ZERO WIDTH SPACE), which is easily overlooked: type it again.",
+        ),
     ],
 )
 def test_advice_names_what_the_student_can_change(log: str, source: str, advice: str) -> None:

@@ -218,6 +218,14 @@ def test_an_exercise_that_nobody_has_begun_is_reported(cells: list[str], exercis
         code_in(notebook(*cells), exercise)
 
 
+@pytest.mark.parametrize("magic", ["%%nod heartbeat", "%%Node Heartbeat", "%%mode heartbeat"])
+def test_a_cell_whose_command_is_misspelt_is_named(magic: str, exercise: Exercise) -> None:
+    with pytest.raises(
+        Unreadable, match=rf'code cell 1 \("{magic}"\) begins with a command .* Write %%node heartbeat,'
+    ):
+        code_in(notebook(f"{magic}\n{BEAT}"), exercise)
+
+
 def test_what_a_program_in_pieces_prints_has_its_cells_and_their_lines(exercise: Exercise, grading: Grading) -> None:
     broken = BEAT.replace("message = Header", "import warnings; warnings.warn('odd'); message = Head")
     content = notebook(IMPORTS, "x = 1\n", f"{INIT}\n{broken}", f"%%node heartbeat\n{MAIN}\n{GUARD}")

@@ -171,7 +171,10 @@ def test_an_archive_that_python_can_not_unpack_is_named_as_one(content: bytes, e
 
 OTHER_KINDS = {
     "week3.md": (f"# Mine\n```python\n{PROGRAM}```\n".encode(), "Your file is neither Python, nor a notebook"),
-    "week3.html": (f"<!DOCTYPE html>\n<pre>\n{PROGRAM}".encode(), "Your file is neither Python, nor a notebook"),
+    "week3.html": (f"<!DOCTYPE html>\n<pre>\n{PROGRAM}".encode(), "Your file is a web page, not Python."),
+    "heartbeat.py": (b"%PDF-1.7\n%\xe2\xe3", "Your file is a PDF document, not Python."),
+    "photo.jpg": (b"\xff\xd8\xff\xe0", "Your file is a picture, not Python."),
+    "cached.py": (b"\xa7\r\r\n\0\0\0\0x", "Your file is Python's compiled code, not Python."),
     "heartbeat.docx": (
         zipped({"[Content_Types].xml": "", "word/document.xml": f"<w:t>\n{PROGRAM}"}),
         "of an office program.",

@@ -10,6 +10,8 @@ from fences import GUARD, IMPORTS, MAIN, TALKER, cells, read, reading
 from groundwork.problem import Severity
 from spinbook.chapter.classify import CellKind
 from spinbook.chapter.python_code import inspect
+from spinbook.chapter.read import ReadResult, read_chapter
+from spinbook.chapter.surroundings import Surroundings
 
 HEADER = "class Talker(Node):\n"
 INIT = "    def __init__(self):\n        super().__init__('talker')\n        self.create_timer(1.0, self.tick)\n"
@@ -145,6 +147,39 @@ def test_a_fence_that_includes_a_file_which_is_not_here_is_shown_only(tmp_path: 
     assert [(item.line, item.severity) for item in result.problems] == [(3, Severity.NOT_RUN)]
 
 
+INCLUDES = ['--8<-- "{}"', "```{{include}} {}\n```", "{{{{< include {} >}}}}", "{{% include {} %}}"]
+SHOWN = ["import Part from './{0}';\n\n<Part />", "import Part from '@site/{0}';\n\n<Part/>"]
+
+
+def page(root: Path, text: str) -> ReadResult:
+    (root / "c.md").write_text(f"# One\n\n{text}\n")
+    return read_chapter(root, Path("c.md"), Surroundings("robot"))
+
+
+@pytest.mark.parametrize("written", [*INCLUDES, *SHOWN])
+def test_a_text_that_is_included_is_part_of_the_chapter_or_said_to_be_missing(tmp_path: Path, written: str) -> None:
+    missing = page(tmp_path, written.format("words.md"))
+    assert missing.chapter is not None
+    assert [(one.severity, "words.md`, and there is no" in one.problem) for one in missing.problems] == [
+        (Severity.NOT_RUN, True)
+    ]
+    assert "words.md`, which is not here" in missing.chapter.static_fences[0].sign
+
+    (tmp_path / "words.md").write_text("Some words.\n\n```python\nprint(1)\n```\n")
+    shown = page(tmp_path, written.format("words.md"))
+    assert shown.chapter is not None
+    assert not shown.problems
+    assert [cell.kind for cell in cells(shown.chapter)] == [CellKind.SNIPPET]
+
+
+def test_the_source_that_a_component_shows_is_the_program(tmp_path: Path) -> None:
+    (tmp_path / "talker.py").write_text(IMPORTS + TALKER + MAIN + GUARD)
+    shows = "<CodeBlock language='py'>{Source}</CodeBlock>"
+    result = page(tmp_path, f"import Source from '!!raw-loader!./talker.py';\n\n{shows}")
+    assert result.chapter is not None
+    assert [(cell.kind, cell.name) for cell in cells(result.chapter)] == [(CellKind.NODE, "talker")]
+
+
 @pytest.mark.parametrize(
     "words",
     [
@@ -208,7 +243,7 @@ def test_a_literalinclude_shows_the_lines_that_it_asks_for(tmp_path: Path, optio
     missing = reading(tmp_path, "```{literalinclude} none.py\n```\n").problems
 
     assert cell.source.endswith(code)
-    assert [item.problem for item in missing] == ["the fence includes `none.py`, and there is no such file."]
+    assert [item.problem for item in missing] == ["the chapter includes `none.py`, and there is no such file."]
 
 
 def test_prompts_and_tables_of_sphinx_are_read(tmp_path: Path) -> None:

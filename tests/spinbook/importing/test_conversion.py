@@ -125,6 +125,7 @@ def test_a_sphinx_book_is_read_by_its_toctrees_and_its_settings_are_not_run(tmp_
         (".. image:: a.png\n   :width: 50%\n   :alt: An arm\n", '![An arm](a.png){width="50%"}\n'),
         ("== ==\na  b\n== ==\n1  2\n== ==\n", "| a | b |\n| --- | --- |\n| 1 | 2 |\n"),
         (".. literalinclude:: a.py\n   :language: python\n", "```{literalinclude} a.py\n:language: python\n```\n"),
+        ('.. code:: python\n\n   a = """\n\n\n   """\n', '```python\na = """\n\n\n"""\n```\n'),
         (".. prompt:: bash $\n\n   ros2 node list\n", "```bash\nros2 node list\n```\n"),
         (".. ipython::\n\n   In [1]: 1 + 1\n   Out[1]: 2\n", "```python\nIn [1]: 1 + 1\nOut[1]: 2\n```\n"),
         (".. csv-table:: Two\n\n   1, 2\n", "**Two**\n\n| 1 | 2 |\n"),

@@ -203,6 +203,15 @@ def test_a_folder_that_is_not_listed_follows_the_page_of_its_name(tmp_path: Path
     assert order(root) == ["docs/part1.md", "docs/part1/code.md", "docs/part2.md"]
 
 
+def test_a_pattern_stands_for_its_pages_and_those_that_are_not_listed_are_named(tmp_path: Path) -> None:
+    root = book(tmp_path / "b", "index.md", "part/10.md", "part/2.md", "_words.md", "other.md")
+    (root / "myst.yml").write_text("project:\n  toc:\n    - file: index.md\n    - pattern: part/*.md\n")
+
+    said = spinbook_import(root).stdout
+    assert order(root) == ["index.md", "part/2.md", "part/10.md"]
+    assert "\nNot listed there, so no chapters: other.md\n" in said
+
+
 def test_links_of_a_sidebar_are_percent_decoded(tmp_path: Path) -> None:
     root = book(tmp_path / "b", "docs/two words.md", "docs/日本.md")
     (root / "docs/_sidebar.md").write_text("- [Two](two%20words.md)\n- [J](%E6%97%A5%E6%9C%AC.md)\n")
