@@ -22,10 +22,8 @@ NO_NAME = re.compile(r"ImportError: cannot import name '([^']+)' from '([^']+)'"
 #: An error to which `grader.runner.program_end` has added advice, behind the line that it quotes.
 ADVISED = re.compile(r" in line \d+[^`]*: `.*`\. \S")
 
-#: Modules that notebooks have, or that students install to draw, but not every installation that grades; and what pip
-#: calls them.
-OF_NOTEBOOKS = {"IPython": "ipython", "nbformat": "nbformat", "PIL": "pillow"}
-OF_NOTEBOOKS |= dict.fromkeys(("matplotlib", "mpl_toolkits", "pylab"), "matplotlib")
+#: Modules that notebooks have or that students install, and so their programs have, but not what grades them.
+OF_NOTEBOOKS = {"matplotlib", "mpl_toolkits", "pylab", "PIL", "IPython", "nbformat"}
 
 ADVICE = (
     (
@@ -73,9 +71,6 @@ def _instead(module: str, exercise: Exercise) -> str:
     close = difflib.get_close_matches(top, [*exercise.packages, *own], n=1)
     meant = f" Is it a misspelling of {close[0]}?" if close else ""
     available = ", ".join([AVAILABLE, *exercise.packages])
-    if top in OF_NOTEBOOKS:
-        name = OF_NOTEBOOKS[top]
-        return f"{top} is not installed here. Install it: pip install {name}, or in a notebook %pip install {name}."
     return f"The module {module} is not available here. Available are Python's own modules, {available}.{meant}"
 
 
@@ -104,7 +99,7 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
             return f"{message} {advice}"
     if newer := newer_name(message):
         return f"{message} {newer}"
-    if (missing := MISSING.search(message)) and missing["top"] not in sys.stdlib_module_names:
+    if (missing := MISSING.search(message)) and not is_advised and missing["top"] not in sys.stdlib_module_names:
         return f"{message} {_instead(missing[1], exercise)}"
     if no_name := NO_NAME.search(message):
         name = no_name[1][:1].upper() + no_name[1][1:]

@@ -58,6 +58,10 @@ _BY_TEXT = (
     (r"with event EXECUTE\b", "The goal executes already when rclpy calls this callback: leave out execute()."),
     (r"transition from state (?:SUCCEEDED|ABORTED|CANCELED)", "This goal has ended already: end each goal only once."),
     (r"no display|Cannot load backend|could not connect to display|No module named '_?tkinter'", _NO_SCREEN),
+    (
+        r"No module named '(?:matplotlib|mpl_toolkits|pylab)\b",
+        "It is not installed here: pip install matplotlib, or in a notebook %pip install matplotlib.",
+    ),
     (r"'Time' object has no attribute '(?:nano)?sec'", "A Time is not yet a stamp: its to_msg() is one."),
     (r"returned a result with an exception set", "A field has a value of another type: an integer field takes an int."),
     (

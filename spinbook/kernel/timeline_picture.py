@@ -13,7 +13,7 @@ from itertools import chain
 from textwrap import wrap
 
 from ros_in_python.animation import Cycle, coord, on_paper
-from spinbook.kernel.plot.picture import Scale, pointer_moves, shown_faster
+from spinbook.kernel.plot.picture import Scale, pointer_moves, shown_faster, time_axis
 from spinbook.kernel.timeline import Lane, Mark, Span, in_words
 
 #: A lane with more ticks than this is thinned out; otherwise they would merge into a bar.
@@ -60,8 +60,9 @@ def timeline_svg(lanes: Sequence[Lane], title: str = "", *, moves: bool = True) 
             )
         part, y = _lane(lane, y, across)
         drawn.append(part)
-    grid, bottom = _axis(across, _TOP, y), y + 22
-    legend, bottom = _legend(lanes, bottom + 16)
+    # Times count from the first event.
+    grid = time_axis(Scale(0.0, across.high - across.low, across.start, across.end), _TOP, y)
+    legend, bottom = _legend(lanes, y + 38)
     faster, pace = shown_faster(end - start)
     moving = _moving(Cycle(key, max(end - start, 0.1) / faster), y) if moves else ""
     pointer = f'<path class="{key}x" d="M{_LEFT} {_TOP}V{coord(y)}" stroke="{_GREY}" opacity="0"/>'
@@ -135,18 +136,6 @@ def _placed(marks: Sequence[Mark], across: Scale) -> Iterator[tuple[str, float, 
         row = next((row for row, end in enumerate(ends) if end + 6 <= x), len(ends))
         ends[row : row + 1] = [x + width]
         yield mark.text, x, row
-
-
-def _axis(across: Scale, top: float, bottom: float) -> str:
-    """Return lines at round times counted from the first event, and the times below them."""
-    seconds = Scale(0.0, across.high - across.low, across.start, across.end)
-    lines = texts = ""
-    for mark in seconds.marks():
-        x = coord(seconds.at(mark))
-        lines += f"M{x} {coord(top)}V{coord(bottom)}"
-        unit = " s" if mark == seconds.marks()[-1] else ""
-        texts += f'<text x="{x}" y="{coord(bottom + 15)}" text-anchor="middle">{mark:g}{unit}</text>'
-    return f'<path d="{lines}" stroke="{_GREY}" stroke-opacity=".3" fill="none"/>{texts}'
 
 
 def _legend(lanes: Sequence[Lane], y: float) -> tuple[str, float]:

@@ -14,7 +14,7 @@ from spinbook.build.failures import node_errors
 from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.chapter.classify import CellKind
 from spinbook.kernel.node_errors import ERROR
-from spinbook.site.drawings import smaller, still_of
+from spinbook.site.drawings import still_of
 from spinbook.site.page import Repository, exercise_page
 from spinbook.site.repetition import Repetition, repetitions
 from spinbook.site.robots import is_robot, robot_html, robot_still
@@ -157,7 +157,7 @@ def _run(cell: ChapterCell) -> dict[str, Any]:
 
 
 def _published(output: dict[str, Any]) -> dict[str, Any]:
-    """Return an output for the page: with compressed pictures, and without formats that a page can't show."""
+    """Return an output for the page: without formats that a page can't show."""
     if "data" not in output:
         return output
     if is_robot(output):
@@ -165,8 +165,6 @@ def _published(output: dict[str, Any]) -> dict[str, Any]:
     data = {kind: content for kind, content in output["data"].items() if kind in _SHOWN}
     if "image/svg+xml" in data:
         data.pop("image/png", None)
-    if "image/png" in data:
-        data["image/png"] = smaller(data["image/png"])
     return {**output, "data": data}
 
 

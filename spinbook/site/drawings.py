@@ -1,4 +1,4 @@
-"""Drawings and pictures for pages: renders mermaid diagrams as SVG, and compresses PNGs."""
+"""Drawings and pictures for pages: renders mermaid diagrams as SVG, and stills moving ones."""
 
 from __future__ import annotations
 
@@ -20,8 +20,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-
-from PIL import Image
 
 from groundwork.child_process import run_program
 from groundwork.files import write_if_changed
@@ -258,8 +256,6 @@ def _path(code: str, theme: str) -> str:
 
 PICTURE_FOLDER = "_pictures"
 
-_COLOURS = 256
-
 
 @dataclass(frozen=True)
 class StillPicture:
@@ -277,21 +273,3 @@ def still_of(output: Mapping[str, Any]) -> StillPicture | None:
     moving = "".join(output.get("data", {}).get("image/svg+xml", ""))
     svg = still(moving)
     return StillPicture(f"{PICTURE_FOLDER}/{digest(svg)[:16]}.svg", svg.encode()) if svg != moving else None
-
-
-def smaller(png: str) -> str:
-    """Return a PNG, in base64, with a palette instead of full colour if that makes it smaller.
-
-    Plots and turtles have few colours, so the loss is invisible.
-    """
-    data = base64.b64decode(png)
-    image = Image.open(io.BytesIO(data)).convert("RGBA")
-    if image.getchannel("A").getextrema() == (255, 255):
-        image = image.convert("RGB")
-        reduced = image.quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-    else:
-        reduced = image.quantize(_COLOURS, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-    out = io.BytesIO()
-    reduced.save(out, "PNG", optimize=True)
-    best = min(out.getvalue(), data, key=len)
-    return base64.b64encode(best).decode("ascii")

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import base64
 import contextlib
 import datetime
-import io
 import os
 import platform
 import re
@@ -15,14 +13,12 @@ from html import escape
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
-from PIL import Image
-
 from grader.exercise.exercise import Exercise
 from spinbook.build.digest import digest
 from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.course.course import Course
 from spinbook.site.chapter_page import ExecutedNotebook, alternative, is_picture, wrong_cells
-from spinbook.site.drawings import PICTURE_FOLDER, Picture, drawing_html, smaller, still_of
+from spinbook.site.drawings import PICTURE_FOLDER, Picture, drawing_html, still_of
 from spinbook.site.minutes import chapter_facts
 from spinbook.site.page import Repository, chapter_page, exercise_page
 from spinbook.site.robots import is_robot, robot_html
@@ -73,8 +69,7 @@ def home_pictures(runs: list[tuple[Chapter, ExecutedNotebook]]) -> list[HomePict
     described = [(alternative(drawn[2], drawn[1]), drawn) for drawn in drawings]
     plots = [(_moving_curves(words), drawn) for words, drawn in described if "samples" in words]
     turtles = [drawn for words, drawn in described if "turtlesim" in words.lower()]
-    # A turtle that has moved has a moving picture: prefer that.
-    turtles = [drawn for drawn in turtles if "image/svg+xml" in drawn[2]["data"]] or turtles
+    turtles = [drawn for drawn in turtles if still_of(drawn[2])] or turtles
     best = [max(plots, key=lambda plot: plot[0])[1]] if plots else []
     return [
         *(_shown(*drawn, "What a topic carried, as it arrived") for drawn in best),
@@ -111,23 +106,17 @@ def _robots(chapter: Chapter, ran: ExecutedNotebook) -> Iterator[dict[str, Any]]
 
 
 def _pictures(chapter: Chapter, ran: ExecutedNotebook) -> Iterator[tuple[ChapterCell, dict[str, Any]]]:
-    return ((cell, output) for cell in chapter.cells for output in filter(is_picture, ran.outputs(cell.id)))
+    """Yield the SVGs, which all pictures of Spinbook's are."""
+    outputs = ((cell, output) for cell in chapter.cells for output in filter(is_picture, ran.outputs(cell.id)))
+    return ((cell, output) for cell, output in outputs if "image/svg+xml" in output["data"])
 
 
 def _shown(chapter: Chapter, cell: ChapterCell, output: Mapping[str, Any], caption: str) -> HomePicture:
-    data = output["data"]
-    if "image/svg+xml" in data:
-        drawn = "".join(data["image/svg+xml"])
-        picture, suffix = drawn.encode(), ".svg"
-        sizes = _SIZE.findall(drawn.partition(">")[0])
-        size = {side: round(float(length)) for side, length in sizes}
-    else:
-        picture, suffix = base64.b64decode(smaller(data["image/png"])), ".png"
-        width, height = Image.open(io.BytesIO(picture)).size
-        size = {"width": width, "height": height}
-    path = f"{PICTURE_FOLDER}/{digest(picture)[:16]}{suffix}"
+    svg = "".join(output["data"]["image/svg+xml"])
+    size = {side: round(float(length)) for side, length in _SIZE.findall(svg.partition(">")[0])}
+    path = f"{PICTURE_FOLDER}/{digest(svg)[:16]}.svg"
     still = still_of(output)
-    files = {path: picture} | ({still.path: still.data} if still else {})
+    files = {path: svg.encode()} | ({still.path: still.data} if still else {})
     about = {
         "src": path,
         "still": still.path if still else "",

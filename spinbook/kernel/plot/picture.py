@@ -75,11 +75,12 @@ class PlotSize:
 
 
 #: For pages, where a plot has to be small and fits a phone; and for a notebook on its reader's own screen.
-FOR_PAGES, FOR_NOTEBOOKS = PlotSize(420, 120), PlotSize(680, 2_000)
+FOR_PAGES, FOR_NOTEBOOKS = PlotSize(420, 120), PlotSize(640, 2_000)
 #: A curve is drawn to within this many pixels of its samples.
 PRECISION_PX = 0.5
 #: Width of the axis' numbers and of the margin on the other side, and height of a panel (px).
 LEFT, RIGHT, HEIGHT = 50, 10, 150
+GRID = f'stroke="{_GREY}" stroke-opacity=".3" fill="none"'
 _DASHES = ("", "7 4", "7 3 1.5 3", "1.5 3")
 _NAME_CHAR = 6.9
 
@@ -115,12 +116,17 @@ def _axes(across: Scale, up: Scale) -> str:
     for mark in up.marks():
         grid += f"M{LEFT} {coord(up.at(mark))}H{across.end:g}"
         texts += f'<text x="{LEFT - 6}" y="{coord(up.at(mark) + 4)}" text-anchor="end">{mark:g}</text>'
-    for mark in across.marks():
-        x = coord(across.at(mark))
-        grid += f"M{x} {coord(up.start)}v-{HEIGHT}"
-        unit = " s" if mark == across.marks()[-1] else ""
-        texts += f'<text x="{x}" y="{coord(up.start + 17)}" text-anchor="middle">{mark:g}{unit}</text>'
-    return f'<path d="{grid}" stroke="{_GREY}" stroke-opacity=".3" fill="none"/>{texts}'
+    return f'<path d="{grid}" {GRID}/>{texts}{time_axis(across, up.end, up.start)}'
+
+
+def time_axis(across: Scale, top: float, bottom: float) -> str:
+    """Return lines at round times (s), and the times below them."""
+    lines = texts = ""
+    for mark in (marks := across.marks()):
+        x, unit = coord(across.at(mark)), " s" if mark == marks[-1] else ""
+        lines += f"M{x} {coord(top)}V{coord(bottom)}"
+        texts += f'<text x="{x}" y="{coord(bottom + 17)}" text-anchor="middle">{mark:g}{unit}</text>'
+    return f'<path d="{lines}" {GRID}/>{texts}'
 
 
 def _legend(looks: Mapping[str, str], y: float, room: float) -> tuple[str, float]:

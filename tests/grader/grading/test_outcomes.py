@@ -89,7 +89,8 @@ def test_a_module_that_only_notebooks_have_costs_nobody_a_point(
     self_check = replace(grading, public=PublicPart((), {}, 0, 0.0))
     advised = grade_of(self_check, imports)
     assert (advised.outcome, advised.has_score) == ("did-not-start", True)
-    assert "matplotlib is not installed here. Install it: pip install matplotlib," in advised.message
+    assert "It is not installed here: pip install matplotlib," in advised.message
+    assert "Available are" not in advised.message
 
 
 def test_a_crash_in_one_scenario_costs_only_its_checks(grading: Grading) -> None:

@@ -405,6 +405,7 @@ def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_i
         ("IndexError: array assignment index out of range", "append() makes it longer"),
         ("TypeError: unsupported operand type(s) for -: 'Time' and 'Time'", "stamp.nanosec * 1e-9"),
         ("EOFError: EOF when reading a line", "leave out input()"),
+        ("ModuleNotFoundError: No module named 'matplotlib'", "not installed here: pip install matplotlib, or in a"),
         ("AttributeError: module 'xml' has no attribute 'etree'", "imported as a whole"),
         ("AttributeError: 'list' object has no attribute 'name'", "a list of parameters"),
         ("FileNotFoundError: [Errno 2] No such file or directory: '/home/x'", "runs on another computer"),
