@@ -20,9 +20,20 @@ from grader.recording.events import By, Cancel, Feedback, Goal
 
 #: rclpy's log line for a goal whose execute callback returned without a state.
 _NO_STATE = "Goal state not set, assuming aborted"
+#: And for a goal callback that returned something else.
+_NO_GOAL_RESPONSE = "Goal request callback did not return a GoalResponse type"
 
 _ENDS = hints("goal_ends")
 _FORGOT = Cause("Your execute callback returned without goal_handle.succeed(), so rclpy aborted the goal.", *_ENDS)
+_NOT_EXECUTED = Cause(
+    "Your node accepted the goal and never executed it: a handle_accepted_callback has to call goal_handle.execute().",
+    *_ENDS,
+)
+_NO_RESPONSE = Cause(
+    "Your goal callback has to return GoalResponse.ACCEPT or GoalResponse.REJECT, each way through it, and returned "
+    "something else.",
+    *hints("goal_response"),
+)
 _GAVE_UP = Cause("Your execute callback called goal_handle.abort(), which is for a goal that it gives up.", *_ENDS)
 
 _CANCEL = hints("cancel")
@@ -186,7 +197,8 @@ def must_match_feedback(
         if expected is None or got is None:
             text = f"expected {expected_count} feedback messages, got {count}."
             stuck = _ended_at(student) is None and _does_nothing_after(run, student)
-            never = UNKNOWN if count else _STUCK if stuck else _NO_FEEDBACK
+            begun = _NO_FEEDBACK if not _is_not_executed(student) else _NOT_EXECUTED
+            never = UNKNOWN if count else _STUCK if stuck else begun
             run.wrong_at(student.at, text, _part(student), f"{expected_count} messages", count, never)
         part = f"{_part(student)}, feedback {number}"
         run.compare_at(got.at, part, field, got.fields, expected.fields, tolerance, student.action, messages)
@@ -267,12 +279,15 @@ def _must_answer(run: RecordedRun, goal: Goal, accepted: bool) -> None:
         run.wrong_at(goal.at, text, _part(goal), expected, "no answer")
     if goal.accepted != accepted:
         got = "accepted" if goal.accepted else "rejected"
-        run.wrong_at(goal.at, f"it must be {expected}, but your node {got} it.", _part(goal), expected, got)
+        none = _NO_RESPONSE if _NO_GOAL_RESPONSE in run.recording.log else UNKNOWN
+        run.wrong_at(goal.at, f"it must be {expected}, but your node {got} it.", _part(goal), expected, got, none)
 
 
 def _why(run: RecordedRun, goal: Goal, expected: str) -> Cause:
     """Return the common mistake behind a wrong end of a goal."""
     got, cancel = _ended_as(goal), goal.cancels[0] if goal.cancels else None
+    if _is_not_executed(goal):
+        return _NOT_EXECUTED
     if expected == "canceled" and cancel:
         return _why_not_canceled(goal, cancel, got)
     if expected == "succeeded" and got == "aborted":
@@ -280,6 +295,10 @@ def _why(run: RecordedRun, goal: Goal, expected: str) -> Cause:
     if _ended_at(goal) is not None or expected == "aborted":
         return UNKNOWN
     return _STUCK if _does_nothing_after(run, goal) else _NEVER
+
+
+def _is_not_executed(goal: Goal) -> bool:
+    return bool(goal.states) and all(state.state in ("accepted", "canceling") for state in goal.states)
 
 
 def _does_nothing_after(run: RecordedRun, goal: Goal) -> bool:

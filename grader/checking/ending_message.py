@@ -35,7 +35,15 @@ ADVICE = (
         re.compile(r"SyntaxError: invalid (?:non-printable )?character"),
         "Type this character again: copied text may have other quotes, dashes or spaces than Python's.",
     ),
-    (re.compile(r"SyntaxError"), "Python can't read this line. Look at the end of the line before it, too."),
+    (
+        re.compile(r"SyntaxError: [^`]*`.*\"<[^\"]*=\"\w"),
+        "Inside \"…\" a text can't have the same quotes: write it as '…'.",
+    ),
+    (re.compile(r"SyntaxError: '\w+' outside"), "Indent this line as the other lines of its function or loop."),
+    (
+        re.compile(r"SyntaxError: invalid syntax(?!\. )"),
+        "Python can't read this line. Look at the end of the line before it, too.",
+    ),
     (
         re.compile(r"Address family not supported"),
         "A node has no network while it is graded and needs none: it communicates over ROS 2 only.",
@@ -44,7 +52,7 @@ ADVICE = (
     (re.compile(r"ZeroDivisionError"), "When is the number that this line divides by zero?"),
     (re.compile(r"KeyError|IndexError"), "When is this key or index missing?"),
     (
-        re.compile(r"AttributeError: 'NoneType'"),
+        re.compile(r"(?:Attribute|Type)Error: .*\bNoneType\b"),
         "Something in this line is None: what fills it, and has that happened by now?",
     ),
 )
@@ -54,8 +62,9 @@ ADVICE = (
 ROS_1 = {"rospy": "rclpy", "roslib": "rclpy", "actionlib": "rclpy.action", "tf": "tf2_ros"}
 
 
-def _instead(module: str, exercise: Exercise) -> str:
-    """Return what to import in place of a module that is not available."""
+def _instead(module: str, exercise: Exercise, message: str) -> str:
+    """Return what to import in place of a module that is not available; `message` quotes the line that does."""
+    imported_names = re.findall(r"\w+", message.rpartition(" import ")[2])
     top = module.partition(".")[0]
     if top in ROS_1:
         return (
@@ -66,8 +75,12 @@ def _instead(module: str, exercise: Exercise) -> str:
     own = {name.partition("/")[0]: name for name in types}
     if top in own and top != module:
         sought = module.partition(".")[2]
-        package, kind, name = next((name for name in types if f"/{sought}/" in name), own[top]).split("/")
+        fits = max(types, key=lambda name: (name.split("/")[2] in imported_names, f"/{sought}/" in name, top in name))
+        package, kind, name = fits.split("/")
         return f"{top} has no module {sought}: write from {package}.{kind} import {name}."
+    if type_ := next((name for name in types if name.endswith(f"/{module}")), ""):
+        package, kind, name = type_.split("/")
+        return f"{module} is a class of {package}.{kind}: write from {package}.{kind} import {name}."
     close = difflib.get_close_matches(top, [*exercise.packages, *own], n=1)
     meant = f" Is it a misspelling of {close[0]}?" if close else ""
     available = ", ".join([AVAILABLE, *exercise.packages])
@@ -100,7 +113,7 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
     if newer := newer_name(message):
         return f"{message} {newer}"
     if (missing := MISSING.search(message)) and not is_advised and missing["top"] not in sys.stdlib_module_names:
-        return f"{message} {_instead(missing[1], exercise)}"
+        return f"{message} {_instead(missing[1], exercise, message)}"
     if no_name := NO_NAME.search(message):
         name = no_name[1][:1].upper() + no_name[1][1:]
         case = f"It may have {name}: capital letters count." if name != no_name[1] else "Is the name spelled right?"

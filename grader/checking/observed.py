@@ -30,6 +30,7 @@ def observed(exercise: Exercise, recording: Recording, reference: Recording) -> 
         _no_parameter,
         _hears_itself,
         _int_as_float,
+        _letters,
         _without_names,
         _never_filled,
         _piles_up,
@@ -128,6 +129,20 @@ def _floats(value: Any, path: str = "") -> Iterator[tuple[str, float]]:
     elif isinstance(value, (list, tuple)) and value and isinstance(value[0], Mapping):  # lists of numbers are converted
         for part in value:
             yield from _floats(part, path)
+
+
+def _letters(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
+    for topic in exercise.outputs:
+        field = topic.elements.named_by if topic.elements else ""
+        lists = [message.fields.get(field) for message in recording.received if message.topic == topic.name]
+        if lists and all(
+            isinstance(names, list) and len(names) > 1 and len("".join(names)) == len(names) for names in lists
+        ):
+            seen = (
+                f"Each element of {field} on {topic.name} is one letter: a text stands where a list of texts belongs."
+            )
+            return Cause(seen, *hints("letters", field=field))
+    return UNKNOWN
 
 
 def _without_names(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:

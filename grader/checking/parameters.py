@@ -103,10 +103,13 @@ def _see(run: RecordedRun, change: ParameterChange, taken: bool) -> None:
     expected, got = ("taken", "refused") if taken else ("refused", "taken")
     text = f"the value {typed(change.value)} must be {expected}, but your node {'took' if change.taken else got} it."
     text += f" It said: {change.reason.rstrip('.')}." if change.reason and taken else ""
-    run.wrong_at(change.at, text, f"parameter {change.name}", expected, got, _never_refuses(run, taken))
+    run.wrong_at(change.at, text, f"parameter {change.name}", expected, got, _why(run, change, taken))
 
 
-def _never_refuses(run: RecordedRun, taken: bool) -> Cause:
+def _why(run: RecordedRun, change: ParameterChange, taken: bool) -> Cause:
+    if change.reason == "Callback returned an invalid type":
+        text = "Your on-set callback has to return a SetParametersResult, each way through it."
+        return Cause(text, *hints("refuses"))
     answers = {change.taken for change in run.recording.parameters}
     if taken and answers == {False}:
         every = "refuses every value" if len(run.recording.parameters) > 1 else "refused the only value"

@@ -95,7 +95,7 @@ def must_keep_rate(run: RecordedRun, hz: float, topic: str = "", tolerance: floa
     if len(got) < 2:
         _never(run, name, f"{hz:g} messages per second") if not got else None
         text = f"only one message was published on {name}."
-        run.wrong_at(got[0].at, text, "", f"{hz:g} Hz", "one message", run.waits() or Cause("", *hints("only_one")))
+        run.wrong_at(got[0].at, text, "", f"{hz:g} Hz", "one message", run.waits() or _ONLY_ONE)
     if got[0].at_ns == got[-1].at_ns:
         at_once = f"all {len(got)} messages on {name} were published at one moment, {hz:g} per second were expected."
         run.wrong_at(got[0].at, at_once, "", f"{hz:g} Hz", f"{len(got)} at once", _at_one_moment(got[0].at_ns))
@@ -191,6 +191,7 @@ _VOLATILE = Cause(
     "Your publisher is volatile: a late subscriber gets nothing that was published before.", *hints("volatile")
 )
 
+_ONLY_ONE = Cause("The period of a timer is in seconds.", *hints("only_one"))
 _GAP = Cause("Does a callback wait or sleep meanwhile?", *hints("gap"))
 
 

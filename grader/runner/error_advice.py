@@ -11,15 +11,12 @@ import sys
 from collections.abc import Callable, Mapping
 
 from grader.recording.types import message_class
+from grader.runner.error_texts import advice_on_text
 from grader.runner.node_attributes import advice_on_node_attribute
 from grader.runner.tracebacks import LastError
 from groundwork.words import look_alike, similar
 
 _RESULT = "An action's execute callback has to return a Result, such as `return {action}.Result()`."
-
-_NO_SCREEN = (
-    "A node that is graded has no screen. Leave out windows and plots: %plot in a notebook draws what it sends."
-)
 
 #: Packages whose messages' fields are named. What a student's file imports is not imported otherwise.
 _PACKAGES = ("std_msgs", "std_srvs", "geometry_msgs", "sensor_msgs", "nav_msgs", "turtlesim", "builtin_interfaces")
@@ -35,126 +32,6 @@ _PARTS = {
     "pose": ("position", "orientation"),
 }
 
-#: What to do about an error, by a pattern of its last line.
-_BY_TEXT = (
-    (r"ParameterNotDeclaredException", "Declare it first, in __init__: self.declare_parameter(…)."),
-    (
-        r"InvalidParameterTypeException",
-        "A parameter has the type of its default: 1 declares an integer, 1.0 a double.",
-    ),
-    (
-        r"The '\w+' field must be of type 'float'",
-        "A float field needs a float: write 2.0 instead of 2, or float(value).",
-    ),
-    (r"The '(\w+)' field must be of type 'int'", "An integer field needs an integer: int(value) makes one."),
-    (
-        r"Expected <class '[\w.]*\.(\w+)'>, got <class '[\w.]+'>",
-        r"publish() takes a whole \1: create one, put the value into its field, and publish that.",
-    ),
-    (
-        r"with event CANCELED",
-        "canceled() is only for a goal with a request to cancel; call abort() to give up any other.",
-    ),
-    (r"with event EXECUTE\b", "The goal executes already when rclpy calls this callback: leave out execute()."),
-    (r"transition from state (?:SUCCEEDED|ABORTED|CANCELED)", "This goal has ended already: end each goal only once."),
-    (r"no display|Cannot load backend|could not connect to display|No module named '_?tkinter'", _NO_SCREEN),
-    (
-        r"No module named '(?:matplotlib|mpl_toolkits|pylab)\b",
-        "It is not installed here: pip install matplotlib, or in a notebook %pip install matplotlib.",
-    ),
-    (r"'Time' object has no attribute '(?:nano)?sec'", "A Time is not yet a stamp: its to_msg() is one."),
-    (r"returned a result with an exception set", "A field has a value of another type: an integer field takes an int."),
-    (
-        r"operand type\(s\) for .*'Parameter'",
-        "get_parameter() returns a Parameter, and its value is get_parameter(…).value.",
-    ),
-    (
-        r"operand type\(s\) for \S+ '(?:array\.array|list|tuple)'",
-        "A list of numbers is no number: calculate with one element of it at a time, in a loop.",
-    ),
-    (
-        r"bad argument type for built-in operation",
-        "A text field of a message takes a str only. The text of a parameter is get_parameter(…).value.",
-    ),
-    (
-        r"has no attribute '_TYPE_SUPPORT'|rclpy_resolve_name\(\): incompatible function arguments",
-        "The class of the messages comes before the name: create_publisher(String, '/name', 10), ActionClient(self, "
-        "Type, '/name').",
-    ),
-    (
-        r"no running event loop",
-        "rclpy runs callbacks without asyncio, so asyncio.sleep() and the like can't be used in one. To continue "
-        "later, create a timer; to wait for an answer, await the future of call_async() or send_goal_async() itself.",
-    ),
-    (
-        r"module '[\w.]+' has no attribute",
-        "Is the name spelled right? If it is a module itself, it must be imported as a whole: import xml.etree.",
-    ),
-    (
-        r"'list' object has no attribute '(?:name|value|type_)'",
-        "The callback gets a list of parameters, even if only one is set: loop over it.",
-    ),
-    (
-        r"multiply sequence by non-int|only concatenate (?:str|list)|unsupported operand type\(s\) for .*'str'",
-        "A value of this line is a text or a list, and no number: where does it come from? '0.5' is a text.",
-    ),
-    (r"missing 1 required positional argument: 'self'", "Write parentheses after the class: node = MyNode()."),
-    (r"required positional argument: 'qos_profile'", "The last argument is the queue depth, such as 10."),
-    (r"required positional argument: 'node_name'", "The node's name goes in here: super().__init__('name')."),
-    (r"float\(\) argument must be .*, not 'method'", "The period comes first: create_timer(period, self.on_timer)."),
-    (
-        r"assignment index out of range",
-        "The list is shorter than that: a new one is empty, and append() makes it longer.",
-    ),
-    (r"for -: 'Time' and 'Time'", "A stamp is no number: stamp.sec + stamp.nanosec * 1e-9 is its time in seconds."),
-    (r"EOFError", "Nobody types anything while a node is graded: leave out input()."),
-    (r"ParameterAlreadyDeclaredException", "Declare it once, in __init__, and not in a callback."),
-    (
-        r"UnboundLocalError",
-        "A function that assigns to a name has a variable of its own with this name. What a node remembers is an "
-        "attribute: self.name, set in __init__.",
-    ),
-    (
-        r"FileNotFoundError",
-        "Your node runs on another computer, which has none of your files but the ones that you hand in.",
-    ),
-    (r"callback should be either be callable", "The callback takes the message: def on_message(self, message)."),
-    (
-        r"'ServerGoalHandle' object has no attribute",
-        "A goal handle has request, which is the goal, and is_cancel_requested, succeed(), canceled(), abort() and "
-        "publish_feedback().",
-    ),
-    (
-        r"_Result' object has no attribute 'status'",
-        "What get_result_async() brings has two fields: status, and result, which is the message.",
-    ),
-    (r"_FeedbackMessage' object has no attribute '(\w+)'", r"The feedback is a message inside: message.feedback.\1."),
-    (
-        r"'Future' object has no attribute",
-        "A future is not yet the answer: give it a callback with add_done_callback(), and call future.result() there.",
-    ),
-    (
-        r"'Service' object has no attribute",
-        "create_service() makes the side that answers. The side that asks is made by create_client().",
-    ),
-    (
-        r"'Subscription' object has no attribute 'publish'",
-        "create_subscription() makes the side that receives. The side that sends is made by create_publisher().",
-    ),
-    (
-        r"'(?:float|int|bool)' object is not iterable",
-        "One value is where a list belongs: write [value], for a list field of a message, too.",
-    ),
-    (
-        r"'([A-Z]\w*)' object is not iterable",
-        r"A \1 is not a list. If one of its fields is, loop over that field.",
-    ),
-    (
-        r"dictionary changed size during iteration|list modified during iteration",
-        "The line changes what the loop goes through: loop over list(…) of it.",
-    ),
-)
-
 
 def advice_on(last: LastError, sources: Mapping[str, str]) -> str:
     """Return what to do about an error, in one to three sentences; "" if the error says enough."""
@@ -166,7 +43,8 @@ def advice_on(last: LastError, sources: Mapping[str, str]) -> str:
         _of_a_callback,
         _of_a_field,
         _of_an_attribute,
-        _by_text,
+        _of_a_name,
+        advice_on_text,
         _without_text,
         _of_its_own,
     )
@@ -206,7 +84,7 @@ def _before_init(last: LastError, sources: Mapping[str, str]) -> str:
 def _of_a_callback(last: LastError, sources: Mapping[str, str]) -> str:
     """Explain an error that rclpy raises far from the line which caused it."""
     error, block = last.error, last.traceback
-    if "required positional" in error and (called := _CALLED.search(last.text)):
+    if called := _CALLED.search(last.text) if "required positional" in error else _CALLED_WITH.search(block):
         return f"Give {called[1]} without parentheses: with them, it is called at once."
     if last.raised_there:
         return ""
@@ -230,7 +108,9 @@ def _of_a_callback(last: LastError, sources: Mapping[str, str]) -> str:
 
 
 #: A callback that is called where it should be given.
-_CALLED = re.compile(r"\b(?:create_\w+|ActionServer|add_done_callback)\(.*?(self\.\w+)\(\)")
+_CALLED = re.compile(r"(?:\b(?:create_\w+|ActionServer|add_\w*callback)\(.*?|callback=)(self\.\w+)\(\)")
+#: One that is called with its arguments, and has raised the error.
+_CALLED_WITH = re.compile(r"\badd_\w*callback\((self\.(\w+))\(.{0,200}\n(?:[ ~^]*\n)?  File .*, in \2\n")
 _ARGUMENTS = (
     "The arguments of a callback: self, and then the message for a subscription, nothing for a timer, the request and "
     "the response for a service, the future for add_done_callback(), the goal handle for an action."
@@ -286,6 +166,18 @@ def _of_an_attribute(last: LastError, sources: Mapping[str, str]) -> str:
     return f"No line of your class sets self.{match[2]}."
 
 
+def _of_a_name(last: LastError, sources: Mapping[str, str]) -> str:
+    """Explain a name that only the object has, and a parameter that is declared by another name."""
+    code = sources.get(last.file, "")
+    name = re.search(r"NameError: name '(\w+)' is not defined", last.error)
+    if name and re.search(rf"^\s+def {name[1]}\(self|\bself\.{name[1]} = ", code, re.MULTILINE):
+        return f"A method reaches what belongs to its object through self: write self.{name[1]}."
+    declared = re.findall(r"declare_parameter\(\s*['\"]([\w.]+)", code)
+    if "ParameterNotDeclaredException" in last.error and declared:
+        return f"Declared is only: {', '.join(dict.fromkeys(declared))}. Use that very name, or declare this one, too."
+    return ""
+
+
 def _swapped(name: str, attribute: str, sources: Mapping[str, str]) -> str:
     """Explain that a service's callback takes the response for the request, if it does."""
     if not name.endswith("_Response") or attribute not in _fields(name.replace("_Response", "_Request"), sources):
@@ -319,13 +211,6 @@ def _fields(name: str, sources: Mapping[str, str]) -> list[str]:
         return list(message.get_fields_and_field_types()) if message else []
     except (ImportError, AttributeError):
         return []
-
-
-def _by_text(last: LastError, sources: Mapping[str, str]) -> str:
-    for pattern, advice in _BY_TEXT:
-        if match := re.search(pattern, last.error):
-            return match.expand(advice) if match.groups() else advice
-    return ""
 
 
 def _of_its_own(last: LastError, sources: Mapping[str, str]) -> str:

@@ -75,9 +75,11 @@ def _replaced(source: str) -> Iterator[str]:
     for node in ast.walk(tree):
         if isinstance(node, ast.ClassDef):
             yield from (item.name for item in node.body if isinstance(item, (ast.FunctionDef, ast.AsyncFunctionDef)))
-        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
-        for target in targets:
+            yield from (target.id for item in node.body for target in _targets(item) if isinstance(target, ast.Name))
+        for target in _targets(node):
             if isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name) and target.value.id == "self":
                 yield target.attr
-            elif isinstance(target, ast.Name):
-                yield target.id
+
+
+def _targets(node: ast.AST) -> list[ast.expr | None]:
+    return node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]

@@ -55,7 +55,9 @@ def described(last: LastError, sources: Mapping[str, str]) -> str:
     """Return an error with its line, the line's source and advice, as far as they are known."""
     place = f" in {last.place}" if last.place else ""
     text = f": `{last.text}`" if last.text else ""
-    return " ".join(filter(None, (f"{last.error}{place}{text}".rstrip(".") + ".", advice_on(last, sources))))
+    advice = advice_on(last, sources)
+    error = re.sub(r"\. Did you mean: '\w+'\?$", "", last.error) if advice else last.error
+    return " ".join(filter(None, (f"{error}{place}{text}".rstrip(".") + ".", advice)))
 
 
 def of_exit(exit_: ProcessExit, log: str, sources: Mapping[str, str]) -> tuple[str, int | None]:

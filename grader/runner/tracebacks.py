@@ -24,8 +24,12 @@ _DEEPEST = 20
 #: The beginning of the traceback of an uncaught exception in the main thread: it starts in the module itself.
 _OF_THE_PROGRAM = re.compile(re.escape(HEADER) + r'\n[ \t]*File "[^"]+", line \d{1,9}, in <module>\n')
 
-#: Where an object is in memory, which is another place in each run.
-_ADDRESS = re.compile(r" at 0x[0-9a-f]{4,16}\b")
+#: Where an object is in memory, which is another place in each run; where rclpy's C++ has an exception, and raises it.
+_OF_A_LIBRARY = re.compile(r" at 0x[0-9a-f]{4,16}\b|^rclpy\._rclpy_pybind11\.|, at /\S+:\d+$")
+
+#: The error of a call from C++, whose cause says what is wrong, and stands before it.
+_IN_PYBIND11 = re.compile(r"^SystemError: .{0,400} returned a result with an exception set")
+_CAUSE = re.compile(r"(?:^|\n)(\w+: .*)\n\nThe above exception was the direct cause[^\n]*\s*$")
 
 #: The text of a SyntaxError has no header.
 _OF_A_SYNTAX_ERROR = '  File "'
@@ -64,7 +68,8 @@ def last_error(log: str, sources: Mapping[str, str]) -> LastError | None:
     rows = log[start:].splitlines()
     ends = (number for number, row in enumerate(rows, 1) if number > 1 and _ERROR.match(row))
     rows = rows[: next(ends, len(rows))]
-    error = _shortened(rows[-1].strip()) if _ERROR.match(rows[-1]) else ""
+    caused = _IN_PYBIND11.search(rows[-1]) and _CAUSE.search(log[:start])
+    error = _shortened(caused[1] if caused else rows[-1].strip()) if _ERROR.match(rows[-1]) else ""
     block = "\n".join(rows)
     frames = [(_own(m["file"], sources), int(m["line"])) for m in _FRAME.finditer(block)]
     own = [frame for frame in frames if frame[0]]
@@ -149,7 +154,7 @@ def _beginning(log: str) -> int:
 
 
 def _shortened(error: str) -> str:
-    error = _ADDRESS.sub("", error).removesuffix(" The following argument types are supported:")
+    error = _OF_A_LIBRARY.sub("", error).removesuffix(" The following argument types are supported:")
     return _at_most(error)
 
 

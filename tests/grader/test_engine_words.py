@@ -137,7 +137,12 @@ def test_a_name_with_the_wrong_capital_letters_is_told_from_one_that_is_misspelt
 
 @pytest.mark.parametrize(
     ("module", "right"),
-    [("std_msgs.srv", "std_srvs.srv import SetBool"), ("std_msgs.messages", "std_msgs.msg import Bool")],
+    [
+        ("std_msgs.srv", "std_srvs.srv import SetBool"),
+        ("std_msgs.messages", "std_msgs.msg import Bool"),
+        ("std_srvs.msg' in line 4: `from std_srvs.msg import SetBool`. '", "std_srvs.srv import SetBool"),
+        ("SetBool", "std_srvs.srv import SetBool"),
+    ],
 )
 def test_an_import_from_the_wrong_package_of_interfaces_comes_with_the_right_one(module: str, right: str) -> None:
     message = f"ModuleNotFoundError: No module named '{module}'"
@@ -150,6 +155,10 @@ def test_an_import_from_the_wrong_package_of_interfaces_comes_with_the_right_one
     [
         ("NameError: name 'Header' is not defined", "imported or defined before this line?"),
         ("SyntaxError: invalid character '‘' (U+2018)", "copied text may have other quotes, dashes or spaces"),
+        ("SyntaxError: invalid syntax", "Look at the end of the line before it, too."),
+        ("SyntaxError: 'return' outside function", "Indent this line as the other lines of its function"),
+        ('SyntaxError: invalid syntax. Perhaps you forgot a comma? in line 3: `x("<a b="c">")`', "write it as '…'"),
+        ("TypeError: unsupported operand type(s) for -: 'float' and 'NoneType'", "Something in this line is None"),
         ("SyntaxError: invalid non-printable character U+00A0", "Type this character again"),
     ],
 )

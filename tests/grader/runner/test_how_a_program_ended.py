@@ -245,12 +245,66 @@ def raised(line: int, error: str, *frames: str) -> str:
         (
             raised(12, "AttributeError: 'Turnstile' object has no attribute 'pub'. Did you mean: 'publishers'?"),
             NODE.replace("self.coins = 0", "pub = self.create_publisher(Twist, '/x', 10)"),
-            "pub = … in a method is a local variable, which the others don't have: write self.pub = ….",
+            "has no attribute 'pub' in line 12: `self.coin += 1`. pub = … in a method is a local variable, which the "
+            "others don't have: write self.pub = ….",
+        ),
+        (
+            raised(12, "TypeError: ActionClient.__init__() missing 1 required positional argument: 'action_name'"),
+            NODE,
+            "The node comes first: ActionClient(self, Type, '/name').",
         ),
         (
             raised(12, "AttributeError: 'Turnstile' object has no attribute 'on_push'"),
             NODE.replace("    def on_push", "def on_push"),
             "def on_push is outside of the class: indent it like the other methods.",
+        ),
+        (
+            raised(12, "NameError: name 'on_push' is not defined"),
+            NODE,
+            "A method reaches what belongs to its object through self: write self.on_push.",
+        ),
+        (
+            raised(12, "rclpy.exceptions.ParameterNotDeclaredException: Invalid access to undeclared parameter(s): x"),
+            NODE.replace("self.coins = 0", "self.declare_parameter('X', 1)"),
+            "Declared is only: X. Use that very name, or declare this one, too.",
+        ),
+        (
+            raised(12, "AttributeError: 'Future' object has no attribute 'coins'").replace("self.coin", "handle.coin"),
+            NODE.replace("self.coin += 1", "handle = future"),
+            "A future is not yet the answer",
+        ),
+        (
+            raised(9, "TypeError: Turnstile.on_push() missing 1 required positional argument: 'message'").replace(
+                "ActionServer(self, Push, '/push', self.execute)", "client.send(goal, feedback_callback=self.on_push())"
+            ),
+            NODE.replace(
+                "ActionServer(self, Push, '/push', self.execute)", "client.send(goal, feedback_callback=self.on_push())"
+            ),
+            "Give self.on_push without parentheses",
+        ),
+        (
+            raised(9, "AttributeError: 'NoneType' object has no attribute 'success'").replace(
+                "ActionServer(self, Push, '/push', self.execute)\n",
+                "future.add_done_callback(self.on_push(future))\n"
+                '                             ^^^^^^^^^^^^^^\n  File "turnstile.py", line 12, in on_push\n',
+            ),
+            NODE,
+            "Give self.on_push without parentheses",
+        ),
+        (
+            "TypeError: 'list' object cannot be interpreted as an integer\n\n"
+            "The above exception was the direct cause of the following exception:\n\n"
+            + raised(
+                12,
+                "SystemError: <built-in method publish of x at 0x7ff06f507870> returned a result with an exception set",
+            ),
+            NODE,
+            "'list' object cannot be interpreted as an integer in line 12: `self.coin += 1`. A number belongs",
+        ),
+        (
+            raised(12, "rclpy._rclpy_pybind11.RCLError: invalid transition from state SUCCEEDED, at /src/goal.c:100"),
+            NODE,
+            "RCLError: invalid transition from state SUCCEEDED in line 12: `self.coin += 1`. This goal has ended",
         ),
         (
             raised(12, "AttributeError: 'Twist' object has no attribute 'speed'"),
@@ -386,6 +440,23 @@ def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_i
             "get_parameter() returns a Parameter",
         ),
         ("TypeError: 'float' object is not iterable", "write [value]"),
+        (
+            "TypeError: 'Range' object is not subscriptable",
+            "A Range is not a list. Where a list belongs, write [value]",
+        ),
+        ("TypeError: must be real number, not str", "A number belongs here: float(text)"),
+        ("TypeError: 'list' object cannot be interpreted as an integer", "A number belongs here"),
+        ("TypeError: 'float' object cannot be interpreted as an integer", "int(value) makes one"),
+        ("AttributeError: 'method' object has no attribute 'success'", "with () behind its name, it is called"),
+        ("TypeError: unsupported operand type(s) for +: 'float' and 'method'", "with () behind its name"),
+        ("TypeError: 'bool' object is not callable", "leave out the parentheses behind it"),
+        ("NotImplementedError: Service classes can not be instantiated", "Type.Request() of a service"),
+        ("RuntimeError: Context.init() must only be called once", "once, in main(), is enough"),
+        ("TypeError: unsupported operand type(s) for +: 'Time' and 'float'", "Duration(seconds=0.5)"),
+        ("TypeError: '>' not supported between instances of 'Duration' and 'int'", "is duration.nanoseconds"),
+        ("TypeError: unsupported operand type(s) for ^: 'float' and 'float'", "A power is written with **"),
+        ("FileNotFoundError: [Errno 2] No such file or directory: '<robot/>'", "fromstring(text) reads a text"),
+        ("rclpy.exceptions.InvalidParameterValueException: Invalid parameter value (2)", "at the start is refused"),
         ("TypeError: 'Twist' object is not iterable", "A Twist is not a list."),
         (
             "TypeError: unsupported operand type(s) for -: 'array.array' and 'array.array'",
