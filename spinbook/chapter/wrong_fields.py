@@ -30,10 +30,13 @@ def wrong_fields(program: str) -> list[WrongField]:
     tree = parsed(program)
     if tree is None or not any(mark in program for mark in ("_msgs", "_srvs", "_interfaces", ".msg")):
         return []
-    if any(isinstance(i, ast.ExceptHandler) and "AttributeError" in ast.dump(i) for i in descendants(tree)):
+    try:
+        if any(isinstance(i, ast.ExceptHandler) and "AttributeError" in ast.dump(i) for i in descendants(tree)):
+            return []
+        types = ProgramTypes(tree)
+        wrong = {item for function in types.functions for item in _in_function(function, types)}
+    except RecursionError:  # hundreds of attributes, calls or indices in a row, which nobody writes
         return []
-    types = ProgramTypes(tree)
-    wrong = {item for function in types.functions for item in _in_function(function, types)}
     return sorted(wrong, key=lambda item: (item.line, item.problem))
 
 

@@ -201,6 +201,7 @@ def test_a_wrong_field_is_found_with_the_right_one(code: str, problem: str, fix:
                 "if q.a:\n            return a\n        else:\n            return self.other(q)",
             )
         ),
+        *(f"{MSGS}x = String(){part * 900}" for part in (".data", "()", "[0]")),
         MSGS + node("self.last = None", "def on(self, m):\n        self.last = String()\n        self.last.text"),
     ],
 )

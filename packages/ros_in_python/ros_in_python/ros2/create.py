@@ -38,14 +38,22 @@ def create(words: tuple[str, ...]) -> None:
     Also: --license, --description, --maintainer-name, --maintainer-email, --destination-directory. To build a package
     of C++ takes a ROS 2 installation; one of messages, services and actions alone is compiled without.
     """
-    options = reader().parse_args(list(words))
-    if not options.package_name:
-        reader().error("the following arguments are required: package_name")
+    options, others = reader().parse_known_args(list(words))
+    name = options.package_name
+    if not name:
+        example = "ros2 pkg create my_package --dependencies rclpy"
+        raise CommandError(
+            "The package has no name.", f"Write it before --dependencies, which takes all that follows: {example}"
+        )
+    if others:
+        what = f"There is no option '{others[0]}'." if others[0].startswith("-") else f"'{others[0]}' is left over."
+        raise CommandError(
+            what, f"After the name '{name}' there are only options: `ros2 pkg create --help` lists them."
+        )
     if options.build_type not in ("ament_cmake", "ament_python"):
         raise CommandError(f"There is no build type '{options.build_type}' here: ament_cmake, ament_python.")
     if options.library_name and options.build_type == "ament_python":
         raise CommandError("A package of Python has no library: leave out --library-name.")
-    name = options.package_name
     # REP 144's rule for package names.
     if not (name[:1].isalpha() and name.isidentifier() and name.islower() and "__" not in name):
         raise CommandError(

@@ -29,6 +29,9 @@ def test_cmake_is_the_default_and_what_can_not_be_made_is_refused(terminal: Term
     for words, text in (
         (("--build-type", "cmake", "x"), "no build type 'cmake'"),
         (("--build-type", "ament_python", "--library-name", "l", "x"), "has no library"),
+        (("my", "package"), "'package' is left over.\nAfter the name 'my' there are only options"),
+        (("x", "--nod"), "There is no option '--nod'."),
+        (("--dependencies", "rclpy", "x"), "Write it before --dependencies"),
     ):
         refused = terminal.ros2("pkg", "create", *words, cwd=tmp_path)
         assert refused.code == 1
