@@ -7,7 +7,7 @@ import json
 import os
 import re
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -145,11 +145,25 @@ JUPYTER = "JPY_SESSION_NAME"
 VS_CODE = "__vsc_ipynb_file__"
 
 
-def notebook_file(variables: Mapping[str, Any], environment: Mapping[str, str]) -> Path | None:
+def notebook_file(shell: Any) -> Path | None:
     """Return the notebook's file as last saved, or None if that is unknown (Colab, a plain terminal)."""
-    for path in (variables.get(VS_CODE), environment.get(JUPYTER)):
-        if isinstance(path, str) and path.endswith(".ipynb") and Path(path).is_file():
-            return Path(path).resolve()
+    for path in (shell.user_ns.get(VS_CODE), os.environ.get(JUPYTER)):
+        if isinstance(path, str) and path.endswith(".ipynb"):
+            file = Path(path).resolve()
+            if file := file if file.is_file() else _renamed(file.parent, shell):
+                return file
+    return None
+
+
+def _renamed(folder: Path, shell: Any) -> Path | None:
+    """Return the notebook that was saved last with the cell that runs now. JupyterLab does not tell a kernel that its
+    notebook was renamed, but the cell's id."""
+    cell = getattr(shell, "get_parent", dict)().get("metadata", {}).get("cellId")
+    with contextlib.suppress(OSError):
+        holding = [
+            file for file in folder.glob("*.ipynb") if cell and json.dumps(cell) in file.read_text("utf-8", "replace")
+        ]
+        return max(holding, key=lambda file: file.stat().st_mtime, default=None)
     return None
 
 
@@ -203,7 +217,7 @@ def check_cell(session: Session, shell: Any, name: str, course: str, seconds: fl
 
     `course` is the folder with the exercises, if it is neither this one, nor one above it, nor the notebook's.
     """
-    notebook = notebook_file(shell.user_ns, os.environ)
+    notebook = notebook_file(shell)
     exercise = exercise_of(name, course, notebook)
     result = code_of(exercise, session, shell, notebook)
     print(result.note("Checked", f"%check {exercise.name}"))
@@ -218,7 +232,7 @@ def check_cell(session: Session, shell: Any, name: str, course: str, seconds: fl
 
 def show_hint(shell: Any, name: str, course: str) -> None:
     """Print the next hint of the last check of the exercise `name`."""
-    exercise = exercise_of(name, course, notebook_file(shell.user_ns, os.environ))
+    exercise = exercise_of(name, course, notebook_file(shell))
     print(hint_steps.next_hint(exercise, Path.cwd()))
 
 
@@ -259,7 +273,7 @@ _NOT_HANDED_IN = "Nothing was handed in: it was stopped before the file was writ
 
 def submit_cell(session: Session, shell: Any, name: str, course: str, student: str | None, seconds: float) -> None:
     """Write the upload for the exercise `name`. Raises CellFailed if there is nothing to hand in, or if it fails."""
-    notebook = notebook_file(shell.user_ns, os.environ)
+    notebook = notebook_file(shell)
     exercise = exercise_of(name, course, notebook)
     result = code_of(exercise, session, shell, notebook)
     print(result.note("Handed in", f"%submit {exercise.name}"))

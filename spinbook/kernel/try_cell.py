@@ -38,7 +38,7 @@ _LOOK_S = 0.1
 
 def try_out(session: Session, shell: Any, name: str, scenario_name: str, course: str) -> None:
     """Run the node of the exercise `name` among what surrounds it, until that ends or Stop. Raises CellFailed."""
-    exercise = exercise_of(name, course, notebook_file(shell.user_ns, os.environ))
+    exercise = exercise_of(name, course, notebook_file(shell))
     node = exercise.file_name.removesuffix(".py")
     if node not in session.starts:
         raise CellFailed(f"Run the cell that begins with %%node {node} first. Then run this one again.")

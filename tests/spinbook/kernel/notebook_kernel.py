@@ -76,6 +76,10 @@ class Kernel:
         self._client.execute_interactive(code, output_hook=take, timeout=CELL_LIMIT_S, allow_stdin=False)
         return shown
 
+    def from_cell(self, cell: str) -> None:
+        """Send this cell's id with all that runs from now on, as JupyterLab does."""
+        self._client.session.metadata["cellId"] = cell
+
     def pressing_stop(self, when: Callable[[Shown], bool]) -> Callable[[Shown], None]:
         """Return a callback for `run` that presses Stop, once, when the condition is true for what has been shown."""
         pressed = False

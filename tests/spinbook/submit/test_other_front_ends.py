@@ -27,7 +27,8 @@ BEGUN = "%check joint_velocity --seconds 0.05"
 def save(notebook: Path, code: str) -> None:
     """Save a notebook with the exercise's cell in it."""
     cell = {"cell_type": "code", "source": node_cell(code), "metadata": {"spinbook": {"exercise": "joint_velocity"}}}
-    notebook.write_text(json.dumps({"cells": [cell], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}))
+    check = {"cell_type": "code", "id": "checked", "source": "%check joint_velocity", "metadata": {}}
+    notebook.write_text(json.dumps({"cells": [cell, check], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}))
 
 
 @pytest.fixture(scope="module")
@@ -89,6 +90,10 @@ def test_a_cell_that_was_changed_since_it_was_run_is_reported_and_one_that_was_n
 
     assert "WARNING: You have changed the cell %%node joint_velocity since you ran it" in shown.text
     assert "Run that cell again, then %check joint_velocity." in shown.text
+
+    (place / "week3.ipynb").rename(place / "mine.ipynb")
+    elsewhere.from_cell("checked")
+    assert "WARNING: You have changed the cell" in elsewhere.run(f"{BEGUN} --course {place}").text
 
 
 def test_a_restarted_kernel_needs_only_the_first_cell_and_then_any_cell_may_come_first(place: Path) -> None:
