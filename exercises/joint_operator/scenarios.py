@@ -39,10 +39,11 @@ def scenarios(seed: int) -> tuple[Scenario, ...]:
         "aborts": ("the first goal is aborted", 5.0, three, (aborts(after=0.7), good), {}),
         "answers_late": ("the server takes 1.5 s to accept", 4.0, one, (moves(1.0, 0.5, answers_after=1.5),), {}),
         "appears": (
-            "five targets, and a server that appears after 2 s",
-            8.5,
-            (three, target(0.6, 1.33), target(0.1, 1.53)),
-            (good,),
+            # More targets than a queue holds: a node that waits for the server in a callback loses some.
+            "fourteen targets, and a server that appears after 2 s",
+            12.5,
+            tuple(target((n + 1) / 10, 0.53 + n / 10) for n in range(14)),
+            (moves(0.1, 0.2),),
             {"appears": 2.02},
         ),
         "never_ends": ("the first and the third goal never end", 14.0, three, (endless, good, endless), {}),
