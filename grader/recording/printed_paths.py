@@ -18,9 +18,15 @@ _FRAME = re.compile(
 )
 
 
+#: What Python's faulthandler prints when C code ends a program: the student reads the line elsewhere.
+_OF_AN_ABORT = re.compile(
+    r"^Fatal Python error: .*\n\nStack .*\n(?:  File .*\n)*\n?(?:Extension modules: .*\n)?", re.MULTILINE
+)
+
+
 def with_own_frames(log: str) -> str:
     """Return a log whose tracebacks have the program's own frames only."""
-    return _FRAME.sub(lambda frame: "" if _LIBRARY.match(frame[2]) else frame[0], log)
+    return _FRAME.sub(lambda frame: "" if _LIBRARY.match(frame[2]) else frame[0], _OF_AN_ABORT.sub("", log))
 
 
 def without_paths(log: str) -> str:

@@ -11,7 +11,7 @@ from grader.runner.budget import Allowance, Budget, ProgramExited
 from grader.runner.error_advice import advice_on, result_advice
 from grader.runner.node_attributes import silently_replaced
 from grader.runner.program import CannotContinue, RunningProgram
-from grader.runner.tracebacks import LastError, error_on_interrupt, first_error, last_error
+from grader.runner.tracebacks import LastError, aborting_line, error_on_interrupt, first_error, last_error
 from grader.scenario.scenario import SECOND
 from groundwork.process_exit import ProcessExit
 from rmw_lockstep.hub import TICK_S, Hub, Violation
@@ -33,21 +33,22 @@ OTHER_CLASS = re.compile(r'__convert_from_py: Assertion .strncmp\("(?:\w+\.)+(?P
 OTHER_VALUE = re.compile(r"\b(?P<name>\w+)__convert_from_py: Assertion .Py(?P<kind>Float|Long|Unicode|Bool)_Check")
 
 _VALUES = {
-    "Float": "a float field of it needs a float: 2.0 instead of 2, float(value), or the data of a message",
-    "Long": "an integer field of it needs an int",
-    "Unicode": "a text field of it needs a str",
-    "Bool": "a bool field of it needs True or False",
+    "Float": "A float field of it needs a float: 2.0 instead of 2, float(value), or the data of a message",
+    "Long": "An integer field of it needs an int",
+    "Unicode": "A text field of it needs a str",
+    "Bool": "A bool field of it needs True or False",
 }
 
 
-def _of_signal(signal: int, log: str) -> str:
+def _of_signal(signal: int, log: str, at: LastError | None) -> str:
+    place = f" in {at.place}: `{at.text}`" if at else ""
     if other := OTHER_CLASS.search(log):
-        text = f"it gave ROS 2 an object of another class than {other['expected']}."
+        text = f"it gave ROS 2 an object of another class than {other['expected']}{place}."
         action, _, kind = other["expected"].rpartition("_")
         return f"{text} {result_advice(action)}" if kind == "Result" else text
     if value := OTHER_VALUE.search(log):
         type_name = re.split(r"(?:action|srv|msg)__", value["name"])[-1].replace("__", " ").replace("_", " ")
-        return f"it put a value of another type into a message ({type_name}): {_VALUES[value['kind']]}."
+        return f"it put a value of another type into a message ({type_name}){place}. {_VALUES[value['kind']]}."
     return f"it was killed by signal {signal}."
 
 
@@ -68,7 +69,8 @@ def of_exit(exit_: ProcessExit, log: str, sources: Mapping[str, str]) -> tuple[s
     if last and last.error:
         return described(last, sources), last.line
     if exit_.signal:
-        return _of_signal(exit_.signal, log), None
+        at = aborting_line(log, sources)
+        return _of_signal(exit_.signal, log, at), at.line if at else None
     if exit_.code == 0:
         once = any("spin_once(" in source for source in sources.values())
         why = " spin_once() returns after one callback; rclpy.spin(node) stays until Ctrl-C." if once else ""

@@ -81,6 +81,15 @@ def last_error(log: str, sources: Mapping[str, str]) -> LastError | None:
     return LastError(error, line, _row(sources[file], line), raised_there, block, file, _place(file, line, sources))
 
 
+def aborting_line(log: str, sources: Mapping[str, str]) -> LastError | None:
+    """Return the line of the student's that called what aborted the program in C, which has no error; None if none."""
+    for frame in _FRAME.finditer(log.rpartition("Fatal Python error: Aborted\n")[2]):
+        if file := _own(frame["file"], sources):
+            line = int(frame["line"])
+            return LastError("", line, _row(sources[file], line), place=_place(file, line, sources))
+    return None
+
+
 #: The line to blame for an error that a library raises when it calls a callback, by a pattern of the error: the
 #: callback that takes other arguments; the one that was called instead of given.
 _CALLBACK_LINES = (

@@ -6,6 +6,7 @@ import atexit
 import builtins
 import contextlib
 import ctypes
+import faulthandler
 import gc
 import importlib
 import importlib.machinery
@@ -80,6 +81,8 @@ def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
         stream = io.TextIOWrapper(buffered, "utf-8", errors, line_buffering=True)
         setattr(sys, name, stream)
         setattr(sys, f"__{name}__", stream)
+    # C code ends a program that gives a message a value of another type. This prints the line where it did.
+    faulthandler.enable(2, all_threads=False)
     module = types.ModuleType("__main__")
     module.__file__ = path
     module.__loader__ = importlib.machinery.SourceFileLoader("__main__", path)

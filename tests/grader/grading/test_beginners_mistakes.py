@@ -45,7 +45,7 @@ MISTAKES: list[tuple[str, dict[str, str], str]] = [
     ("motor_switch", {"'/switch_motors'": "'/switch_motor'"}, "Is /switch_motor a misspelling of /switch_motors?"),
     ("motor_switch", {"# END SOLUTION\n        return response": "# END SOLUTION"}, "end each way through it with"),
     ("calibration", {"position=[answer.offset]": "position=answer.offset"}, "One value is where a list belongs"),
-    ("calibration", {"append(message.data)": "append(message)"}, "a text field of it needs a str"),
+    ("calibration", {"append(message.data)": "append(message)"}, "A text field of it needs a str"),
     (
         "calibration",
         {"call_async(CalibrateJoint.Request(joint=joint))": "call_async(joint)"},

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from rclpy.node import Node
 
+from grader.recording.printed_paths import without_paths
 from grader.runner.node_attributes import PUBLIC
 from grader.runner.program_end import of_exit, survived_by
 from grader.runner.tracebacks import last_error
@@ -499,15 +500,24 @@ def test_advice_on_errors_that_beginners_meet_in_rclpy(error: str, advice: str) 
     assert " at 0x" not in text, "it is another one in each run"
 
 
-def test_a_value_of_another_type_that_aborts_the_program_is_named() -> None:
+def test_a_value_of_another_type_that_aborts_the_program_is_named_with_its_line() -> None:
     log = "python: ./_push_s.c:153: a__action__push__result__convert_from_py: Assertion `PyFloat_Check(field)' failed."
-
-    text, _ = of_exit(ProcessExit(None, 6, None), log, {"turnstile.py": NODE})
-
-    assert text == (
-        "it put a value of another type into a message (push result): a float field of it needs a float: 2.0 instead "
-        "of 2, float(value), or the data of a message."
+    # As Python 3.11 prints it.
+    stack = (
+        "\nFatal Python error: Aborted\n\nStack (most recent call first):\n"
+        '  File "/x/lib/python3.11/site-packages/rclpy/publisher.py", line 70 in publish\n'
+        '  File "turnstile.py", line 12 in on_push\n  File "turnstile.py", line 7 in x\n\n'
+        "Extension modules: numpy.core._multiarray_umath (total: 1)\n"
     )
+
+    text, line = of_exit(ProcessExit(None, 6, None), log + stack, {"turnstile.py": NODE})
+
+    assert (line, without_paths(f"{log}{stack}more\n")) == (12, f"{log}\nmore\n")
+    assert text == (
+        "it put a value of another type into a message (push result) in line 12: `self.coin += 1`. A float field of it "
+        "needs a float: 2.0 instead of 2, float(value), or the data of a message."
+    )
+    assert "(push result). A float" in of_exit(ProcessExit(None, 6, None), log, {"turnstile.py": NODE})[0]
 
 
 def test_a_log_that_is_one_long_word_is_read_in_no_time() -> None:
