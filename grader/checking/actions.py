@@ -197,8 +197,7 @@ def must_match_feedback(
         if expected is None or got is None:
             text = f"expected {expected_count} feedback messages, got {count}."
             stuck = _ended_at(student) is None and _does_nothing_after(run, student)
-            begun = _NO_FEEDBACK if not _is_not_executed(student) else _NOT_EXECUTED
-            never = UNKNOWN if count else _STUCK if stuck else begun
+            never = UNKNOWN if count else _STUCK if stuck else _NO_FEEDBACK
             run.wrong_at(student.at, text, _part(student), f"{expected_count} messages", count, never)
         part = f"{_part(student)}, feedback {number}"
         run.compare_at(got.at, part, field, got.fields, expected.fields, tolerance, student.action, messages)
@@ -286,7 +285,7 @@ def _must_answer(run: RecordedRun, goal: Goal, accepted: bool) -> None:
 def _why(run: RecordedRun, goal: Goal, expected: str) -> Cause:
     """Return the common mistake behind a wrong end of a goal."""
     got, cancel = _ended_as(goal), goal.cancels[0] if goal.cancels else None
-    if _is_not_executed(goal):
+    if {state.state for state in goal.states} in ({"accepted"}, {"accepted", "canceling"}):
         return _NOT_EXECUTED
     if expected == "canceled" and cancel:
         return _why_not_canceled(goal, cancel, got)
@@ -295,10 +294,6 @@ def _why(run: RecordedRun, goal: Goal, expected: str) -> Cause:
     if _ended_at(goal) is not None or expected == "aborted":
         return UNKNOWN
     return _STUCK if _does_nothing_after(run, goal) else _NEVER
-
-
-def _is_not_executed(goal: Goal) -> bool:
-    return bool(goal.states) and all(state.state in ("accepted", "canceling") for state in goal.states)
 
 
 def _does_nothing_after(run: RecordedRun, goal: Goal) -> bool:

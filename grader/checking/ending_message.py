@@ -26,33 +26,21 @@ ADVISED = re.compile(r" in line \d+[^`]*: `.*`\. \S")
 OF_NOTEBOOKS = {"matplotlib", "mpl_toolkits", "pylab", "PIL", "IPython", "nbformat"}
 
 ADVICE = (
+    (r"IndentationError|TabError", "Compare the indentation of this line with the lines around it."),
+    (r"(?i)SyntaxError: (?:.*non-utf-8|\(unicode)", "Save the file as UTF-8."),
     (
-        re.compile(r"IndentationError|TabError"),
-        "Compare the indentation of this line with the lines around it.",
-    ),
-    (re.compile(r"SyntaxError: .*non-utf-8|SyntaxError: \(unicode", re.IGNORECASE), "Save the file as UTF-8."),
-    (
-        re.compile(r"SyntaxError: invalid (?:non-printable )?character"),
+        r"SyntaxError: invalid (?:non-printable )?character",
         "Type this character again: copied text may have other quotes, dashes or spaces than Python's.",
     ),
+    (r'SyntaxError: [^`]*`.*"<[^"]*="\w', "Inside \"…\" a text can't have the same quotes: write it as '…'."),
+    (r"SyntaxError: '\w+' outside", "Indent this line as the other lines of its function or loop."),
+    (r"SyntaxError: invalid syntax(?!\. )", "Python can't read this line. Look at the end of the line before it, too."),
+    (r"Address family not", "A node has no network while it is graded and needs none: it communicates over ROS 2."),
+    (r"NameError", "Is the name spelled as in its definition, and imported or defined before this line?"),
+    (r"ZeroDivisionError", "When is the number that this line divides by zero?"),
+    (r"KeyError|IndexError", "When is this key or index missing?"),
     (
-        re.compile(r"SyntaxError: [^`]*`.*\"<[^\"]*=\"\w"),
-        "Inside \"…\" a text can't have the same quotes: write it as '…'.",
-    ),
-    (re.compile(r"SyntaxError: '\w+' outside"), "Indent this line as the other lines of its function or loop."),
-    (
-        re.compile(r"SyntaxError: invalid syntax(?!\. )"),
-        "Python can't read this line. Look at the end of the line before it, too.",
-    ),
-    (
-        re.compile(r"Address family not supported"),
-        "A node has no network while it is graded and needs none: it communicates over ROS 2 only.",
-    ),
-    (re.compile(r"NameError"), "Is the name spelled as in its definition, and imported or defined before this line?"),
-    (re.compile(r"ZeroDivisionError"), "When is the number that this line divides by zero?"),
-    (re.compile(r"KeyError|IndexError"), "When is this key or index missing?"),
-    (
-        re.compile(r"(?:Attribute|Type)Error: .*\bNoneType\b"),
+        r"(?:Attribute|Type)Error.*\bNoneType",
         "Something in this line is None: what fills it, and has that happened by now?",
     ),
 )
@@ -64,7 +52,7 @@ ROS_1 = {"rospy": "rclpy", "roslib": "rclpy", "actionlib": "rclpy.action", "tf":
 
 def _instead(module: str, exercise: Exercise, message: str) -> str:
     """Return what to import in place of a module that is not available; `message` quotes the line that does."""
-    imported_names = re.findall(r"\w+", message.rpartition(" import ")[2])
+    names = [module, *re.findall(r"\w+", message.rpartition(" import ")[2])]
     top = module.partition(".")[0]
     if top in ROS_1:
         return (
@@ -73,14 +61,13 @@ def _instead(module: str, exercise: Exercise, message: str) -> str:
         )
     types = [*(topic.type for topic in exercise.topics), *(end.type for end in exercise.endpoints)]
     own = {name.partition("/")[0]: name for name in types}
-    if top in own and top != module:
-        sought = module.partition(".")[2]
-        fits = max(types, key=lambda name: (name.split("/")[2] in imported_names, f"/{sought}/" in name, top in name))
-        package, kind, name = fits.split("/")
-        return f"{top} has no module {sought}: write from {package}.{kind} import {name}."
-    if type_ := next((name for name in types if name.endswith(f"/{module}")), ""):
-        package, kind, name = type_.split("/")
-        return f"{module} is a class of {package}.{kind}: write from {package}.{kind} import {name}."
+    sought = module.partition(".")[2]
+    is_class = any(name.endswith(f"/{module}") for name in types)
+    if is_class or (top in own and sought):
+        best = max(types, key=lambda name: (name.split("/")[2] in names, f"/{sought}/" in name, top in name))
+        package, kind, name = best.split("/")
+        why = f"{module} is a class of {package}.{kind}" if is_class else f"{top} has no module {sought}"
+        return f"{why}: write from {package}.{kind} import {name}."
     close = difflib.get_close_matches(top, [*exercise.packages, *own], n=1)
     meant = f" Is it a misspelling of {close[0]}?" if close else ""
     available = ", ".join([AVAILABLE, *exercise.packages])
@@ -119,6 +106,6 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
         case = f"It may have {name}: capital letters count." if name != no_name[1] else "Is the name spelled right?"
         return f"{message} The module {no_name[2]} has no {no_name[1]}. {case}"
     for pattern, advice in ADVICE:
-        if pattern.search(message) and not is_advised:
+        if re.search(pattern, message) and not is_advised:
             return f"{message} {advice}"
     return message

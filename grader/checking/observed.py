@@ -134,10 +134,8 @@ def _floats(value: Any, path: str = "") -> Iterator[tuple[str, float]]:
 def _letters(exercise: Exercise, recording: Recording, reference: Recording) -> Cause:
     for topic in exercise.outputs:
         field = topic.elements.named_by if topic.elements else ""
-        lists = [message.fields.get(field) for message in recording.received if message.topic == topic.name]
-        if lists and all(
-            isinstance(names, list) and len(names) > 1 and len("".join(names)) == len(names) for names in lists
-        ):
+        mine, its = ({len(str(name)) for name in _values(run, topic, field)} for run in (recording, reference))
+        if field and mine == {1} != its:
             seen = (
                 f"Each element of {field} on {topic.name} is one letter: a text stands where a list of texts belongs."
             )

@@ -227,11 +227,5 @@ def _without_text(last: LastError, sources: Mapping[str, str]) -> str:
     row = last.traceback.splitlines()[-2].strip() if last.traceback.count("\n") > 1 else ""
     if last.raised_there or not last.line or not re.fullmatch(r"[\w.]+:?", last.error):
         return ""
-    return (
-        f"The library that this line calls refused what it was given: `{row}`."
-        if row.startswith("assert ")
-        else (
-            "The library that this line calls refused what it was given: compare the types of the arguments with the "
-            "chapter."
-        )
-    )
+    given = f"`{row}`" if row.startswith("assert ") else "compare the types of the arguments with the chapter"
+    return f"The library that this line calls refused what it was given: {given}."

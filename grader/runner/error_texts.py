@@ -14,31 +14,16 @@ _NO_SCREEN = (
 #: What to do about an error, by a pattern of its last line.
 _BY_TEXT = (
     (r"ParameterNotDeclaredException", "Declare it first, in __init__: self.declare_parameter(…)."),
-    (
-        r"Callback returned an invalid type",
-        "The on-set callback has to return a SetParametersResult, each way through it.",
-    ),
-    (
-        r"InvalidParameterValueException",
-        "The value at the start is refused, by the on-set callback or by the range: is the condition there right?",
-    ),
-    (
-        r"InvalidParameterTypeException",
-        "A parameter has the type of its default: 1 declares an integer, 1.0 a double.",
-    ),
-    (
-        r"The '\w+' field must be of type 'float'",
-        "A float field needs a float: write 2.0 instead of 2, or float(value).",
-    ),
+    (r"returned an invalid type", "An on-set callback has to return a SetParametersResult, each way through it."),
+    (r"InvalidParameterValue", "The value at the start is refused by the on-set callback or the range: is that right?"),
+    (r"ParameterTypeException", "A parameter has the type of its default: 1 declares an integer, 1.0 a double."),
+    (r"field must be of type 'float'", "A float field needs a float: write 2.0 instead of 2, or float(value)."),
     (r"The '(\w+)' field must be of type 'int'", "An integer field needs an integer: int(value) makes one."),
     (
         r"Expected <class '[\w.]*\.(\w+)'>, got <class '[\w.]+'>",
         r"publish() takes a whole \1: create one, put the value into its field, and publish that.",
     ),
-    (
-        r"with event CANCELED",
-        "canceled() is only for a goal with a request to cancel; call abort() to give up any other.",
-    ),
+    (r"event CANCELED", "canceled() is only for a goal with a request to cancel; call abort() to give up any other."),
     (r"with event EXECUTE\b", "The goal executes already when rclpy calls this callback: leave out execute()."),
     (r"transition from state (?:SUCCEEDED|ABORTED|CANCELED)", "This goal has ended already: end each goal only once."),
     (r"no display|Cannot load backend|could not connect to display|No module named '_?tkinter'", _NO_SCREEN),
@@ -58,27 +43,15 @@ _BY_TEXT = (
         r"'(?:\w*function\w*|method)' (?:object (?:has no|is not)|and )|and '(?:function|method)'",
         "A function without parentheses is no value yet: with () behind its name, it is called.",
     ),
-    (
-        r"'(?:bool|int|float|str)' object is not callable",
-        "This is a value and no function: leave out the parentheses behind it, or write * if it is a product.",
-    ),
-    (
-        r"(?:Service|Action) classes can not be instantiated",
-        "Create one of its messages: Type.Request() of a service, Type.Goal() or Type.Result() of an action.",
-    ),
+    (r"'(?:bool|int|float)' object is not callable", "This is no function: leave out (), or write * for a product."),
+    (r"classes can not be instantiated", "Create a Type.Request() of a service, a Type.Goal() of an action."),
     (r"init\(\) must only be called once", "rclpy.init() is called a second time here: once, in main(), is enough."),
-    (
-        r"operand type\(s\) for .*'Parameter'",
-        "get_parameter() returns a Parameter, and its value is get_parameter(…).value.",
-    ),
+    (r"operand type.*'Parameter'", "get_parameter() returns a Parameter, and its value is get_parameter(…).value."),
     (
         r"operand type\(s\) for \S+ '(?:array\.array|list|tuple)'",
         "A list of numbers is no number: calculate with one element of it at a time, in a loop.",
     ),
-    (
-        r"bad argument type for built-in operation",
-        "A text field of a message takes a str only: str(value), message.data or get_parameter(…).value.",
-    ),
+    (r"bad argument type for built-in", "A text field takes a str only: str(value), or get_parameter(…).value."),
     (
         r"has no attribute '_TYPE_SUPPORT'|rclpy_resolve_name\(\): incompatible function arguments",
         "The class of the messages comes before the name: create_publisher(String, '/name', 10), ActionClient(self, "
@@ -93,10 +66,7 @@ _BY_TEXT = (
         r"module '[\w.]+' has no attribute",
         "Is the name spelled right? If it is a module itself, it must be imported as a whole: import xml.etree.",
     ),
-    (
-        r"'list' object has no attribute '(?:name|value|type_)'",
-        "The callback gets a list of parameters, even if only one is set: loop over it.",
-    ),
+    (r"'list' object has no attribute '(?:name|value|type_)'", "The callback gets a list of parameters: loop over it."),
     (
         r"multiply sequence by non-int|only concatenate (?:str|list)|unsupported operand type\(s\) for .*'str'",
         "A value of this line is a text or a list, and no number: where does it come from? '0.5' is a text.",
@@ -106,10 +76,7 @@ _BY_TEXT = (
     (r"required positional argument: 'action_name'", "The node comes first: ActionClient(self, Type, '/name')."),
     (r"required positional argument: 'node_name'", "The node's name goes in here: super().__init__('name')."),
     (r"float\(\) argument must be .*, not 'method'", "The period comes first: create_timer(period, self.on_timer)."),
-    (
-        r"assignment index out of range",
-        "The list is shorter than that: a new one is empty, and append() makes it longer.",
-    ),
+    (r"assignment index", "The list is shorter than that: a new one is empty, and append() makes it longer."),
     (
         r"'(?:Time|Duration)' and '(?:int|float)'|'(?:int|float)' and '(?:Time|Duration)'",
         "This takes a Duration and no plain number: Duration(seconds=0.5). The number in one is duration.nanoseconds.",
@@ -123,49 +90,25 @@ _BY_TEXT = (
         "A function that assigns to a name has a variable of its own with this name. What a node remembers is an "
         "attribute: self.name, set in __init__.",
     ),
-    (
-        r"FileNotFoundError: .*: '\s*<",
-        "This takes a file's name and got the text itself: ElementTree.fromstring(text) reads a text.",
-    ),
-    (
-        r"FileNotFoundError",
-        "Your node runs on another computer, which has none of your files but the ones that you hand in.",
-    ),
+    (r"FileNotFoundError.*: '\s*<", "A file's name belongs here, and this is a text: fromstring(text) reads one."),
+    (r"FileNotFoundError", "Your node runs on another computer, which has only the files that you hand in."),
     (r"callback should be either be callable", "The callback takes the message: def on_message(self, message)."),
     (
         r"'ServerGoalHandle' object has no attribute",
         "A goal handle has request, which is the goal, and is_cancel_requested, succeed(), canceled(), abort() and "
         "publish_feedback().",
     ),
-    (
-        r"_Result' object has no attribute 'status'",
-        "What get_result_async() brings has two fields: status, and result, which is the message.",
-    ),
+    (r"_Result' object has no attribute 'status'", "What it brings has two fields: status, and result, the message."),
     (r"_FeedbackMessage' object has no attribute '(\w+)'", r"The feedback is a message inside: message.feedback.\1."),
-    (
-        r"'Future' object has no attribute",
-        "A future is not yet the answer: give it a callback with add_done_callback(), and call future.result() there.",
-    ),
-    (
-        r"'Service' object has no attribute",
-        "create_service() makes the side that answers. The side that asks is made by create_client().",
-    ),
-    (
-        r"'Subscription' object has no attribute 'publish'",
-        "create_subscription() makes the side that receives. The side that sends is made by create_publisher().",
-    ),
-    (
-        r"'(?:float|int|bool)' object is not (?:iterable|subscriptable)",
-        "One value is where a list belongs: write [value], for a list field of a message, too.",
-    ),
+    (r"'Future' object has no", "A future is not yet the answer: call future.result() in its add_done_callback()."),
+    (r"'Service' object has no", "This is the side that answers. The side that asks is made by create_client()."),
+    (r"'Subscription' object has no", "This is the side that receives. The other is made by create_publisher()."),
+    (r"'(?:float|int|bool)' object is not [is]", "A list belongs here, as in a list field: write [value]."),
     (
         r"'([A-Z]\w*)' object is not (?:iterable|subscriptable)",
         r"A \1 is not a list. Where a list belongs, write [value]; if one of its fields is a list, use that field.",
     ),
-    (
-        r"dictionary changed size during iteration|list modified during iteration",
-        "The line changes what the loop goes through: loop over list(…) of it.",
-    ),
+    (r"during iteration", "The line changes what the loop goes through: loop over list(…) of it."),
 )
 
 

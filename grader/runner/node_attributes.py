@@ -25,11 +25,7 @@ PUBLIC = {
 
 #: Attributes that it can replace, and then the node stops working without any error.
 PRIVATE = {
-    "_publishers": "the list of its publishers",
-    "_subscriptions": "the list of its subscriptions",
-    "_clients": "the list of its service clients",
-    "_services": "the list of its services",
-    "_timers": "the list of its timers",
+    **{f"_{name}": PUBLIC[name] for name in ("publishers", "subscriptions", "clients", "services", "timers")},
     "_parameters": "its parameters",
     "_context": "its context",
     "_clock": "its clock",

@@ -27,8 +27,7 @@ _OF_THE_PROGRAM = re.compile(re.escape(HEADER) + r'\n[ \t]*File "[^"]+", line \d
 #: Where an object is in memory, which is another place in each run; where rclpy's C++ has an exception, and raises it.
 _OF_A_LIBRARY = re.compile(r" at 0x[0-9a-f]{4,16}\b|^rclpy\._rclpy_pybind11\.|, at /\S+:\d+$")
 
-#: The error of a call from C++, whose cause says what is wrong, and stands before it.
-_IN_PYBIND11 = re.compile(r"^SystemError: .{0,400} returned a result with an exception set")
+#: The cause of an error in C++, which stands before it: the error itself says nothing.
 _CAUSE = re.compile(r"(?:^|\n)(\w+: .*)\n\nThe above exception was the direct cause[^\n]*\s*$")
 
 #: The text of a SyntaxError has no header.
@@ -68,7 +67,7 @@ def last_error(log: str, sources: Mapping[str, str]) -> LastError | None:
     rows = log[start:].splitlines()
     ends = (number for number, row in enumerate(rows, 1) if number > 1 and _ERROR.match(row))
     rows = rows[: next(ends, len(rows))]
-    caused = _IN_PYBIND11.search(rows[-1]) and _CAUSE.search(log[:start])
+    caused = "returned a result with an exception set" in rows[-1] and _CAUSE.search(log[:start])
     error = _shortened(caused[1] if caused else rows[-1].strip()) if _ERROR.match(rows[-1]) else ""
     block = "\n".join(rows)
     frames = [(_own(m["file"], sources), int(m["line"])) for m in _FRAME.finditer(block)]

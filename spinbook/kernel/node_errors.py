@@ -114,7 +114,6 @@ class NodeLog:
     _traceback: list[str] = field(default_factory=list)
     _uncaught: bool = False
     _ignored: bool = False
-    _cause: str = ""
     _is_chained: bool = False
 
     @property
@@ -156,7 +155,6 @@ class NodeLog:
         else:
             self._end_chain(stopping)
             self._ignored = line.startswith("Exception ignored")
-            self._cause = line if _RAISED.match(line) else ""
             self._log(line, stopping)
 
     def _log(self, line: str, stopping: bool) -> None:
@@ -175,9 +173,7 @@ class NodeLog:
             frames.append((frame[1], int(frame[2])))
             self._uncaught = self._uncaught or bool(frame[3])
         elif _RAISED.match(line):
-            # The cause of an error in C++ says what is wrong, and the error itself nothing.
-            text = self._cause if self._cause and "returned a result with an exception set" in line else line.strip()
-            quoted, traceback = "\n".join(self.last), "\n".join(self._traceback)
+            text, quoted, traceback = line.strip(), "\n".join(self.last), "\n".join(self._traceback)
             self._chain.append(_LoggedException(text, tuple(frames), self._uncaught, quoted, traceback))
             self._frames = None
 

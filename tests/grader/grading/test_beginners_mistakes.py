@@ -44,7 +44,8 @@ MISTAKES: list[tuple[str, dict[str, str], str]] = [
     ("motor_switch", {"'motors on' if": "'Motors on' if"}, "Only capital letters, spaces or punctuation differ."),
     ("motor_switch", {"'/switch_motors'": "'/switch_motor'"}, "Is /switch_motor a misspelling of /switch_motors?"),
     ("motor_switch", {"# END SOLUTION\n        return response": "# END SOLUTION"}, "end each way through it with"),
-    ("calibration", {"position=[answer.offset]": "position=answer.offset"}, "One value is where a list belongs"),
+    ("calibration", {"position=[answer.offset]": "position=answer.offset"}, "A list belongs here, as in a list field"),
+    ("calibration", {"name=[joint]": "name=joint"}, "is one letter: a text stands where a list of texts belongs."),
     ("calibration", {"append(message.data)": "append(message)"}, "A text field of it needs a str"),
     (
         "calibration",
@@ -82,6 +83,12 @@ MISTAKES: list[tuple[str, dict[str, str], str]] = [
         {"rclpy.spin(node, MultiThreadedExecutor())": "rclpy.spin(node)"},
         "run the node in a MultiThreaded",
     ),
+    ("joint_mover", {"return GoalResponse.ACCEPT": "return True"}, "has to return GoalResponse.ACCEPT or"),
+    (
+        "joint_mover",
+        {"goal_callback=": "handle_accepted_callback=lambda goal: None, goal_callback="},
+        "has to call goal_handle.execute()",
+    ),
     ("joint_mover", {"goal_handle.request.position": "goal_handle.position"}, "has no attribute 'position' in line"),
     (
         "joint_velocity",
@@ -115,7 +122,7 @@ MISTAKES: list[tuple[str, dict[str, str], str]] = [
         {"self.get_parameter('gain').value": "self.get_parameter('gain')"},
         "get_parameter() returns a Parameter",
     ),
-    ("joint_filter", {"return SetParametersResult(successful=True)": "pass"}, "Callback returned an invalid type"),
+    ("joint_filter", {"return SetParametersResult(successful=True)": "pass"}, "Your on-set callback has to return a"),
     (
         "go_to_goal",
         {"= min(distance, FASTEST) * max(math.cos(turn), 0.0)": "= 1"},

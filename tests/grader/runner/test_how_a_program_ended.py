@@ -450,13 +450,13 @@ def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_i
         ("TypeError: 'float' object cannot be interpreted as an integer", "int(value) makes one"),
         ("AttributeError: 'method' object has no attribute 'success'", "with () behind its name, it is called"),
         ("TypeError: unsupported operand type(s) for +: 'float' and 'method'", "with () behind its name"),
-        ("TypeError: 'bool' object is not callable", "leave out the parentheses behind it"),
+        ("TypeError: 'bool' object is not callable", "leave out ()"),
         ("NotImplementedError: Service classes can not be instantiated", "Type.Request() of a service"),
         ("RuntimeError: Context.init() must only be called once", "once, in main(), is enough"),
         ("TypeError: unsupported operand type(s) for +: 'Time' and 'float'", "Duration(seconds=0.5)"),
         ("TypeError: '>' not supported between instances of 'Duration' and 'int'", "is duration.nanoseconds"),
         ("TypeError: unsupported operand type(s) for ^: 'float' and 'float'", "A power is written with **"),
-        ("FileNotFoundError: [Errno 2] No such file or directory: '<robot/>'", "fromstring(text) reads a text"),
+        ("FileNotFoundError: [Errno 2] No such file or directory: '<robot/>'", "fromstring(text) reads one"),
         ("rclpy.exceptions.InvalidParameterValueException: Invalid parameter value (2)", "at the start is refused"),
         ("TypeError: 'Twist' object is not iterable", "A Twist is not a list."),
         (
@@ -465,7 +465,7 @@ def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_i
         ),
         (
             "AttributeError: 'Future' object has no attribute 'success'",
-            "A future is not yet the answer: give it",
+            "A future is not yet the answer: call",
         ),
         (
             "AttributeError: 'Push_FeedbackMessage' object has no attribute 'coins'",
