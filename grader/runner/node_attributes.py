@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 from grader.runner.tracebacks import LastError
 
@@ -77,5 +78,5 @@ def _replaced(source: str) -> Iterator[str]:
                 yield target.attr
 
 
-def _targets(node: ast.AST) -> list[ast.expr | None]:
+def _targets(node: ast.AST) -> list[Any]:
     return node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]

@@ -150,15 +150,15 @@ def notebook_file(shell: Any) -> Path | None:
     for path in (shell.user_ns.get(VS_CODE), os.environ.get(JUPYTER)):
         if isinstance(path, str) and path.endswith(".ipynb"):
             file = Path(path).resolve()
-            if file := file if file.is_file() else _renamed(file.parent, shell):
-                return file
+            return file if file.is_file() else _renamed(file.parent, shell)
     return None
 
 
 def _renamed(folder: Path, shell: Any) -> Path | None:
     """Return the notebook that was saved last with the cell that runs now. JupyterLab does not tell a kernel that its
     notebook was renamed, but the cell's id."""
-    cell = getattr(shell, "get_parent", dict)().get("metadata", {}).get("cellId")
+    request: dict[str, Any] = getattr(shell, "get_parent", dict)()
+    cell = request.get("metadata", {}).get("cellId")
     with contextlib.suppress(OSError):
         holding = [
             file for file in folder.glob("*.ipynb") if cell and json.dumps(cell) in file.read_text("utf-8", "replace")
