@@ -30,8 +30,7 @@ _NOT_EXECUTED = Cause(
     *_ENDS,
 )
 _NO_RESPONSE = Cause(
-    "Your goal callback has to return GoalResponse.ACCEPT or GoalResponse.REJECT, each way through it, and returned "
-    "something else.",
+    "Your goal callback has to return GoalResponse.ACCEPT or GoalResponse.REJECT, each way through it.",
     *hints("goal_response"),
 )
 _GAVE_UP = Cause("Your execute callback called goal_handle.abort(), which is for a goal that it gives up.", *_ENDS)
@@ -121,20 +120,14 @@ def must_end(run: RecordedRun, status: str, goal: int = 1, within: float | None 
     """
     student = scenario_goal(run, goal)
     _must_answer(run, student, accepted=True)
+    ended = _ended_at(student) or student.at
     if (got := _ended_as(student)) != status:
         text = f"it was expected to end as {status}, got {got}."
-        run.wrong_at(
-            _ended_at(student) or student.at,
-            text,
-            _part(student),
-            status,
-            got,
-            _why(run, student, status),
-        )
-    late = (_ended_at(student) or student.at) - student.at
+        run.wrong_at(ended, text, _part(student), status, got, _why(run, student, status))
+    late = ended - student.at
     if within is not None and late > within + 1e-9:
         text = f"it was expected to end within {within:g} s, got {late:.2f} s."
-        run.wrong_at(_ended_at(student), text, _part(student), f"{within:g} s", f"{late:.2f} s")
+        run.wrong_at(ended, text, _part(student), f"{within:g} s", f"{late:.2f} s")
 
 
 def must_cancel(run: RecordedRun, goal: int = 1, within: float = 1.0) -> None:

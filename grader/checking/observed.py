@@ -101,10 +101,8 @@ def _int_as_float(exercise: Exercise, recording: Recording, reference: Recording
     for name, path, value in _numbers(recording):
         if 0 < abs(value) <= _TINY:
             field = path or "a field"
-            return Cause(
-                f"{field} on {name} is {value:.3g}, next to nothing: your node put an int into a float field.",
-                *hints("int_as_float", field=field),
-            )
+            seen = f"{field} on {name} is {value:.3g}, next to nothing: your node put an int into a float field."
+            return Cause(seen, *hints("int_as_float", field=field))
     return UNKNOWN
 
 

@@ -41,15 +41,11 @@ def create(words: tuple[str, ...]) -> None:
     options, others = reader().parse_known_args(list(words))
     name = options.package_name
     if not name:
-        example = "ros2 pkg create my_package --dependencies rclpy"
-        raise CommandError(
-            "The package has no name.", f"Write it before --dependencies, which takes all that follows: {example}"
-        )
+        raise CommandError("The package has no name.", "Write it before --dependencies, which takes all that follows.")
     if others:
-        what = f"There is no option '{others[0]}'." if others[0].startswith("-") else f"'{others[0]}' is left over."
-        raise CommandError(
-            what, f"After the name '{name}' there are only options: `ros2 pkg create --help` lists them."
-        )
+        option = others[0].startswith("-")
+        what = f"There is no option '{others[0]}'." if option else f"'{others[0]}' is left over: the name is '{name}'."
+        raise CommandError(what, "`ros2 pkg create --help` lists the options.")
     if options.build_type not in ("ament_cmake", "ament_python"):
         raise CommandError(f"There is no build type '{options.build_type}' here: ament_cmake, ament_python.")
     if options.library_name and options.build_type == "ament_python":

@@ -29,7 +29,7 @@ def test_cmake_is_the_default_and_what_can_not_be_made_is_refused(terminal: Term
     for words, text in (
         (("--build-type", "cmake", "x"), "no build type 'cmake'"),
         (("--build-type", "ament_python", "--library-name", "l", "x"), "has no library"),
-        (("my", "package"), "'package' is left over.\nAfter the name 'my' there are only options"),
+        (("my", "package"), "'package' is left over: the name is 'my'."),
         (("x", "--nod"), "There is no option '--nod'."),
         (("--dependencies", "rclpy", "x"), "Write it before --dependencies"),
     ):
