@@ -15,13 +15,14 @@ from interface_compiler import prefixes, shipped
 from spinbook.chapter.python_code import PythonCode
 from spinbook.chapter.terminal import is_placeholder
 
-#: Module -> its package on PyPI, if the two names differ.
+#: Module -> its package on PyPI, if the two names differ or Spinbook's own extra `plots` brings it.
 _DISTRIBUTIONS = {
     "cv2": "opencv-python",
     "PIL": "pillow",
     "yaml": "PyYAML",
     "sklearn": "scikit-learn",
     "serial": "pyserial",
+    **dict.fromkeys(("matplotlib", "mpl_toolkits", "pylab"), "matplotlib"),
 }
 #: Packages that exist but may not be installed here, so that none is taken for a misspelling of another.
 _REAL = frozenset(

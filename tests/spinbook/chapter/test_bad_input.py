@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import pytest
 from course_folder import CourseFolder
 
+from spinbook.chapter import imports
+from spinbook.chapter.python_code import inspect
 from spinbook.cli import main
 
 GOOD = "# Good\n\n```python\nx = 1\n```\n"
@@ -243,3 +245,9 @@ def test_outside_a_course_it_says_where_to_go(course: CourseFolder) -> None:
 
     assert "no course.toml" in said.stderr
     assert said.returncode == 1
+
+
+def test_a_cell_that_draws_where_matplotlib_is_missing_is_told_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(imports, "_is_installed", lambda module: module != "matplotlib")
+    (missing,) = imports.missing_imports(inspect("import rclpy\nfrom matplotlib import pyplot\n"), {})
+    assert (missing.line, missing.fix) == (2, "Install it: pip install matplotlib")
