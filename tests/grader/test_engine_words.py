@@ -140,7 +140,7 @@ def test_a_name_with_the_wrong_capital_letters_is_told_from_one_that_is_misspelt
     [
         ("std_msgs.srv", "std_srvs.srv import SetBool"),
         ("std_msgs.messages", "std_msgs.msg import Bool"),
-        ("std_srvs.msg' in line 4: `from std_srvs.msg import SetBool`. '", "std_srvs.srv import SetBool"),
+        ("std_srvs.msg' in line 4: `from std_srvs.msg import SetBool`.", "std_srvs.srv import SetBool"),
         ("SetBool", "std_srvs.srv import SetBool"),
     ],
 )
