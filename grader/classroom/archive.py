@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 import tarfile
@@ -12,7 +13,7 @@ from dataclasses import dataclass
 from datetime import datetime, timezone
 from functools import partial
 from pathlib import Path, PurePosixPath
-from typing import IO, cast
+from typing import IO, NoReturn, cast
 
 from grader.classroom.submissions import File, SubmissionsError
 from grader.classroom.times import UNKNOWN, Time
@@ -40,8 +41,11 @@ def is_noise(name: str) -> bool:
 
 
 def walk(root: Path) -> Iterator[File | SkippedFile]:
-    """Yield every file below `root`, sorted by name; symbolic links are not followed."""
-    for folder, folders, names in os.walk(root):
+    """Yield every file below `root`, sorted by name; symbolic links are not followed.
+
+    Raises `SubmissionsError` for what may not be read: its student would be left out.
+    """
+    for folder, folders, names in os.walk(root, onerror=_refuse):
         inside = Path(folder).relative_to(root)
         for name in sorted([*folders, *names]):
             if is_noise(name):
@@ -52,7 +56,14 @@ def walk(root: Path) -> Iterator[File | SkippedFile]:
         for name in sorted(names):
             if not is_noise(name):
                 path = Path(folder, name)
+                if path.is_file() and not os.access(path, os.R_OK, effective_ids=True):
+                    _refuse(PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path)))
                 yield File((inside / name).as_posix(), path, date_of(path))
+
+
+def _refuse(error: OSError) -> NoReturn:
+    advice = "Allow yourself to read all submissions: chmod -R u+rX FOLDER"
+    raise SubmissionsError(f"{error.filename}: it can't be read: {error.strerror}. {advice}")
 
 
 def date_of(path: Path) -> Time:

@@ -48,8 +48,8 @@ def _list(console: Console, skipped: Iterable[SkippedFile]) -> None:
         say(console, f"skipped, {why}: {', '.join(files[:MOST_NAMED])}{more}", "yellow")
 
 
-def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[Entry]) -> None:
-    """Print the class's result, and what is left for the instructor to do."""
+def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[Entry], kind: str = "") -> None:
+    """Print the class's result, and what is left for the instructor to do; `kind` says how the class was read."""
     finals = [entry.final for entry in entries if entry.final is not None]
     if finals:
         points = entries[0].grade.points
@@ -63,7 +63,7 @@ def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[E
             "bold",
         )
     unknown = unknown_to_moodle(entries)
-    if 0 < unknown < len(entries):  # a class that Moodle knows
+    if unknown and (unknown < len(entries) or "Moodle" in kind):  # a class that Moodle knows
         say(
             console,
             f"moodle.csv has no Identifier for {unknown} of the {len(entries)} students, so Moodle can't match them. "

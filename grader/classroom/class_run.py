@@ -185,7 +185,7 @@ def _finish(
     if others:
         say(console, f"graded earlier, handed in nothing now, not in the tables: {', '.join(others)}", "yellow")
         say(console, f"  `spinbook gradebook` counts them as long as their folders are in {folder}/students.")
-    show_result(console, entries, unscored)
+    show_result(console, entries, unscored, collected.kind)
     if published:
         say(console, f"One zip per student: {published}")
     say(console, f"Open {folder / 'index.html'}.")

@@ -45,12 +45,9 @@ def unique_ids(names: Iterable[str]) -> dict[str, str]:
     ids = {}
     for same in by_id.values():
         for name in same:
-            ids[name] = student_id(name) if len(same) == 1 else f"{_cut(student_id(name), LONGEST - 7)}-{_digest(name)}"
+            digest = hashlib.sha256(name.encode("utf-8", errors="surrogateescape")).hexdigest()[:6]
+            ids[name] = student_id(name) if len(same) == 1 else f"{_cut(student_id(name), LONGEST - 7)}-{digest}"
     return ids
-
-
-def _digest(name: str) -> str:
-    return hashlib.sha256(name.encode("utf-8", errors="surrogateescape")).hexdigest()[:6]
 
 
 @cache

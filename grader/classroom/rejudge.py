@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from rich.console import Console
 
@@ -15,14 +15,8 @@ from grader.grading.grade import Grade
 from grader.grading.grading import Grading
 from grader.report.feedback_plot import picture
 
-
-@dataclass(frozen=True)
-class NewGrade:
-    """A student's new grade, and how it differs from the stored one, in words."""
-
-    handed_in: StudentSubmission
-    graded: GradedSubmission
-    changed: str
+#: A student's new grade, and how it differs from the stored one, in words.
+NewGrade = tuple[StudentSubmission, GradedSubmission, str]
 
 
 def rejudge(
@@ -38,7 +32,7 @@ def rejudge(
     `may_replace` gets the number of grades that differ. If a student has no recordings, or only those of another
     submission, scenario or version, the grade stays as it is, and a message says so.
     """
-    found, missing = [], []
+    found, missing = list[NewGrade](), list[str]()
     for one in collected.handed_in:
         who = one.student.id
         kept = class_grading.results.entry(who)
@@ -51,22 +45,22 @@ def rejudge(
         graded = GradedSubmission(
             who, replace(grade, seconds=kept[0].grade.seconds), picture(grade, class_grading.exercise)
         )
-        found.append(NewGrade(one, graded, difference(kept[0].grade, grade)))
+        found.append((one, graded, difference(kept[0].grade, grade)))
     _report(console, found, missing)
-    changed = sum(bool(one.changed) for one in found)
-    replaced = bool(changed) and may_replace(changed)
-    for new in found:
-        if replaced or not new.changed:
-            class_grading.keep(new.handed_in, new.graded, submissions[new.graded.who])
-    if changed and not replaced:
+    count = sum(bool(changed) for _, _, changed in found)
+    replaced = bool(count) and may_replace(count)
+    for handed_in, graded, changed in found:
+        if replaced or not changed:
+            class_grading.keep(handed_in, graded, submissions[graded.who])
+    if count and not replaced:
         console.print("Nothing was replaced.")
 
 
 def _report(console: Console, found: list[NewGrade], missing: list[str]) -> None:
-    for one in found:
-        if one.changed:
-            say(console, f"{one.graded.who}: {one.changed}")
-    same = sum(not one.changed for one in found)
+    for _, graded, changed in found:
+        if changed:
+            say(console, f"{graded.who}: {changed}")
+    same = sum(not changed for _, _, changed in found)
     console.print(f"{len(found)} judged again from their recordings, {same} with the same result.")
     if missing:
         say(console, f"no recordings that fit, so grade them without --rejudge: {', '.join(missing)}", "yellow")

@@ -10,7 +10,7 @@ from typing import NoReturn
 import click
 
 from grader.classroom.results import NotWritable, Results
-from grader.exercise.exercise import Exercise, ExerciseError
+from grader.exercise.exercise import ExerciseError
 from grader.exercise.loading import NoExercise, find, load
 from grader.grading.grade import Grade
 from grader.report.as_json import folder_of
@@ -40,7 +40,8 @@ def replay(results: Path, student: str, exercise: str, out: Path | None) -> None
     folder = out or Path(f"{student}-replay")
     try:
         loaded = load(find(exercise or grade.exercise, Path.cwd()))
-        written = _write(grade, loaded, folder)
+        plots = [draw(grade, loaded, folder / "plots" / f"{name}.svg", name) for name in grade.recordings]
+        written = sum(plots) + len(write_bags(grade, folder / "bags"))
     except NoExercise as error:
         raise click.UsageError(f"{error} Give it with --exercise.") from None
     except ExerciseError as error:
@@ -71,11 +72,6 @@ def _recorded(results: Path, student: str) -> Grade:
     if stored.recordings.keys() - stored.references.keys():
         raise click.UsageError(f"{results}: the solution's recordings are missing or damaged: grade {student} again.")
     return replace(entry[0].grade, recordings=stored.recordings, references=stored.references)
-
-
-def _write(grade: Grade, exercise: Exercise, folder: Path) -> int:
-    plots = [draw(grade, exercise, folder / "plots" / f"{name}.svg", name) for name in grade.recordings]
-    return sum(plots) + len(write_bags(grade, folder / "bags"))
 
 
 def _stop(message: str) -> NoReturn:

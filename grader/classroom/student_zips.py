@@ -17,7 +17,10 @@ def publish(results: Path, entries: Sequence[Entry]) -> Path:
     """Write a read-only `to-students/STUDENT.zip` per entry, and return the folder. Other zips are removed."""
     folder = results / FOLDER
     folder.mkdir(exist_ok=True)
-    zips = {f"{entry.student.id}.zip": _zip(results, entry) for entry in entries}
+    zips = {}
+    for entry in entries:
+        page, file = f"{entry.grade.exercise}/feedback.html", folder_of(results, entry.student.id) / "feedback.html"
+        zips[f"{entry.student.id}.zip"] = zipped({page: file.read_bytes()}, modes={page: 0o444})
     for file in folder.glob("*.zip"):
         if file.name not in zips:
             file.unlink()
@@ -26,8 +29,3 @@ def publish(results: Path, entries: Sequence[Entry]) -> Path:
         (folder / name).write_bytes(content)
         os.chmod(folder / name, 0o444)  # noqa: PTH101
     return folder
-
-
-def _zip(results: Path, entry: Entry) -> bytes:
-    page = f"{entry.grade.exercise}/feedback.html"
-    return zipped({page: (folder_of(results, entry.student.id) / "feedback.html").read_bytes()}, modes={page: 0o444})

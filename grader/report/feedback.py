@@ -97,12 +97,9 @@ ORDERS = re.compile(r"\x1b(\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(\x07|\x1b\\)?|[ -~
 def tail(log: str) -> tuple[str, int]:
     """Return the last 40 lines of `log`, each of 400 characters at most, and the number of lines before them."""
     lines = [line.rstrip() for line in log.rstrip().split("\n")]
-    kept = [_readable(line[: 10 * LONGEST_LINE]) for line in lines[-LINES:]]
+    lines_shown = (without_paths(ORDERS.sub("", line[: 10 * LONGEST_LINE])) for line in lines[-LINES:])
+    kept = [printable(line, LONGEST_LINE) for line in lines_shown]
     return "\n".join(kept), len(lines) - len(kept)
-
-
-def _readable(line: str) -> str:
-    return printable(without_paths(ORDERS.sub("", line)), LONGEST_LINE)
 
 
 KINDS: dict[str, str] = {"late": "Late", "override": "Changed by your instructor", "extra": "Extra credit"}

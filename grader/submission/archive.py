@@ -21,7 +21,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path, PurePosixPath
-from typing import IO, cast
+from typing import IO, NoReturn, cast
 
 from grader.submission.file_kinds import MOST_BYTES_OF, NOT_UNPACKED, OTHER_ARCHIVES, kind_of
 from grader.submission.problems import Unreadable
@@ -120,9 +120,9 @@ def unpacked(content: bytes) -> Contents:
 
 
 def folder_contents(folder: Path) -> Contents:
-    """Return the contents of a folder. Links are not followed. Raises `Unreadable`."""
+    """Return the contents of a folder. Links are not followed. Raises `Unreadable`, and OSError."""
     contents, entries = Contents(), list[_Entry]()
-    for place, folders, names in os.walk(folder):
+    for place, folders, names in os.walk(folder, onerror=_raise):
         folders[:] = sorted(name for name in folders if not _NOISE.fullmatch(name))
         for path in (Path(place, name) for name in sorted(names)):
             inside = path.relative_to(folder).as_posix()
@@ -134,6 +134,10 @@ def folder_contents(folder: Path) -> Contents:
             raise Unreadable(f"It holds more than {MOST_ENTRIES:,} files. {ADVICE}")
     _keep(entries, "", contents, 0)
     return contents
+
+
+def _raise(error: OSError) -> NoReturn:
+    raise error
 
 
 def _file(path: Path, most: int) -> bytes | None:
@@ -159,13 +163,13 @@ def _keep(entries: Sequence[_Entry], prefix: str, contents: Contents, depth: int
 
 
 def content_of(path: Path, most: int) -> bytes:
-    """Return the content of a regular file, without following links. Raises `Unreadable`."""
+    """Return the content of a regular file, without following links. Raises `Unreadable`, and OSError."""
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError as error:
         if error.errno == errno.ELOOP:
             raise Unreadable("It is a symbolic link. Hand in the file itself.") from None
-        raise Unreadable(f"It can't be read: {error.strerror}.") from None
+        raise  # no fault of the student's
     try:
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):
             raise Unreadable("It is not a regular file. Hand in a file.")

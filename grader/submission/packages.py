@@ -27,12 +27,9 @@ def programs(files: Mapping[str, bytes]) -> list[str]:
     Setup files, tests and launch files count only if they use rclpy and nothing else is there.
     """
     python = [name for name in sorted(files) if kind_of(name) == "python"]
-    own = [name for name in python if not _is_support(name) or _is_package_with_node(name, files)]
+    nodes = [name for name in python if posixpath.basename(name) == "__init__.py" and b"rclpy" in files[name]]
+    own = [name for name in python if not _is_support(name) or name in nodes]
     return own or [name for name in python if b"rclpy" in files[name]]
-
-
-def _is_package_with_node(name: str, files: Mapping[str, bytes]) -> bool:
-    return posixpath.basename(name) == "__init__.py" and b"rclpy" in files[name]
 
 
 def _is_support(name: str) -> bool:

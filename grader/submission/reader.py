@@ -79,7 +79,13 @@ def read(place: str, exercise: Exercise) -> Submission:
     A file is Python, a notebook, or an archive; one that can't be read is a submission with a `problem`. Raises
     `NoSubmission` if there is none.
     """
-    path = Path(place)
+    try:
+        return _read_path(place, Path(place), exercise)
+    except OSError as error:
+        raise NoSubmission(f"{error.filename}: it can't be read: {error.strerror}.") from None
+
+
+def _read_path(place: str, path: Path, exercise: Exercise) -> Submission:
     if path.is_dir() and not path.is_symlink():
         return _folder(place, path, exercise)
     if not os.path.lexists(path):

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import io
+import os
 import stat
 import tarfile
+import tempfile
 import zipfile
+from collections.abc import Iterator
 from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
@@ -17,7 +20,7 @@ from grader.classroom.archive import MOST_FILES, unpacked
 from grader.classroom.collector import CollectOptions, collect
 from grader.classroom.submissions import Submissions, SubmissionsError
 from grader.exercise import load
-from grader.submission import read
+from grader.submission import NoSubmission, read
 
 ROOT = Path(__file__).parents[3]
 EXERCISE = "joint_velocity"
@@ -343,3 +346,28 @@ def test_nothing_to_grade_is_reported(tmp_path: Path, names: tuple[str, ...]) ->
     root.mkdir()
     with pytest.raises(SubmissionsError, match="There is no submission in it"):
         taken(written(root, *names), tmp_path)
+
+
+@pytest.fixture
+def folder_of_a_user() -> Iterator[Path]:
+    """A folder of a user who may not read everything, as root may."""
+    before = os.geteuid()
+    if before == 0:
+        os.seteuid(65534)
+    with tempfile.TemporaryDirectory() as folder:
+        yield Path(folder)
+        os.chmod(Path(folder, "class", "bert"), 0o700)  # noqa: PTH101
+    os.seteuid(before)
+
+
+def test_what_may_not_be_read_stops_the_class_and_is_nobodys_zero(folder_of_a_user: Path) -> None:
+    source = written(folder_of_a_user / "class", "anna.py", "bert/node.py", "carl.py")
+    (source / "anna.py").chmod(0)
+    with pytest.raises(SubmissionsError, match=r"anna\.py: it can't be read: Permission denied\. .*chmod -R u\+rX"):
+        taken(source, folder_of_a_user)
+    with pytest.raises(NoSubmission, match=r"anna\.py: it can't be read: Permission denied\."):
+        read(str(source / "anna.py"), load(ROOT / "exercises" / EXERCISE))
+    (source / "anna.py").unlink()
+    (source / "bert").chmod(0)
+    with pytest.raises(SubmissionsError, match="bert: it can't be read: Permission denied"):
+        taken(source, folder_of_a_user)

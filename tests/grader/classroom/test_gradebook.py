@@ -134,9 +134,15 @@ def test_a_student_whom_moodle_does_not_know_has_no_identifier_and_that_is_said(
     unknown = plain.entry(plain.HALF, Student("ada", "Ada Lovelace"))
     found = {row["Full name"]: row["Identifier"] for row in rows(tmp_path, "moodle.csv", [known, unknown])}
     assert found == {"Jörg Müller": "Participant 77", "Ada Lovelace": ""}
-    for entries, message in (([known], ""), ([known, unknown], "1 of the 2 students"), ([unknown], "")):
+    of_moodle = "a download from Moodle"  # in which groups have no numbers of students
+    for entries, kind, message in (
+        ([known], "", ""),
+        ([known, unknown], "", "1 of the 2 students"),
+        ([unknown], "", ""),
+        ([unknown], of_moodle, "1 of the 1 students"),
+    ):
         said = io.StringIO()
-        show_result(Console(file=said, width=500), entries, [])
+        show_result(Console(file=said, width=500), entries, [], kind)
         assert (
             (f"moodle.csv has no Identifier for {message}, so" in said.getvalue())
             if message
