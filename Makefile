@@ -37,10 +37,11 @@ setup:   ## Make the virtual environment with every pinned dependency, or update
 	@VENV="$(VENV)" sh fetch-pyodide.sh
 
 course: setup   ## Build, run and package the real course, make its site, and grade a class of twelve in every exercise.
-	$(BIN)/spinbook build --execute --strict
-	$(BIN)/spinbook site --strict
-	$(BIN)/spinbook package
-	$(BIN)/python benchmarks/class/grade_course.py --count 12 --seed 7 --out build/class
+	@$(BIN)/python benchmarks/class/beside.py \
+		"$(BIN)/python benchmarks/class/grade_course.py --count 12 --seed 7 --out build/class" \
+		"$(BIN)/spinbook build --execute --strict" \
+		"$(BIN)/spinbook site --strict" \
+		"$(BIN)/spinbook package"
 	@echo
 	@echo "The course is in build/notebooks, as it ran here in build/executed, its package in humanoid_ws."
 	@echo "Its site is build/site/index.html: open it in any browser."

@@ -23,7 +23,7 @@ from grader.classroom.decisions import decisions, show_decisions
 from grader.classroom.gradebook import gradebook, write_gradebook
 from grader.classroom.groups import read_groups
 from grader.classroom.local import LocalBackend, at_once
-from grader.classroom.misconceptions import Signature, failures_of, grouped
+from grader.classroom.misconceptions import Signature, grouped
 from grader.classroom.overview import overview_page
 from grader.classroom.rejudge import difference, rejudge
 from grader.classroom.request import Backend, ClassRequest, ClusterLost, NoCluster, no_grade
@@ -218,7 +218,7 @@ def _signatures(grading: Grading, entries: Sequence[Entry], console: Console) ->
     if all(entry.grade.full_marks or entry.grade.outcome != "graded" for entry in entries):
         return ()
     with console.status("grading the common mistakes"):
-        return signatures(grading, [failures_of(entry.grade).keys() for entry in entries])
+        return signatures(grading, [entry.grade for entry in entries])
 
 
 @contextlib.contextmanager

@@ -130,14 +130,24 @@ def grouped(entries: Sequence[Entry], signatures: Sequence[Signature]) -> Miscon
     other: list[Entry] = []
     for entry in entries:
         failed = failures_of(entry.grade)
-        blocked = frozenset(verdict.name for verdict in entry.grade.verdicts if verdict.status == "blocked")
-        made = mistakes_in(failed, blocked, signatures)
+        made = mistakes_in(failed, blocked_in(entry.grade), signatures)
         for number in made:
             found.setdefault(number, []).append(entry)
         if failed and not made:
             other.append(entry)
     groups = [MisconceptionGroup(signatures[number], tuple(members)) for number, members in sorted(found.items())]
     return Misconceptions(tuple(sorted(groups, key=lambda group: -len(group.entries))), tuple(other))
+
+
+def blocked_in(grade: Grade) -> frozenset[str]:
+    """Return the checks that could not be judged because another failed."""
+    return frozenset(verdict.name for verdict in grade.verdicts if verdict.status == "blocked")
+
+
+def may_explain(named: Set[str], failed: Set[str], blocked: Set[str]) -> bool:
+    """Return whether a mistake that fails the checks `named` can explain a submission, whatever its findings are."""
+    judged = named - blocked
+    return 2 * len(judged) >= len(named) and len(judged & failed) >= FITS * len(judged)
 
 
 def mistakes_in(failed: Mapping[str, Failure], blocked: Set[str], signatures: Sequence[Signature]) -> list[int]:

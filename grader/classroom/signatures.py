@@ -8,8 +8,9 @@ import json
 from collections.abc import Sequence, Set
 from concurrent.futures import ThreadPoolExecutor
 
-from grader.classroom.misconceptions import Failure, Signature, failures_of
+from grader.classroom.misconceptions import Failure, Signature, blocked_in, failures_of, may_explain
 from grader.exercise.mistakes import Mistake, mistakes_of
+from grader.grading.grade import Grade
 from grader.grading.grading import Grading
 from grader.grading.reference import cache_folder, reference_key
 from grader.submission.reader import of_source
@@ -19,38 +20,30 @@ from groundwork.files import keep, read_kept
 AT_ONCE = 2
 
 
-def signatures(grading: Grading, failing: Sequence[Set[str]] | None = None) -> tuple[Signature, ...]:
-    """Return the signatures of the exercise's usual mistakes, sorted by name.
-
-    `failing` has the checks that each student fails: a mistake whose own checks explain none of these is left out
-    without being graded. Without `failing`, all mistakes are graded.
+def signatures(grading: Grading, grades: Sequence[Grade]) -> tuple[Signature, ...]:
+    """Return the signatures of those of the exercise's usual mistakes that may explain one of these grades, by name.
 
     A mistake is graded again if anything that its grade depends on has changed. Mistakes that fail the same checks
     with the same findings are one signature. A mistake that fails no check, or does not complete, is left out.
     """
-    mistakes = mistakes_of(grading.runner.exercise)
-    if failing is not None:
-        mistakes = tuple(mistake for mistake in mistakes if _may_explain(mistake, failing))
+    students = [(failures_of(grade).keys(), blocked_in(grade)) for grade in grades]
+    mistakes = [mistake for mistake in mistakes_of(grading.runner.exercise) if _may_explain(mistake, students)]
     with ThreadPoolExecutor(AT_ONCE) as pool:
         failures = list(pool.map(lambda mistake: _failures(mistake, grading), mistakes))
-    found: list[Signature] = []
+    alike: dict[tuple[tuple[str, Failure], ...], list[Mistake]] = {}
     for mistake, failed in zip(mistakes, failures, strict=True):
         if failed:
-            same = next((one for one in found if one.failures == failed), None)
-            alone = Signature((mistake.name,), (mistake.summary,), failed)
-            if same:
-                found[found.index(same)] = dataclasses.replace(
-                    same, names=same.names + alone.names, sentences=same.sentences + alone.sentences
-                )
-            else:
-                found.append(alone)
-    return tuple(found)
+            alike.setdefault(tuple(failed.items()), []).append(mistake)
+    return tuple(
+        Signature(tuple(mistake.name for mistake in same), tuple(mistake.summary for mistake in same), dict(failed))
+        for failed, same in alike.items()
+    )
 
 
-def _may_explain(mistake: Mistake, failing: Sequence[Set[str]]) -> bool:
-    """Return whether a student fails half of the checks that the mistake names; otherwise no signature fits."""
+def _may_explain(mistake: Mistake, students: Sequence[tuple[Set[str], Set[str]]]) -> bool:
+    """Return whether a mistake may explain what a student fails; one that names no checks may explain anything."""
     named = set(mistake.caught_by)
-    return not named or any(2 * len(named & failed) >= len(named) for failed in failing)
+    return not named or any(may_explain(named, failed, blocked) for failed, blocked in students)
 
 
 def _failures(mistake: Mistake, grading: Grading) -> dict[str, Failure]:

@@ -29,6 +29,8 @@ class Repository:
     commit: str = ""
     date: str = ""
     """The commit's day, as in 2026-01-31."""
+    _last_commits: dict[Path, str] = field(default_factory=dict, compare=False, repr=False)
+    """The last commit of each file that was asked for: a chapter has a link for each block of code."""
 
     @property
     def github(self) -> tuple[str, str] | None:
@@ -44,7 +46,9 @@ class Repository:
         """
         if not self.url:
             return ""
-        commit = self._last_commit_of(file) or "main"
+        if file not in self._last_commits:
+            self._last_commits[file] = self._last_commit_of(file) or "main"
+        commit = self._last_commits[file]
         # Without plain=1 GitHub renders Markdown, which has no lines.
         plain = "?plain=1" if file.suffix == ".md" and line else ""
         return f"{self.url}/blob/{commit}/{file.as_posix()}{plain}{f'#L{line}' if line else ''}"

@@ -44,7 +44,7 @@ def robot_still(output: Mapping[str, Any]) -> tuple[str, bytes]:
     size = (round(WIDTH * _SHARPNESS), round(HEIGHT * _SHARPNESS))
     picture = picture.resize(size, Image.Resampling.BILINEAR).convert("RGBA")
     picture.putalpha(picture.getchannel("A").point([alpha - alpha % _STEP for alpha in range(256)]))
-    picture.save(out, "WEBP", quality=_QUALITY, method=6)
+    picture.save(out, "WEBP", quality=_QUALITY, method=5)
     return f"{PICTURE_FOLDER}/{digest(out.getvalue())[:16]}.webp", out.getvalue()
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import combinations, product
+
 import plain_grades as plain
 
 from grader.checking.verdict import Finding, Verdict
-from grader.classroom.misconceptions import Signature, failure_of, failures_of, grouped, mistakes_in
+from grader.classroom.misconceptions import Signature, failure_of, failures_of, grouped, may_explain, mistakes_in
 from grader.grading.grade import Entry, Student
 
 
@@ -123,3 +125,16 @@ def test_numbers_and_guessed_names_are_no_part_of_a_kind() -> None:
         for name, guess in (("/b", ""), ("/aa", " Is /aa a misspelling of /a?"))
     }
     assert len(kinds) == 1
+
+
+def test_a_mistake_that_is_not_a_candidate_is_never_named() -> None:
+    """A mistake that can't explain anybody is not graded: each way in which three checks fail, pass or are blocked."""
+    checks = {"test_a": HALF_AS_LARGE, "test_b": OTHER_JOINT, "test_c": SILENT}
+    subsets = [frozenset(each) for size in range(4) for each in combinations(checks, size)]
+    known = {names: signature("known", **{name: checks[name] for name in names}) for names in subsets if names}
+    ways = [(failed, blocked) for failed in subsets for blocked in subsets if not failed & blocked]
+    for (names, mistake), (failed, blocked) in product(known.items(), ways):
+        if mistakes_in(failures_of(entry("ada", **{name: checks[name] for name in failed}).grade), blocked, [mistake]):
+            assert may_explain(names, failed, blocked)
+    assert not may_explain(frozenset(checks), frozenset({"test_a"}), frozenset())
+    assert may_explain(frozenset(checks), frozenset({"test_a", "test_b"}), frozenset({"test_c"}))
