@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 import importlib.metadata
@@ -57,12 +58,13 @@ def code_digest(*folders: str) -> str:
 def versions() -> str:
     """Return the versions on which a notebook's outputs depend."""
     names = ("ros-rclpy", "matplotlib", "ipykernel", "nbclient")
-    packages = [f"{name}={_version(name)}" for name in names]
+    packages = [f"{name}={version_of(name)}" for name in names]
     return " ".join([f"python={platform.python_version()}", *packages])
 
 
-def _version(distribution: str) -> str:
-    try:
-        return importlib.metadata.version(distribution)
-    except importlib.metadata.PackageNotFoundError:
-        return "none"
+def version_of(*distributions: str, otherwise: str = "none") -> str:
+    """Return the version of the first of these distributions that is installed."""
+    for name in distributions:
+        with contextlib.suppress(importlib.metadata.PackageNotFoundError):
+            return importlib.metadata.version(name)
+    return otherwise

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import datetime
 import os
 import platform
@@ -10,11 +9,11 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from grader.exercise.exercise import Exercise
-from spinbook.build.digest import digest
+from spinbook import __version__
+from spinbook.build.digest import digest, version_of
 from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.course.course import Course
 from spinbook.site.chapter_page import ExecutedNotebook, alternative, is_picture, wrong_cells
@@ -139,6 +138,7 @@ def built_on() -> str:
 
 def about_markdown(course: Course, repository: Repository, middleware: str) -> str:
     """Return the page in MyST Markdown."""
+    rclpy = version_of("ros-jazzy-rclpy", "ros-rclpy", "rclpy", otherwise="of a ROS installation")
     return f"""\
 # About this course
 
@@ -149,10 +149,10 @@ when a node is wrong, its page shows it.
 
 | | |
 | --- | --- |
-| ROS 2 | {course.ros_distro.capitalize()}, rclpy {_version("ros-jazzy-rclpy", "ros-rclpy", "rclpy")} |
+| ROS 2 | {course.ros_distro.capitalize()}, rclpy {rclpy} |
 | Middleware | {middleware} |
 | Python | {platform.python_version()} |
-| Spinbook | {_version("spinbook")} |
+| Spinbook | {__version__} |
 | Built on | {built_on()} |
 | Commit | {_commit(repository)} |
 
@@ -186,10 +186,3 @@ def _commit(repository: Repository) -> str:
         return "not in a repository"
     short = f"`{repository.commit[:10]}`"
     return f"[{short}]({repository.url}/commit/{repository.commit}), {repository.date}" if repository.url else short
-
-
-def _version(*distributions: str) -> str:
-    for name in distributions:
-        with contextlib.suppress(PackageNotFoundError):
-            return version(name)
-    return "of a ROS installation"

@@ -5,6 +5,7 @@ The formats of sitemap and RSS: https://www.sitemaps.org/protocol.html and https
 
 from __future__ import annotations
 
+import functools
 import json
 import re
 import subprocess
@@ -29,8 +30,6 @@ class Repository:
     commit: str = ""
     date: str = ""
     """The commit's day, as in 2026-01-31."""
-    _last_commits: dict[Path, str] = field(default_factory=dict, compare=False, repr=False)
-    """The last commit of each file that was asked for: a chapter has a link for each block of code."""
 
     @property
     def github(self) -> tuple[str, str] | None:
@@ -46,17 +45,17 @@ class Repository:
         """
         if not self.url:
             return ""
-        if file not in self._last_commits:
-            self._last_commits[file] = self._last_commit_of(file) or "main"
-        commit = self._last_commits[file]
+        commit = _last_commit(self.root, self.commit, file) or "main"
         # Without plain=1 GitHub renders Markdown, which has no lines.
         plain = "?plain=1" if file.suffix == ".md" and line else ""
         return f"{self.url}/blob/{commit}/{file.as_posix()}{plain}{f'#L{line}' if line else ''}"
 
-    def _last_commit_of(self, file: Path) -> str:
-        if not self.commit or _git(self.root, "status", "--porcelain", "--", file.as_posix()):
-            return ""
-        return _git(self.root, "log", "-1", "--format=%H", "--", file.as_posix())
+
+@functools.cache  # A chapter has a link for each block of code.
+def _last_commit(root: Path, head: str, file: Path) -> str:
+    if not head or _git(root, "status", "--porcelain", "--", file.as_posix()):
+        return ""
+    return _git(root, "log", "-1", "--format=%H", "--", file.as_posix())
 
 
 def repository_of(root: Path, url: str) -> Repository:
