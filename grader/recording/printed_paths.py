@@ -20,7 +20,7 @@ _FRAME = re.compile(
 
 #: What Python's faulthandler prints when C code ends a program: the student reads the line elsewhere.
 _OF_AN_ABORT = re.compile(
-    r"^Fatal Python error: .*\n\nStack .*\n(?:  File .*\n)*\n?(?:Extension modules: .*\n)?", re.MULTILINE
+    r"^Fatal Python error: .*\n(?:\n*(?:Stack|Current thread|Extension modules).*\n(?:  .*\n)*)*", re.MULTILINE
 )
 
 
