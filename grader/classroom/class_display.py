@@ -57,11 +57,8 @@ def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[E
         median = statistics.median(finals)
         late = sum(any(a.kind == "late" and a.points for a in entry.adjustments) for entry in entries)
         after = f", after {counted(late, 'late submission')} lost points" if late else ""
-        say(
-            console,
-            f"{len(finals)} grades: median {median:g} of {points:g} points, {full} with full marks{after}.",
-            "bold",
-        )
+        result = f"median {median:g} of {points:g} points, {full} with full marks{after}"
+        say(console, f"{len(finals)} grades: {result}.", "bold")
     unknown = unknown_to_moodle(entries)
     if unknown and (unknown < len(entries) or "Moodle" in kind):  # a class that Moodle knows
         say(

@@ -25,6 +25,8 @@ _STYLE = {
 CODE = frozenset({"code-cell", "code-block", "code", "sourcecode", "highlight"})
 #: Directives that make lists of pages and similar things, which a reader of one chapter does not need.
 UNSEEN = frozenset({"toctree", "tableofcontents", "contents", "index", "bibliography", "only", "raw", "eval-rst"})
+#: The kinds of blocks that a misspelt one may mean.
+BLOCKS = (*_STYLE, *CODE, *UNSEEN, "dropdown", "details", "tab-item", "tab-set", "tabs", "literalinclude", "figure")
 #: Tags that hold blocks: MDX's, HTML's, Liquid's.
 _TABS = frozenset({"Tabs", "TabItem", "Tab", "tabs", "tab", "CodeGroup", "TabPanel"})
 _HOLDING = frozenset({"Admonition", "details", "Details", "highlight", "raw", "capture", "comment", "code"})

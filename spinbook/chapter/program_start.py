@@ -169,15 +169,11 @@ def leaves(tree: ast.Module) -> str:
 
 
 def _starts_a_program(call: ast.Call, of_subprocess: frozenset[str]) -> bool:
-    name = last_name(call.func)
-    if name in _STARTING or (name.startswith(_STARTING_FAMILIES) and _is_of_os(call.func)):
+    name, dotted = last_name(call.func), dotted_name(call.func)
+    owner = dotted.rpartition(".")[0]
+    if name in _STARTING or (name.startswith(_STARTING_FAMILIES) and owner in {"os", "pty"}):
         return True
-    dotted = dotted_name(call.func)
-    return dotted in of_subprocess or (name in _OF_SUBPROCESS and dotted.rpartition(".")[0] in of_subprocess)
-
-
-def _is_of_os(function: ast.expr) -> bool:
-    return isinstance(function, ast.Attribute) and dotted_name(function.value) in {"os", "pty"}
+    return dotted in of_subprocess or (name in _OF_SUBPROCESS and owner in of_subprocess)
 
 
 def _names_of(module: str, everything: Sequence[ast.AST]) -> frozenset[str]:

@@ -241,6 +241,7 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
     called = {last_name(call.func) for call in calls}
     defines, needs = _names(everything, code)
     classes = {item.name: item for item in everything if isinstance(item, ast.ClassDef)}
+    functions = {item.name for item in everything if isinstance(item, ast.FunctionDef)}
     node_classes = [item.name for item in everything if isinstance(item, ast.ClassDef) and is_node(item)]
     lacking = attributes_lacking(everything, node_classes, classes)
     alone = tuple(name for name in node_classes if can_stand_alone(name, classes, everything))
@@ -250,11 +251,11 @@ def _facts(tree: ast.Module, code: str) -> PythonCode:
         node_classes=tuple(node_classes),
         ros_name=ros_name(everything, classes),
         spins=spins(tree),
-        has_main=any(map(_is_main, tree.body)),
+        has_main="main" in {item.name for item in tree.body if isinstance(item, ast.FunctionDef)},
         has_main_guard=any(map(is_main_guard, tree.body)),
         is_setup_script=("setup" in called and bool(_SETUP & modules_imported(tree)))
         or any(map(_is_entry_point, everything)),
-        is_launch_file=any(map(_is_launch_function, everything)) or imports_launch(tree),
+        is_launch_file="generate_launch_description" in functions or imports_launch(tree),
         defines=defines,
         needs=needs,
         calls_main=any(map(calls_main, tree.body)),
@@ -289,10 +290,6 @@ def _methods_to_call(alone: Sequence[str], classes: Mapping[str, ast.ClassDef]) 
     return "", f"{name}.{spinning[0].name}" if spinning and not serves(classes[name]) else ""
 
 
-def _is_main(statement: ast.stmt) -> bool:
-    return isinstance(statement, ast.FunctionDef) and statement.name == "main"
-
-
 def is_main_guard(statement: ast.stmt) -> bool:
     """Return whether a statement is `if __name__ == "__main__":`."""
     return isinstance(statement, ast.If) and "__main__" in ast.dump(statement.test)
@@ -301,10 +298,6 @@ def is_main_guard(statement: ast.stmt) -> bool:
 def _is_entry_point(item: ast.AST) -> bool:
     text = item.value if isinstance(item, ast.Constant) else None
     return isinstance(text, str) and bool(_ENTRY_POINT.fullmatch(text.strip()))
-
-
-def _is_launch_function(item: ast.AST) -> bool:
-    return isinstance(item, ast.FunctionDef) and item.name == "generate_launch_description"
 
 
 def _names(everything: Sequence[ast.AST], code: str) -> tuple[frozenset[str], dict[str, int]]:

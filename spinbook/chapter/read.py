@@ -5,17 +5,22 @@ from __future__ import annotations
 import contextlib
 import functools
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from pygments.lexers import find_lexer_class_by_name
+from pygments.util import ClassNotFound
+
 from groundwork.problem import Problem, Severity
+from groundwork.words import similar
+from spinbook.chapter.attributes import BLOCKS
 from spinbook.chapter.block import Block, BlockKind, SourceLine
 from spinbook.chapter.blocks import read_blocks
 from spinbook.chapter.chapter import Chapter, ChapterCell, StaticFence, make_cells
 from spinbook.chapter.classify import CellKind, ClassifiedFence, first_look, node_name, static, with_language
 from spinbook.chapter.excerpts import excerpts, is_excerpt
-from spinbook.chapter.fence import Fence, interface_of, interface_package
+from spinbook.chapter.fence import PYTHON, SHELL, Fence, interface_of, interface_package
 from spinbook.chapter.files import is_elsewhere, locate, read_included
 from spinbook.chapter.interface_fields import own_definitions
 from spinbook.chapter.labels import Heading, Label, References, headings, labels, words_of
@@ -30,6 +35,9 @@ from spinbook.chapter.surroundings import Surroundings
 
 _OTHER_SYSTEM = re.compile(r"\b(windows|mac ?os|os ?x|powershell)\b", re.IGNORECASE)
 _LINUX = re.compile(r"linux|ubuntu|wsl", re.IGNORECASE)
+#: What opens a block, with its kind or its language; and those that a misspelt one may mean.
+_OPENING = re.compile(r"\s*(?::{3,}|`{3,}|~{3,}|!!!|\?\?\?\+?) *\{?([a-z][a-z-]+)")
+_KNOWN = (*BLOCKS, *PYTHON, *SHELL)
 #: The tag of cells that a notebook has but that a build does not run: nbclient's own.
 SKIPPED = "skip-execution"
 
@@ -86,6 +94,7 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResu
         replace(cell, source=references.resolved(cell.source)) if cell.kind is CellKind.PROSE else cell
         for cell in make_cells([*_heading(parsed, title), *pieces], by_line, borrowed)
     )
+    shown_in = {cell.shown_in for several in borrowed.values() for cell in several if cell.shown_in}
     chapter = Chapter(
         name=surroundings.names.get(file, file.stem),
         file=file,
@@ -93,7 +102,7 @@ def read_chapter(root: Path, file: Path, surroundings: Surroundings) -> ReadResu
         summary=str(parsed.source.front_matter.get("summary", "")),
         week=str(parsed.source.front_matter.get("week", "")),
         cells=cells,
-        uses=tuple(sorted(_uses(parsed, root, file) | _shown_in(borrowed))),
+        uses=tuple(sorted(_uses(parsed, root, file) | shown_in)),
         references=references_in(parsed.source.text),
         static_fences=tuple(
             StaticFence(item.fence.line, item.fence.language, item.why, item.sign)
@@ -220,10 +229,6 @@ def _classify(
     return items, problems + programs.problems + shells.problems, shells.borrowed
 
 
-def _shown_in(borrowed: Mapping[int, Sequence[ChapterCell]]) -> set[Path]:
-    return {cell.shown_in for cells in borrowed.values() for cell in cells if cell.shown_in}
-
-
 def _for_other_systems(blocks: Iterable[Block]) -> set[int]:
     """Return the lines of the fences in tabs for Windows or macOS: ROS 2 runs on Linux here."""
     tabs = (block for block in blocks if block.kind is BlockKind.TAB)
@@ -279,6 +284,7 @@ def _references(
     assert parsed.source is not None
     folder = file.parent.as_posix()
     yield from references.problems(parsed.blocks)
+    yield from _misspelt(parsed.inner_blocks, file)
     for target, line in links_in(parsed.source.text):
         if is_elsewhere(target) or "{" in target or references.is_label(target):
             continue
@@ -286,6 +292,18 @@ def _references(
             problem = f"a link leads to `{target}`, and there is no such file."
             fix = "Write the path relative to the chapter's folder."
             yield Problem(file, line, problem, fix, Severity.WARNING, group="files that are not there")
+
+
+def _misspelt(blocks: Iterable[Block], file: Path) -> Iterator[Problem]:
+    """Yield kinds of blocks and languages that look like misspellings; any other may be a book tool's own."""
+    for block in blocks:
+        opening = _OPENING.match(block.lines[0].text) if block.lines else None
+        if opening and opening[1] not in _KNOWN and (near := similar(opening[1], _KNOWN, 0.8)):
+            with contextlib.suppress(ClassNotFound):
+                find_lexer_class_by_name(opening[1])  # a language that looks like another one
+                continue
+            problem = f"`{opening[1]}` is not a known kind of block or language."
+            yield Problem(file, block.line, problem, f"Did you mean `{near}`?", Severity.WARNING)
 
 
 def _uses(parsed: _ParsedChapter, root: Path, file: Path) -> set[Path]:

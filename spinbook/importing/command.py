@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import zip_longest
@@ -35,25 +35,21 @@ _PLACES = 12
 _MARKED = re.compile(r"(```[^\n]+|`[^`]*`)")
 
 
-def report_page(course: Course, chapters: Sequence[Chapter], problems: Sequence[Problem]) -> str:
+def report_page(course: Course, rows: Sequence[dict[str, Any]], problems: Sequence[Problem], **counts: int) -> str:
     """Return the page as HTML, in a single file."""
     environment = Environment(loader=PackageLoader("spinbook.importing", "."), autoescape=select_autoescape(["j2"]))
     environment.filters["code"] = _code
-    rows = [_row(chapter, course) for chapter in chapters]
     causes = [
         {"words": item.in_words, "places": [one.place for one in item.problems[:_PLACES]], "more": len(item.problems)}
         for item in obstacles(problems)
     ]
-    single = list(by_itself(problems))
     return environment.get_template("report.html.j2").render(
         title=course.title,
         rows=rows,
         causes=causes,
-        single=single,
+        single=list(by_itself(problems)),
         places=_PLACES,
-        cells=sum(row["runs"] for row in rows),
-        static=sum(len(row["static"]) for row in rows),
-        nodes=sum(row["nodes"] for row in rows),
+        **counts,
     )
 
 
@@ -151,19 +147,15 @@ def package_of(title: str) -> str:
     return name if name[:1].isalpha() else f"course_{name}".strip("_")
 
 
-def _report(course: Course, built: Iterable[BuildResult]) -> None:
-    built = list(built)
-    chapters = [reading.chapter for reading in read_all(course) if reading.chapter]
+def _report(course: Course, built: Sequence[BuildResult]) -> None:
+    rows = [_row(reading.chapter, course) for reading in read_all(course) if reading.chapter]
     problems = [problem for item in built for problem in item.problems]
     page = course.build_folder / "import.html"
-    write_if_changed(page, report_page(course, chapters, problems))
-    cells = [
-        cell for chapter in chapters for cell in chapter.cells if cell.kind not in {CellKind.PROSE, CellKind.EXERCISE}
-    ]
-    static = sum(1 for chapter in chapters for fence in chapter.static_fences if fence.sign)
-    nodes = sum(cell.kind is CellKind.NODE for cell in cells)
+    cells, nodes = (sum(row[key] for row in rows) for key in ("runs", "nodes"))
+    static = sum(len(row["static"]) for row in rows)
+    write_if_changed(page, report_page(course, rows, problems, cells=cells, nodes=nodes, static=static))
     made = sum(not item.failed for item in built)
-    click.echo(f"{made} of {len(built)} chapters built: {len(cells)} cells, {nodes} of them nodes")
+    click.echo(f"{made} of {len(built)} chapters built: {cells} cells, {nodes} of them nodes")
     click.echo(f"shown and not run: {counted(static, 'piece')} of code")
     for line in ranked(problems)[: _SHOWN + 1]:
         click.echo(line)
