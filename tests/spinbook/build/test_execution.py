@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 from course_folder import CourseFolder
+from nbformat.sign import NotebookNotary
 from process_mark import ProcessMark
 
 TALKER = """```python title="talker.py" seconds=60 until=talking
@@ -116,6 +117,12 @@ def test_cells_run_and_their_outputs_are_kept(built: BuiltCourse) -> None:
     assert "continues in the background" in outputs["node-talker"]
     assert re.search(r"average rate: \d+\.\d{3}\n\tmin: ", outputs["ros2-topic-hz-chatter"])
     assert built.folder.notebook("1.one", "executed").cells[-1].outputs[0].data["text/plain"] == "42"
+
+
+def test_jupyterlab_trusts_notebooks_that_ran_here_so_that_it_shows_their_pictures(built: BuiltCourse) -> None:
+    with NotebookNotary() as notary:
+        assert notary.check_signature(built.folder.notebook("1.one", "executed"))
+        assert not notary.check_signature(built.folder.notebook("1.one"))
 
 
 def test_chapters_with_dots_in_their_names_keep_their_own_outputs(built: BuiltCourse) -> None:
