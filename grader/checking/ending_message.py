@@ -46,6 +46,14 @@ ADVICE = (
 )
 
 
+#: What beginners import from rclpy itself, and the module that has it.
+OF_RCLPY = {
+    "Node": "rclpy.node",
+    "ActionServer": "rclpy.action",
+    "ActionClient": "rclpy.action",
+    "Duration": "rclpy.duration",
+}
+
 #: Modules of ROS 1, and what ROS 2 has for them.
 ROS_1 = {"rospy": "rclpy", "roslib": "rclpy", "actionlib": "rclpy.action", "tf": "tf2_ros"}
 
@@ -103,6 +111,8 @@ def message_of(ending: Ending, exercise: Exercise) -> str:
         return f"{message} {_instead(missing[1], exercise, message)}"
     if no_name := NO_NAME.search(message):
         name = no_name[1][:1].upper() + no_name[1][1:]
+        if place := OF_RCLPY.get(name) if no_name[2] == "rclpy" else "":
+            return f"{message} {name} is in {place}: write from {place} import {name}."
         case = f"It may have {name}: capital letters count." if name != no_name[1] else "Is the name spelled right?"
         return f"{message} The module {no_name[2]} has no {no_name[1]}. {case}"
     for pattern, advice in ADVICE:

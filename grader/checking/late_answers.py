@@ -68,7 +68,7 @@ def in_general(run: RecordedRun) -> Cause:
     if max(seconds) - min(seconds) <= 0.02 * max(seconds):
         return Cause(f"Every answer comes {_shown(max(seconds))} after its message.", *_IN_CALLBACK)
     text = f"Your node's answers come {_shown(min(seconds))} to {_shown(max(seconds))} after their messages, as from a "
-    return Cause(f"{text}timer, or from a thread that polls.", *_IN_CALLBACK)
+    return Cause(f"{text}timer, a thread that polls, or a callback that sleeps.", *_IN_CALLBACK)
 
 
 def _with_next(run: RecordedRun, exchange: Exchange, answer: Message) -> bool:

@@ -163,15 +163,21 @@ def _of_an_attribute(last: LastError, sources: Mapping[str, str]) -> str:
         return f"self.{match[2]} is set only later: set it in __init__, before anything can use it."
     if close := similar(match[2], assigned, cutoff=0.7):
         return f"Your class has self.{close}: is self.{match[2]} a misspelling?"
-    return f"No line of your class sets self.{match[2]}."
+    return f"No line of your class sets self.{match[2]}." if f"self.{match[2]}" in last.text else ""
 
 
 def _of_a_name(last: LastError, sources: Mapping[str, str]) -> str:
-    """Explain a name that only the object has, and a parameter that is declared by another name."""
+    """Explain a name that only the object has, a misspelt __init__, and a parameter that has another name."""
     code = sources.get(last.file, "")
     name = re.search(r"NameError: name '(\w+)' is not defined", last.error)
     if name and re.search(rf"^\s+def {name[1]}\(self|\bself\.{name[1]} = ", code, re.MULTILINE):
         return f"A method reaches what belongs to its object through self: write self.{name[1]}."
+    if (
+        "'node_name'" in last.error
+        and (misspelt := re.search(r"def (_*ini?t_*)\(self", code))
+        and "def __init__" not in code
+    ):
+        return f"Is {misspelt[1]} meant to be __init__, with two underscores on each side?"
     declared = re.findall(r"declare_parameter\(\s*['\"]([\w.]+)", code)
     if "ParameterNotDeclaredException" in last.error and declared:
         return f"Declared is only: {', '.join(dict.fromkeys(declared))}. Use that very name, or declare this one, too."

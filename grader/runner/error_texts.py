@@ -45,8 +45,14 @@ _BY_TEXT = (
     ),
     (r"'(?:bool|int|float)' object is not callable", "This is no function: leave out (), or write * for a product."),
     (r"classes can not be instantiated", "Create a Type.Request() of a service, a Type.Goal() of an action."),
+    (r"has no attribute 'spin'", "spin is a function of rclpy: rclpy.spin(node)."),
+    (r"module\(\) takes at most 2", "A module is no class: class MyNode(rclpy.node.Node)."),
+    (r"requires a 'super' object", "Write parentheses after super: super().__init__('name')."),
     (r"init\(\) must only be called once", "rclpy.init() is called a second time here: once, in main(), is enough."),
-    (r"operand type.*'Parameter'", "get_parameter() returns a Parameter, and its value is get_parameter(…).value."),
+    (
+        r"operand type.*'Parameter'|'Parameter' object has no",
+        "get_parameter() returns a Parameter, and its value is get_parameter(…).value.",
+    ),
     (
         r"operand type\(s\) for \S+ '(?:array\.array|list|tuple)'",
         "A list of numbers is no number: calculate with one element of it at a time, in a loop.",
@@ -54,8 +60,7 @@ _BY_TEXT = (
     (r"bad argument type for built-in", "A text field takes a str only: str(value), or get_parameter(…).value."),
     (
         r"has no attribute '_TYPE_SUPPORT'|rclpy_resolve_name\(\): incompatible function arguments",
-        "The class of the messages comes before the name: create_publisher(String, '/name', 10), ActionClient(self, "
-        "Type, '/name').",
+        "The class of the messages comes before the name, without quotes: create_publisher(String, '/name', 10).",
     ),
     (
         r"no running event loop",
@@ -71,7 +76,7 @@ _BY_TEXT = (
         r"multiply sequence by non-int|only concatenate (?:str|list)|unsupported operand type\(s\) for .*'str'",
         "A value of this line is a text or a list, and no number: where does it come from? '0.5' is a text.",
     ),
-    (r"missing 1 required positional argument: 'self'", "Write parentheses after the class: node = MyNode()."),
+    (r"argument: 'self'|'property' object is not iterable", "Write parentheses after the class: node = MyNode()."),
     (r"required positional argument: 'qos_profile'", "The last argument is the queue depth, such as 10."),
     (r"required positional argument: 'action_name'", "The node comes first: ActionClient(self, Type, '/name')."),
     (r"required positional argument: 'node_name'", "The node's name goes in here: super().__init__('name')."),

@@ -24,8 +24,11 @@ _DEEPEST = 20
 #: The beginning of the traceback of an uncaught exception in the main thread: it starts in the module itself.
 _OF_THE_PROGRAM = re.compile(re.escape(HEADER) + r'\n[ \t]*File "[^"]+", line \d{1,9}, in <module>\n')
 
-#: Where an object is in memory, which is another place in each run; where rclpy's C++ has an exception, and raises it.
-_OF_A_LIBRARY = re.compile(r" at 0x[0-9a-f]{4,16}\b|^rclpy\._rclpy_pybind11\.|, at /\S+:\d+$")
+#: Where an object is in memory, which is another place in each run; where rclpy's C++ has an exception, and raises it;
+#: where a module is; a cause that nobody has who has no ROS 1.
+_OF_A_LIBRARY = re.compile(
+    r" at 0x[0-9a-f]{4,16}\b|^rclpy\._rclpy_pybind11\.|, at /\S+:\d+$| \(/\S+\)$| This might be a ROS 1 .*"
+)
 
 #: The cause of an error in C++, which stands before it: the error itself says nothing.
 _CAUSE = re.compile(r"(?:^|\n)(\w+: .*)\n\nThe above exception was the direct cause[^\n]*\s*$")

@@ -133,6 +133,8 @@ def test_a_name_with_the_wrong_capital_letters_is_told_from_one_that_is_misspelt
     module, misspelt = (message_of(Ending("crashed", message.format(n)), exercise) for n in ("header", "Haeder"))
     assert module.endswith("has no header. It may have Header: capital letters count.")
     assert misspelt.endswith("has no Haeder. Is the name spelled right?")
+    of_rclpy = message_of(Ending("crashed", "ImportError: cannot import name 'Node' from 'rclpy'"), exercise)
+    assert of_rclpy.endswith("Node is in rclpy.node: write from rclpy.node import Node.")
 
 
 @pytest.mark.parametrize(

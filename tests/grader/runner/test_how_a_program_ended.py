@@ -260,6 +260,11 @@ def raised(line: int, error: str, *frames: str) -> str:
             "def on_push is outside of the class: indent it like the other methods.",
         ),
         (
+            raised(12, "TypeError: Node.__init__() missing 1 required positional argument: 'node_name'"),
+            NODE.replace("__init__", "_init_"),
+            "Is _init_ meant to be __init__, with two underscores on each side?",
+        ),
+        (
             raised(12, "NameError: name 'on_push' is not defined"),
             NODE,
             "A method reaches what belongs to its object through self: write self.on_push.",
@@ -450,6 +455,15 @@ def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_i
         ("TypeError: 'float' object cannot be interpreted as an integer", "int(value) makes one"),
         ("AttributeError: 'method' object has no attribute 'success'", "with () behind its name, it is called"),
         ("TypeError: unsupported operand type(s) for +: 'float' and 'method'", "with () behind its name"),
+        ("TypeError: 'property' object is not iterable", "node = MyNode()"),
+        ("TypeError: module() takes at most 2 arguments (3 given)", "class MyNode(rclpy.node.Node)"),
+        (
+            "TypeError: descriptor '__init__' requires a 'super' object but received a 'str'",
+            "Write parentheses after super",
+        ),
+        ("AttributeError: 'Turnstile' object has no attribute 'spin'", "rclpy.spin(node)"),
+        ("AttributeError: 'Parameter' object has no attribute 'get_value'", "its value is get_parameter(…).value"),
+        ("ImportError: cannot import name 'N' from 'rclpy' (/x/rclpy/__init__.py)", "'N' from 'rclpy' in line 12"),
         ("TypeError: 'bool' object is not callable", "leave out ()"),
         ("NotImplementedError: Service classes can not be instantiated", "Type.Request() of a service"),
         ("RuntimeError: Context.init() must only be called once", "once, in main(), is enough"),
@@ -486,6 +500,10 @@ def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_i
         ("rclpy.exceptions.ParameterAlreadyDeclaredException: ['gain']", "Declare it once, in __init__"),
         ("AttributeError: 'Service' object has no attribute 'service_is_ready'", "is made by create_client()"),
         ("AttributeError: 'Subscription' object has no attribute 'publish'", "is made by create_publisher()"),
+        (
+            "AttributeError: type object 'str' has no attribute '_TYPE_SUPPORT' This might be a ROS 1 m",
+            "SUPPORT' in line",
+        ),
         ("AttributeError: type object 'str' has no attribute '_TYPE_SUPPORT'", "comes before the name"),
         ("RuntimeError: Subscription.__init__(): callback should be either be callable with", "takes the message"),
         ("AttributeError: 'Push_Result' object has no attribute 'status'", "has two fields: status, and result"),
