@@ -106,8 +106,8 @@ def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
 
 
 def _text(cell: str | None) -> str:
-    # Invisible characters of names stay, so that a platform finds its students again.
-    text = "".join(char if unicodedata.category(char) in ("Cf", "Zs") else printable(char) for char in cell or "")
+    # The spaces of names stay, so that a platform finds its students again; what turns the direction of text does not.
+    text = "".join(char if unicodedata.category(char) == "Zs" else printable(char) for char in cell or "")
     text = text if len(text) <= LONGEST_CELL else f"{text[:LONGEST_CELL]}…"
     formula = text.lstrip(" ").startswith(FORMULA) and text.strip() != "-"
     return f"'{text}" if formula else text

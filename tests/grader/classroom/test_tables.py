@@ -14,6 +14,7 @@ from grader.classroom.formats.moodle_languages import COLUMNS, LANGUAGES
 from grader.classroom.groups import read_groups
 from grader.classroom.roster import read_roster, with_row
 from grader.classroom.submissions import SubmissionsError
+from grader.classroom.tables import csv_text
 from grader.grading.grade import Student
 
 READ = {
@@ -126,3 +127,4 @@ def test_a_worksheet_comes_back_with_all_its_columns_and_names(tmp_path: Path) -
     student = with_row(Student("x_77", "x", "", {"Identifier": "Participant 77", "Full name": "x"}), row)
     back = list(csv.reader(moodle.table(plain.exercise(), [plain.entry(plain.RIGHT, student)]).splitlines()))
     assert (back[0], back[1][:3]) == (columns, values[:3])
+    assert csv_text(["a\u00a0b\u202ec"], []) == "a\u00a0b<U+202E>c\r\n"
