@@ -18,7 +18,7 @@ from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 from ros_in_python.svg_file import SvgFile
 
 if TYPE_CHECKING:
-    from grader.grading.grade import Grade, Options
+    from grader.grading.grade import Grade
 
 #: Exit codes. 2 is click's own, for usage.
 FULL_MARKS, NOT_FULL_MARKS, USAGE, OUR_FAULT = 0, 1, 2, 3
@@ -177,12 +177,6 @@ def _mistake(name: str, exercise: Exercise) -> Submission:
     return of_source(f"{name}.py", mistake_of(exercise, name).source.encode(), exercise)
 
 
-def _options(options: dict[str, Any]) -> Options:
-    from grader.grading.grade import Options
-
-    return Options(**options)
-
-
 def _class(exercise: Exercise, submissions: Path, out: Path, options: dict[str, Any], of_class: dict[str, Any]) -> int:
     """Grade a class. The imports are here so that a single submission is graded sooner."""
     from rich.console import Console
@@ -192,10 +186,11 @@ def _class(exercise: Exercise, submissions: Path, out: Path, options: dict[str, 
     from grader.classroom.request import ClassRequest, NoCluster
     from grader.classroom.results import FolderInUse, NotWritable
     from grader.classroom.submissions import SubmissionsError
+    from grader.grading.grade import Options
 
     if of_class["format"] not in ("", *FORMATS):
         raise click.UsageError(f"--format {of_class['format']}: there are {', '.join(FORMATS)}.")
-    class_request = ClassRequest(submissions, out, _options(options), **of_class)
+    class_request = ClassRequest(submissions, out, Options(**options), **of_class)
     try:
         return grade_class(exercise, class_request, Console(soft_wrap=False, highlight=False))
     except NotWritable as error:
@@ -206,9 +201,9 @@ def _class(exercise: Exercise, submissions: Path, out: Path, options: dict[str, 
 
 def _graded(exercise: Exercise, submission: Submission, options: dict[str, Any], workers: WorkerPool) -> Grade:
     """Grade one submission. Import while the worker starts, which takes longer."""
-    from grader.grading.grading import grading_of
+    from grader.grading import Options, grading_of
 
-    return grading_of(exercise, _options(options), workers).grade(submission)
+    return grading_of(exercise, Options(**options), workers).grade(submission)
 
 
 def _show(result: Grade, exercise: Exercise, as_json: bool, verbose: bool) -> None:

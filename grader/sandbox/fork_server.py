@@ -6,7 +6,6 @@ import contextlib
 import json
 import os
 import pickle
-import resource
 import signal
 import socket
 import subprocess
@@ -19,7 +18,7 @@ from grader.sandbox.environment import RUNTIME_VARIABLES, for_trusted
 from grader.sandbox.isolation import forget
 from grader.sandbox.middleware import variables
 from grader.sandbox.monitor import Monitor
-from grader.sandbox.program import OPEN_FILES, START_REQUEST, Isolation, Limits, ProgramSpec, SandboxError
+from grader.sandbox.program import START_REQUEST, Isolation, Limits, ProgramSpec, SandboxError
 from groundwork.clean_environment import module_command
 from groundwork.process_exit import ProcessExit
 
@@ -103,23 +102,26 @@ PRELOAD = (
 class ForkServer:
     """Starts students' programs. One serves a whole worker: create it before the runners fork; they share it."""
 
-    def __init__(self, preload: Sequence[str] = PRELOAD) -> None:
+    def __init__(self, preload: Sequence[str] = PRELOAD, forked: tuple[socket.socket, int] | None = None) -> None:
         """Start the process that students are forked from. It imports the modules while the caller continues.
 
-        `preload` names the modules to import beforehand; those that are not installed are left out. Raises
-        `MiddlewareUnavailable` if the middleware has not been compiled here.
+        `preload` names the modules to import beforehand; those that are not installed are left out. If this process has
+        `forked` that one already, it has a socket to it, and its id. Raises `MiddlewareUnavailable` if the middleware
+        has not been compiled here.
         """
-        soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-        if 0 <= soft < OPEN_FILES <= hard:
-            resource.setrlimit(resource.RLIMIT_NOFILE, (OPEN_FILES, hard))
-        self._preload = set(preload)
-        self._zygote = _Zygote(preload)
+        self._preload, self._owner = set(preload), os.getpid()
+        if forked is None:
+            requests, process = start_zygote(preload)
+            process.returncode = 0  # `close` waits for it
+            forked = requests, process.pid
+        self._socket, self._pid = forked
 
     def preload(self, module: str) -> None:
         """Import one more module for the programs that are started from now on: the types that an exercise uses."""
         if module not in self._preload:
             self._preload.add(module)
-            self._zygote.preload(module)
+            with contextlib.suppress(OSError):  # if the process has ended, the next request says so
+                self._socket.send(module.encode())
 
     def start(
         self, program: ProgramSpec, isolation: Isolation, limits: Limits | None = None, core: int | None = None
@@ -145,7 +147,7 @@ class ForkServer:
             passed.append(os.dup(program.hub))
         try:
             passed += _confinement(program, isolation)
-            self._zygote.request(passed)
+            socket.send_fds(self._socket, [START_REQUEST], passed)
         except OSError as fault:
             os.close(output)
             ours.close()
@@ -161,7 +163,10 @@ class ForkServer:
 
     def close(self) -> None:
         """End the process. The students it has started end with their runners."""
-        self._zygote.close()
+        self._socket.close()
+        if os.getpid() == self._owner:
+            os.kill(self._pid, signal.SIGTERM)
+            os.waitpid(self._pid, 0)
 
     def __enter__(self) -> ForkServer:
         """Return itself. It has been started already."""
@@ -172,45 +177,26 @@ class ForkServer:
         self.close()
 
 
-class _Zygote:
-    """The process from which students are forked, as this process and its forks hold it."""
-
-    def __init__(self, preload: Sequence[str]) -> None:
-        self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        environment = for_trusted(RUNTIME_VARIABLES)
-        environment |= variables(environment)
-        # One thread: a child forked from several could hang. A fixed hash seed: sets have the same order in each run.
-        environment |= {"OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1"}
-        # Address space is limited, and by default many threads would reserve 64 MiB of it each.
-        environment |= {"MALLOC_ARENA_MAX": "4"}
-        self._owner = os.getpid()
-        command = module_command("grader.sandbox.zygote", str(theirs.fileno()), *preload)
-        self._process = subprocess.Popen(
-            command,
+def start_zygote(preload: Sequence[str], owner: str = "") -> tuple[socket.socket, subprocess.Popen[bytes]]:
+    """Start a new Python that imports the modules, and is then the process from which students are forked; return the
+    socket to it. With an `owner` it forks that process, and becomes the owner: see `grader.sandbox.zygote`.
+    """
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    environment = for_trusted(RUNTIME_VARIABLES)
+    environment |= variables(environment)
+    # One thread: a child forked from several could hang. A fixed hash seed: sets have the same order in each run.
+    environment |= {"OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1"}
+    environment["MALLOC_ARENA_MAX"] = "4"  # address space is limited: many threads would reserve 64 MiB of it each
+    with theirs:
+        process = subprocess.Popen(
+            module_command("grader.sandbox.zygote", str(theirs.fileno()), owner, *preload),
             pass_fds=[theirs.fileno()],
             env=environment,
             cwd="/",
             stdin=subprocess.DEVNULL,
             start_new_session=True,
         )
-        theirs.close()
-
-    def request(self, passed: Sequence[int]) -> None:
-        """Request a student. Raises OSError if the process has ended."""
-        socket.send_fds(self._socket, [START_REQUEST], passed)
-
-    def preload(self, module: str) -> None:
-        """Have a module imported before the next request. If the process has ended, that request says so."""
-        with contextlib.suppress(OSError):
-            self._socket.send(module.encode())
-
-    def close(self) -> None:
-        """End the process, if it belongs to this process."""
-        self._socket.close()
-        if os.getpid() == self._owner:
-            with contextlib.suppress(ProcessLookupError):
-                self._process.send_signal(signal.SIGTERM)
-            self._process.wait()
+    return ours, process
 
 
 def _root(program: ProgramSpec, isolation: Isolation, limits: Limits) -> tuple[tuple[filesystem.Mount, ...], bytes]:

@@ -14,15 +14,9 @@ _LARGEST = 65536
 
 
 class _Statistics(ctypes.Structure):
-    """`struct mallinfo2` of glibc 2.33 and later: mallinfo(3)."""
+    """`struct mallinfo2` of glibc 2.33 and later, ten numbers: mallinfo(3)."""
 
-    _fields_ = tuple(
-        (name, ctypes.c_size_t)
-        for name in (
-            *("arena", "ordblks", "smblks", "hblks", "hblkhd"),
-            *("usmblks", "fsmblks", "uordblks", "fordblks", "keepcost"),
-        )
-    )
+    _fields_ = (("others", ctypes.c_size_t * 9), ("keepcost", ctypes.c_size_t))
 
 
 def fill_gaps() -> None:

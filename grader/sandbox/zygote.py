@@ -14,6 +14,7 @@ import io
 import itertools
 import os
 import pickle
+import resource
 import signal
 import socket
 import sys
@@ -24,8 +25,9 @@ from grader import preloaded
 from grader.sandbox import callers, filesystem, heap, seccomp, syscalls, uncaught
 from grader.sandbox.confine import PassedDescriptors
 from grader.sandbox.environment import for_program
+from grader.sandbox.fork_server import ForkServer
 from grader.sandbox.middleware import choosable, connect, load_type_support
-from grader.sandbox.program import START_REQUEST, Paths, ProgramSpec
+from grader.sandbox.program import OPEN_FILES, START_REQUEST, Paths, ProgramSpec
 from grader.sandbox.supervisor import StudentToRun, refuse, supervise
 from groundwork.clean_environment import own_path
 from rmw_lockstep import IDENTIFIER
@@ -67,6 +69,7 @@ def run_program(program: ProgramSpec, paths: Paths) -> None:
 
 def _prepare_main(path: str, arguments: tuple[str, ...]) -> types.ModuleType:
     """Make this interpreter look as if it had been started with the file."""
+    syscalls.prctl(syscalls.PR_SET_NAME, os.fsencode(Path(sys.executable).name))
     sys.argv = [path, *arguments]
     sys.orig_argv = [sys.executable, *sys.argv]
     sys.path.insert(0, str(Path(path).parent))
@@ -120,7 +123,7 @@ def _modules_of_this_fork() -> list[str]:
 _ours: list[types.ModuleType] = []
 
 
-# python -m grader.sandbox.zygote DESCRIPTOR MODULE…
+# python -m grader.sandbox.zygote DESCRIPTOR OWNER MODULE…: OWNER is empty, or the module of `_fork_for`
 
 
 #: In bytes. The longest is the name of a module.
@@ -130,17 +133,44 @@ _MOST_DESCRIPTORS = 8
 
 def main() -> None:
     """Serve until the last user of the socket is gone. Return only as a student whose program has ended."""
-    requests, modules = int(sys.argv[1]), sys.argv[2:]
+    descriptor, owner, modules = int(sys.argv[1]), sys.argv[2], sys.argv[3:]
+    path = sys.path.copy()
     sys.path[:] = own_path(sys.path)  # a .pth file may have added another installation's modules
     os.chdir("/")
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if 0 <= soft < OPEN_FILES <= hard:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (OPEN_FILES, hard))
     gc.disable()  # until it forks: it would look through all that is imported, a tenth of the time
     fault = _load(modules)
+    if owner:
+        descriptor = _fork_for(owner, descriptor, modules, path)
+    path.clear()  # a student's program can see it
     _prepare_for_forks()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # supervisors need no reaping
-    job = serve(requests, fault)
+    job = serve(descriptor, fault)
     if job is not None:
         run_program(job.program, job.paths)
+
+
+def _fork_for(owner: str, descriptor: int, modules: list[str], path: list[str]) -> int:
+    """Fork, and return in the child, with the descriptor of its requests, as the fork server of this process.
+
+    This process becomes the owner, by `main` of the module with that name. It has read nothing yet from `descriptor`,
+    so the fork server knows nothing that no student may see; and both import rclpy only once. `path` is where the owner
+    finds modules.
+    """
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    if (pid := _fork()) == 0:
+        os.setsid()
+        syscalls.prctl(syscalls.PR_SET_NAME, b"fork server")
+        os.close(descriptor)
+        ours.close()
+        return theirs.detach()
+    theirs.close()
+    sys.path[:] = path
+    importlib.import_module(owner).main(descriptor, ForkServer(modules, (ours, pid)))
+    sys.exit()
 
 
 def _prepare_for_forks() -> None:
@@ -178,7 +208,7 @@ def serve(requests: int, fault: str | None) -> StudentToRun | None:
                 _import(message.decode())
             _prepare_for_forks()
             continue
-        if _fork_supervisor() == 0:
+        if _fork() == 0:
             listening.detach()
             os.close(requests)
             for number in passed:  # no program may inherit the received descriptors
@@ -193,10 +223,10 @@ def serve(requests: int, fault: str | None) -> StudentToRun | None:
             os.close(number)
 
 
-def _fork_supervisor() -> int:
+def _fork() -> int:
     """Fork as the C library does, without Python's own preparation of threads, locks and random numbers.
 
-    A supervisor uses none of these. It forks its student as Python does, which prepares them.
+    The fork server and its supervisors use none of these. A student is forked as Python does, which prepares them.
     """
     return syscalls.libc_call("fork", of=_with_python)
 

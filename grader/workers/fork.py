@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import resource
-import sys
 import warnings
 from pathlib import Path
 
@@ -15,8 +14,6 @@ def fork() -> int:
     The other threads are LTTng's: ROS 2's tracing starts two when rclpy is imported. They wait for a tracing
     daemon (lttng-ust(3), "LTTNG_UST_REGISTER_TIMEOUT"), and a child has no use for them.
     """
-    if sys.version_info < (3, 12):
-        return os.fork()
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "This process .* is multi-threaded", DeprecationWarning)
         return os.fork()

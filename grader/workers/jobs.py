@@ -18,10 +18,7 @@ from grader.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
     from grader.checking.run import Run
-    from grader.sandbox.fork_server import (
-        ForkServer,  # the worker passes it in
-        SandboxedProgram,
-    )
+    from grader.sandbox.fork_server import ForkServer, SandboxedProgram
 
 
 class Job(Protocol):

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import multiprocessing.connection
 import os
+import pickle
 import shutil
 import socket
-import subprocess
+import sys
 import tempfile
 import threading
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from grader.sandbox.environment import for_trusted
-from grader.sandbox.middleware import in_place_of_fast_dds, require_middleware
+from grader.sandbox.fork_server import PRELOAD, start_zygote
+from grader.sandbox.middleware import require_middleware
 from grader.workers.shared import SharedObjects
-from groundwork.clean_environment import module_command
 
 if TYPE_CHECKING:
     from grader.checking.verdict import Verdict
@@ -105,16 +108,6 @@ class Worker:
         self.close()
 
 
-_THREADS_OF_NUMPY = "OPENBLAS_NUM_THREADS"
-
-#: For the worker and its runners, which import ROS's message types. Without RMW_IMPLEMENTATION of the user's, which may
-#: name a middleware that is not installed: empty, it takes the one that is.
-WORKER_ENVIRONMENT = {
-    "RMW_IMPLEMENTATION": "",
-    "PYTHONHASHSEED": "0",
-    _THREADS_OF_NUMPY: "1",
-}
-
 #: For students' programs. No time stamps in the log, so that two runs log the same.
 STUDENT_ENVIRONMENT = {
     "RCUTILS_CONSOLE_OUTPUT_FORMAT": "[{severity}] [{name}]: {message}",
@@ -123,13 +116,23 @@ STUDENT_ENVIRONMENT = {
 
 
 def leave_cpus_to_workers() -> None:
-    """Keep numpy, which ROS's message classes import, from starting a thread per CPU: each of them computes for 0.1 s
-    before it waits. Commands call this, and their child processes inherit it.
+    """Import numpy, which ROS's message classes import, only if it is used, and without a thread per CPU: each of them
+    computes for 0.1 s before it waits. Commands call this. Their child processes inherit the number of threads.
     """
-    os.environ.setdefault(_THREADS_OF_NUMPY, "1")
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    sys.modules.setdefault("numpy", _NumpyWhenUsed("numpy"))
 
 
-PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE, JUDGE = b"p", b"t", b"j", b"s", b"c"
+class _NumpyWhenUsed(ModuleType):
+    """Stands for numpy until somebody looks up a name in it."""
+
+    def __getattr__(self, name: str) -> Any:
+        if sys.modules["numpy"] is self:
+            del sys.modules["numpy"]
+        return getattr(importlib.import_module("numpy"), name)
+
+
+BEGIN, PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE, JUDGE = b"b", b"p", b"t", b"j", b"s", b"c"
 
 
 class WorkerPool:
@@ -154,19 +157,11 @@ class WorkerPool:
         self._start()
 
     def _start(self) -> None:
-        self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        environment = for_trusted()
-        environment |= in_place_of_fast_dds(environment) | WORKER_ENVIRONMENT | {"TMPDIR": str(self._temporary)}
-        self._worker = subprocess.Popen(
-            module_command("grader.workers.worker", str(theirs.fileno()), *map(str, self._folders)),
-            pass_fds=[theirs.fileno()],
-            stdin=subprocess.DEVNULL,
-            start_new_session=True,
-            env=environment,
-        )
-        theirs.close()
+        self._control, self._worker = start_zygote(PRELOAD, "grader.workers.worker")
+        environment = for_trusted() | {"TMPDIR": str(self._temporary)}
+        self._send(BEGIN, pickle.dumps((environment, Path.cwd(), self._folders)))
         for content in self._sent:
-            self._send_shared(content)
+            self._send(SHARE, content)
 
     def do(self, job: Job, cancelled: threading.Event | None = None) -> Any:
         """Return what `job` returns, done in a process of its own; see `Worker.do`."""
@@ -190,14 +185,14 @@ class WorkerPool:
         with self._lock:
             self._sent.append(self._shared.add(objects))
             with contextlib.suppress(OSError):  # a worker that died gets it when it is started again
-                self._send_shared(self._sent[-1])
+                self._send(SHARE, self._sent[-1])
 
-    def _send_shared(self, content: bytes) -> None:
+    def _send(self, command: bytes, content: bytes) -> None:
         number = os.memfd_create("shared", os.MFD_CLOEXEC)
         with os.fdopen(number, "wb") as stream:
             stream.write(content)
             stream.flush()
-            socket.send_fds(self._control, [SHARE], [number])
+            socket.send_fds(self._control, [command], [number])
 
     def prepare_types(self, modules: Iterable[str]) -> None:
         """Let the worker load modules of message types, such as `sensor_msgs.msg`, for all later jobs."""

@@ -8,12 +8,14 @@ import gc
 import importlib
 import multiprocessing.connection
 import os
+import pickle
 import queue
 import shutil
 import signal
 import socket
 import sys
 import threading
+from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from grader.sandbox import filesystem, middleware
@@ -23,6 +25,7 @@ from grader.workers.fork import fork, limit_memory
 from grader.workers.judges import Judges
 from grader.workers.pool import JUDGE, PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE
 from grader.workers.shared import receive
+from rmw_lockstep.type_hash import type_hash
 
 if TYPE_CHECKING:
     from grader.workers.jobs import Job
@@ -32,7 +35,9 @@ if TYPE_CHECKING:
 def preload() -> None:
     """Import the modules that run a program, scan the file system, and prepare the memory for sharing with forks."""
     importlib.import_module("grader.runner.run")
+    importlib.import_module("grader.workers.jobs")
     filesystem.mounts((), (), 0)
+    type_hash("rosgraph_msgs/msg/Clock")  # this reads what the others need
     _share()
 
 
@@ -45,10 +50,14 @@ def preload_types(module: str) -> None:
 
 def take_shared(descriptor: int) -> None:
     """Take what all jobs of a grading need: see `WorkerPool.share`."""
+    receive(_content(descriptor))
+    _share()
+
+
+def _content(descriptor: int) -> bytes:
     with os.fdopen(descriptor, "rb") as stream:
         stream.seek(0)
-        receive(stream.read())
-    _share()
+        return stream.read()
 
 
 #: In bytes. The longest holds the names of all scenarios.
@@ -70,15 +79,14 @@ def _share() -> None:
     gc.freeze()
 
 
-# python -m grader.workers.worker DESCRIPTOR FOLDER...
+def main(descriptor: int, fork_server: ForkServer) -> None:
+    """Serve jobs until the other end of the control socket is closed; remove the folders with the jobs' files.
 
-
-def main() -> None:
-    """Serve jobs until the other end of the control socket is closed; remove the folders with the jobs' files."""
-    gc.disable()  # until a fork works: it would look through all that is imported, a tenth of the time
-    descriptor, *folders = sys.argv[1:]
-    control = socket.socket(fileno=int(descriptor))
-    with ForkServer() as fork_server:
+    `descriptor` is the control socket. Whoever has imported rclpy calls this: see `grader.sandbox.zygote`.
+    """
+    control = socket.socket(fileno=descriptor)
+    folders = _begin(control)
+    with fork_server:
         preload()
         working: set[int] = set()
         judges = Judges(working)
@@ -114,6 +122,18 @@ def main() -> None:
                 os.waitpid(pid, 0)
     for folder in folders:
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def _begin(control: socket.socket) -> tuple[Path, ...]:
+    """Take this process's own environment variables and working directory; return the folders to remove at the end."""
+    _, [descriptor], _, _ = socket.recv_fds(control, LONGEST_COMMAND, 1)
+    environment, directory, folders = pickle.loads(_content(descriptor))
+    os.environ.clear()
+    os.environ.update(environment)
+    os.chdir(directory)
+    sys.dont_write_bytecode = "PYTHONDONTWRITEBYTECODE" in environment
+    sys.pycache_prefix = environment.get("PYTHONPYCACHEPREFIX")
+    return tuple(folders)
 
 
 def _reap(working: set[int]) -> None:
@@ -152,7 +172,3 @@ def _listen(connection: Connection, jobs: queue.SimpleQueue[Job]) -> None:
         while True:
             jobs.put(connection.recv())
     os._exit(1)
-
-
-if __name__ == "__main__":
-    main()

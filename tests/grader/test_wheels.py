@@ -10,13 +10,9 @@ import zipfile
 from io import BytesIO
 from pathlib import Path
 
-import pytest
-
-from grader.sandbox import middleware
 from grader.wheels import middleware_wheel
 from interface_compiler.wheel_file import platform_tag
 from rmw_lockstep.library import DESCRIPTION, PREBUILT
-from rmw_lockstep.ros import Ros
 
 
 def test_the_middlewares_wheel_is_for_every_python_and_the_systems_of_pypis_ros_2(tmp_path: Path) -> None:
@@ -64,18 +60,3 @@ def test_a_wheel_claims_to_fit_only_systems_that_have_what_its_libraries_call() 
     assert platform_tag([old, newer_c]) == f"manylinux_2_38_{machine}"
     assert platform_tag([newer_cpp, old]) == f"manylinux_2_34_{machine}"
     assert platform_tag([b""]) == f"manylinux_2_28_{machine}"
-
-
-@pytest.mark.parametrize("other", ["librmw_fastrtps_cpp.so", "librmw_implementation.so"])
-def test_the_graders_processes_load_it_in_place_of_fast_dds_only_where_that_is_missing(
-    other: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """As with the extra `grade`: PyPI's rclpy is linked to a Fast DDS that is not there."""
-    (tmp_path / "lib").mkdir()
-    monkeypatch.setattr(middleware, "installed_ros", lambda: Ros(tmp_path))
-    path = middleware.in_place_of_fast_dds({"LD_LIBRARY_PATH": "/other"})["LD_LIBRARY_PATH"]
-    first, _, rest = path.partition(":")
-    assert Path(first, "librmw_fastrtps_cpp.so").exists()
-    assert rest == "/other"
-    (tmp_path / "lib" / other).touch()
-    assert middleware.in_place_of_fast_dds({}) == {}

@@ -32,7 +32,8 @@ def beneath(process: psutil.Process) -> list[psutil.Process]:
 
 def workers_of(process: psutil.Process) -> list[psutil.Process]:
     """Return the grader's worker processes that run, of those that a process has started itself."""
-    return [child for child in process.children() if "grader.workers.worker" in " ".join(command_of(child))]
+    found = [child for child in process.children() if "grader.workers.worker" in " ".join(command_of(child))]
+    return [child for child in found if child.name() != "fork server"]
 
 
 def new_worker(others: list[psutil.Process]) -> psutil.Process:

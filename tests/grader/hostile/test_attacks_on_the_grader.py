@@ -72,7 +72,7 @@ def grader_processes() -> Iterator[psutil.Process]:
             command = " ".join(process.cmdline())
             if "grader." in command:
                 yield process
-                waiting += [] if "grader.sandbox.zygote" in command else process.children()
+                waiting += [] if process.name() == "fork server" else process.children()
 
 
 def grade_of(grading: Grading, name: str, source: str) -> Grade:
