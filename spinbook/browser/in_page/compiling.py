@@ -9,7 +9,8 @@ import zipfile
 from pathlib import Path
 
 #: The archives as a page names them in tracebacks, and their names in the site.
-_ARCHIVES = {"/lib/python314.zip": "python_stdlib.zip", "/ros.zip": "ros.zip"}
+_STDLIB = f"/lib/python{sys.version_info.major}{sys.version_info.minor}.zip"
+_ARCHIVES = {_STDLIB: "python_stdlib.zip", "/ros.zip": "ros.zip"}
 #: The flags, in four bytes, of a compiled module whose source nobody looks for (PEP 552).
 _UNCHECKED = b"\1\0\0\0"
 

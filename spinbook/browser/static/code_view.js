@@ -64,6 +64,7 @@ export function codeView({ parent, text, label, language, before, onchange }) {
         edited ||= update.docChanged;
         if (update.docChanged && !filling) onchange(update.state.doc.toString());
       }),
+      EditorView.domEventHandlers({ beforeinput: typeOver }),
       // The page's header covers what is scrolled to its top (px).
       EditorView.scrollMargins.of(() => ({ top: 64 })),
       look,
@@ -95,6 +96,15 @@ function letTabLeave(view) {
   };
   view.contentDOM.addEventListener("keydown", stay, true);
   return false;
+}
+
+// Where browsers type over several lines themselves, they write styles, which the page's policy forbids.
+function typeOver({ inputType, data }, view) {
+  const { from, to } = view.state.selection.main;
+  if (inputType !== "insertText" || !data || to <= view.state.doc.lineAt(from).to) return false;
+  const insert = () => view.state.update(view.state.replaceSelection(data), { userEvent: "input.type", scrollIntoView: true });
+  if (!view.state.facet(EditorView.inputHandler).some((handle) => handle(view, from, to, data, insert))) view.dispatch(insert());
+  return true;
 }
 
 // Lines are numbered as in the program's errors.

@@ -9,6 +9,7 @@ import { tryOut } from "./trial.js";
 import { tellUpdate } from "./update.js";
 
 const LIMIT_S = 120;
+const OLDER = "You have changed your program since. This is the result of the one before: check again.";
 const SIGNS = { passed: "✓", failed: "✗", blocked: "–", error: "!", untested: "○" };
 
 // The last line of a downloaded program whose exercise counts hints. grader/report/hint_steps.py reads it.
@@ -127,6 +128,13 @@ function opening(section) {
   const state = element("p", { className: "run-state", role: "status" });
   const result = element("div", { className: "check-result" });
   const say = (text) => (state.textContent = text);
+  // The program whose result is shown; null if no result is.
+  let judged = null;
+  const clear = () => {
+    judged = null;
+    result.replaceChildren();
+  };
+  edits.onchange = () => judged !== null && say(editor.text === judged ? "" : OLDER);
   // On a phone, the results are below the visible part of the page.
   const show = (part) => part.scrollIntoView({ block: "nearest" });
 
@@ -147,19 +155,21 @@ function opening(section) {
   const runChecks = async () => {
     const source = editor.text;
     const checked = await check(name, source, say);
-    say(editor.text === source ? "" : "You have changed your program since. This is the result of the one before: check again.");
+    judged = source;
+    edits.onchange();
     result.replaceChildren(...panel(checked, name));
     show(result);
     announce(checked.problem ?? checked.total);
   };
   const checking = button("Check", `Check ${file}`, async () => {
-    result.replaceChildren();
+    clear();
     edits.note("checked");
     checking.disabled = true;
     await attempt(runChecks);
     checking.disabled = false;
   });
   const play = (scenario) => {
+    clear();
     edits.note("tried");
     return attempt(() => tryOut({ exercise: name, file, source: editor.text, scenario, place: result, say }));
   };
@@ -171,7 +181,7 @@ function opening(section) {
     const [file] = upload.files;
     upload.value = "";
     if (!file) return;
-    result.replaceChildren();
+    clear();
     const text = await file.text();
     if (/\.py$/i.test(file.name) && !/^(\s*\{|PK)/.test(text)) return edits.take(text, `Your program is from ${file.name}.`);
     await attempt(async () => {

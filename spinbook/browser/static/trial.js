@@ -14,6 +14,7 @@ export async function tryOut({ exercise, file, source, scenario, place, say }) {
   await Promise.all(playing.map((process) => process.stop()));
   bar();
   const figure = element("figure");
+  globalThis.mayScroll(figure);
   const log = (label) => element("pre", { tabIndex: 0, role: "log", ariaLabel: label });
   const around = log("What surrounds your node");
   const own = log(`What ${file} prints`);

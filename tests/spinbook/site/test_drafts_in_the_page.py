@@ -76,6 +76,11 @@ def test_an_edit_is_shown_after_a_reload_with_what_differs(shown: Opened) -> Non
     cell.get_by_role("combobox").select_option(index=1)
     page.get_by_role("button", name="Use that version of talker").click()
     assert "edited" in code(page)
+    written = code(page)
+    for typed, becomes in (("(", f"({written})"), ("x", "x")):
+        open_editor(cell).press("Control+a")
+        page.keyboard.press(typed)
+        assert code(page) == becomes
     assert shown.faults == []
 
 

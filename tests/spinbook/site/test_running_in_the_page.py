@@ -138,13 +138,18 @@ def test_a_course_that_was_run_once_runs_without_a_network(browser: Browser, add
         expect(page.locator("#search-results li").first).to_be_visible()
 
 
-def test_a_page_from_before_an_update_says_so(browser: Browser, address: str) -> None:
+def test_a_page_from_before_an_update_says_so_and_stops_what_has_not_begun(browser: Browser, address: str) -> None:
     # Requests of a page with a service worker don't reach the route.
     alone = browser.new_context(service_workers="block")
     with alone, opened(alone, f"{address}/chapters/01-talk.html") as shown:
-        shown.page.route("**/version.txt", lambda route: route.fulfill(body="newer"))
+        cell = shown.page.locator(".cell-node")
+        alone.route("**/version.txt", lambda route: route.fulfill(body="newer"))
+        alone.route("**/run/ros.zip*", lambda _: None)  # is never there, so Python does not start
         shown.page.get_by_role("button", name="Run talker.py").click()
         expect(shown.page.get_by_role("alert")).to_contain_text("This course was updated: reload", timeout=DEADLINE_MS)
+        cell.get_by_role("button", name="Ctrl-C").click()
+        expect(cell.get_by_role("status")).to_have_text("talker was ended.", timeout=DEADLINE_MS)
+        expect(shown.page.get_by_role("region", name="Running nodes")).to_be_hidden()
 
 
 def test_a_failure_of_the_network_is_called_that(browser: Browser, address: str) -> None:
@@ -187,6 +192,11 @@ def test_an_exercise_is_checked_in_its_page(reader: BrowserContext, address: str
         assert not shown.scrolls_sideways()
         check(solutions / "solution.py", "9 of 9 public checks, 37 of 37 points")
         expect(page.locator(".check-result")).to_contain_text("This is a preview, not your grade")
+        code, older = page.get_by_role("textbox", name="Code of"), page.get_by_text("the result of the one before")
+        code.press("Control+End")
+        for key, shown_older in (("#", 1), ("Backspace", 0)):
+            code.press(key)
+            expect(older).to_have_count(shown_older)
 
         page.get_by_role("button", name="Try joint_velocity.py in real time").click()
         around, own = (page.get_by_role("log", name=name) for name in ("What surrounds your node", "What joint_vel"))

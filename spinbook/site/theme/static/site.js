@@ -99,18 +99,18 @@ function copying() {
 }
 
 // Elements that scroll sideways must be reachable with the keyboard; those that don't must not take the focus.
-function scrolling() {
-  const update = (entries) => {
-    for (const { target } of entries) {
-      const scrolls = target.scrollWidth > target.clientWidth + 1;
-      if (scrolls) target.tabIndex = 0;
-      else target.removeAttribute("tabindex");
-      target.role = scrolls ? "group" : null;
-      target.ariaLabel = scrolls ? (target.matches("pre") ? "Code, scrolls sideways" : "Scrolls sideways") : null;
-    }
-  };
-  const observer = new ResizeObserver(update);
-  for (const place of document.querySelectorAll("main pre, .table, figure.drawing, .math, .pausable")) observer.observe(place);
+const sideways = new ResizeObserver((entries) => {
+  for (const { target } of entries) {
+    const scrolls = target.scrollWidth > target.clientWidth + 1;
+    if (scrolls) target.tabIndex = 0;
+    else target.removeAttribute("tabindex");
+    target.role = scrolls ? "group" : null;
+    target.ariaLabel = scrolls ? (target.matches("pre") ? "Code, scrolls sideways" : "Scrolls sideways") : null;
+  }
+});
+
+function mayScroll(place) {
+  sideways.observe(place);
 }
 
 // Mark the current section in the list next to the text.
@@ -122,8 +122,9 @@ function whereabouts() {
   const observer = new IntersectionObserver(
     (entries) => {
       for (const entry of entries) seen[entry.isIntersecting ? "add" : "delete"](entry.target.id);
-      const at = [...links.keys()].filter((id) => seen.has(id)).pop();
-      if (!at) return;
+      const ids = [...links.keys()];
+      // At the top of a part, the first of its sections is the one to come.
+      const at = ids.filter((id) => seen.has(id)).pop() ?? ids.find((id) => document.getElementById(id)?.checkVisibility());
       for (const [id, link] of links) {
         link.ariaCurrent = id === at ? "true" : null;
       }
@@ -360,6 +361,6 @@ robots();
 progress();
 menu();
 copying();
-scrolling();
+document.querySelectorAll("main pre, .table, figure.drawing, .math, .pausable").forEach(mayScroll);
 whereabouts();
 printing();
