@@ -93,24 +93,13 @@ async function runPython(cell, source) {
 }
 
 // Split a plain cell: lines such as `%stop left_toe` are for the page, the rest is Python.
-function parts(source) {
-  const pieces = [];
-  let python = [];
-  const finish = () => {
-    if (python.join("").trim()) pieces.push({ python: python.join("\n") });
-    python = [];
-  };
-  for (const line of source.split("\n")) {
-    const [, first, name = "!", rest] = /^(!|%(%?\w+))(.*)/.exec(line) ?? [];
-    if (!first) {
-      python.push(line);
-      continue;
-    }
-    finish();
-    pieces.push({ magic: name, rest: rest.trim() });
+function* parts(source) {
+  const pieces = source.split(/^(!|%%?\w+)(.*)\n?/m);
+  for (let at = 0; at < pieces.length; at += 3) {
+    const [python, first, rest] = pieces.slice(at, at + 3);
+    if (python.trim()) yield { python };
+    if (first) yield { magic: first.replace(/^%/, ""), rest: rest.trim() };
   }
-  finish();
-  return pieces;
 }
 
 // What a page does for each magic; `args` are its words and options.

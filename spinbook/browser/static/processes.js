@@ -16,8 +16,9 @@ let count = 0;
 // The memory of the first process when Python had started, a Blob. All others start with a copy of it, also after a
 // reload: this takes a tenth of the computing.
 let memory = keptMemory();
-// Python's code, compiled: all processes share it.
-let code = null;
+// What all processes share: Python's code, compiled, and the archives with its modules and with ROS 2, which the browser
+// keeps once, as Blobs.
+let shared = null;
 // A process that has started, and waits for its program.
 let spare = null;
 
@@ -33,6 +34,14 @@ export function take(name, hears) {
   spare = null;
   process.join(name, hears);
   return process;
+}
+
+const load = () => Promise.all([WebAssembly.compileStreaming(fetch(addressOf("pyodide.asm.wasm"))), ...["python_stdlib.zip", "ros.zip"].map(archive)]);
+
+async function archive(name) {
+  const response = await fetch(addressOf(name));
+  if (!response.ok) throw new Error(`${name}: ${response.status}`);
+  return { name, data: await response.blob() };
 }
 
 async function keptMemory() {
@@ -83,10 +92,10 @@ export class Process {
     this.worker = new Worker(addressOf("worker.js"), { type: "module", name: this.identity });
     this.worker.onmessage = ({ data }) => this.#heard(data);
     this.worker.onerror = (event) => this.#broke(event.message || "The browser could not start it.");
-    code ??= WebAssembly.compileStreaming(fetch(addressOf("pyodide.asm.wasm")));
-    code.catch(() => (code = null));
-    this.ready = Promise.all([code, memory]).then(([compiled, memory]) =>
-      this.call("start", { version: VERSION, identity: this.identity, compiled, memory }),
+    shared ??= load();
+    shared.catch(() => (shared = null));
+    this.ready = Promise.all([shared, memory]).then(([[compiled, ...archives], memory]) =>
+      this.call("start", { version: VERSION, identity: this.identity, compiled, archives, memory }),
     );
     this.ready.then(() => (this.isReady = true), () => this.end());
   }

@@ -56,47 +56,54 @@ const lacking = new Promise((resolve, reject) => {
   };
 });
 
-// Pyodide's code, which the page compiles once for all processes. Pyodide gets it instead of loading and compiling it.
+// Pyodide's code, which the page compiles once for all processes. Pyodide gets it instead of loading and compiling it,
+// and its modules are in an archive of the page.
 let code = null;
 const { fetch: load } = self;
-self.fetch = (address, ...options) => (String(address).endsWith(".asm.wasm") ? code : load(address, ...options));
+self.fetch = (address, ...options) => {
+  if (String(address).endsWith("/python_stdlib.zip")) return Promise.resolve(new Response());
+  return String(address).endsWith(".asm.wasm") ? code : load(address, ...options);
+};
 WebAssembly.instantiateStreaming = async (source, imports) => {
   const module = await source;
   return { module, instance: await WebAssembly.instantiate(module, imports) };
 };
 
-const PAGE = 4096;
+const PAGE = 4096 / Uint32Array.BYTES_PER_ELEMENT;
 
 // The `set` with which Pyodide writes a snapshot, without its empty pages: what is never written takes no memory.
 function setFullPages(bytes, at = 0) {
   const { set } = Uint8Array.prototype;
-  if (bytes.length < PAGE) return void set.call(this, bytes, at);
-  for (let from = 0; from < bytes.length; from += PAGE) {
-    const part = bytes.subarray(from, from + PAGE);
-    const old = this.subarray(at + from, at + from + part.length);
-    if (!isEmpty(part) || !isEmpty(old)) set.call(old, part);
+  if (bytes.length < 4 * PAGE) return void set.call(this, bytes, at);
+  const words = new Uint32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4);
+  const old = new Uint32Array(this.buffer, this.byteOffset + at, words.length);
+  for (let from = 0; from < words.length; from += PAGE) {
+    if (!isEmpty(words, from) || !isEmpty(old, from)) old.set(words.subarray(from, from + PAGE), from);
   }
 }
 
-function isEmpty({ buffer, byteOffset, length }) {
-  const words = new Uint32Array(buffer, byteOffset, length / 4);
-  for (let at = 0; at < words.length; at++) if (words[at]) return false;
+function isEmpty(words, from) {
+  for (let at = from; at < from + PAGE; at++) if (words[at]) return false;
   return true;
 }
 
 const PREPARE = 'import sys; sys.path.insert(0, "/ros.zip"); from spinbook.browser.in_page import process; process.prepare()';
 
 // Start Python with ROS 2 from the memory of an earlier process, a Blob; without one, anew, and hand over its memory.
-async function python(memory) {
-  const archive = await bytes("ros.zip");
+async function python(memory, archives) {
   const options = {
     indexURL: new URL("./", import.meta.url).href,
     stdout: print("stdout"),
     stderr: print("stderr"),
     fsInit: (FS) => {
+      FS.mkdir("/archives");
+      FS.mount(FS.filesystems.WORKERFS, { blobs: archives }, "/archives");
+      FS.symlink("/archives/ros.zip", "/ros.zip");
       const { writeFile } = FS;
-      FS.writeFile = (path, data, options) => writeFile(path, data, { canOwn: true, ...options }); // no second copy
-      FS.writeFile("/ros.zip", archive);
+      FS.writeFile = (path, data, options) => {
+        if (/^\/lib\/python\d+\.zip$/.test(path)) return FS.symlink("/archives/python_stdlib.zip", path);
+        return writeFile(path, data, { canOwn: true, ...options }); // no second copy
+      };
     },
   };
   if (memory) {
@@ -105,6 +112,7 @@ async function python(memory) {
     for await (const part of memory.stream()) {
       copy.set(part, filled);
       filled += part.length;
+      part.buffer.transfer(0); // Garbage would stay for minutes.
     }
     Int8Array.prototype.set = setFullPages;
     const loading = loadPyodide({ ...options, _loadSnapshot: copy });
@@ -122,8 +130,9 @@ async function python(memory) {
   return py;
 }
 
-async function start(identity, memory) {
-  const py = await Promise.race([lacking, memory ? python(memory).catch(() => python(null)) : python(null)]);
+async function start({ identity, archives, memory }) {
+  const anew = () => python(null, archives);
+  const py = await Promise.race([lacking, memory ? python(memory, archives).catch(anew) : anew()]);
   const process = py.pyimport("spinbook.browser.in_page.process");
   process.open_process(page, identity);
   return { py, process };
@@ -140,7 +149,7 @@ async function answer({ op, id, files, ...given }) {
   if (op === "start") {
     if (given.version !== VERSION) throw new Error("another version");
     code = given.compiled;
-    ready = start(given.identity, given.memory);
+    ready = start(given);
     return void (await ready);
   }
   const { py, process } = await ready;

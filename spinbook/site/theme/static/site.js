@@ -137,17 +137,6 @@ function whereabouts() {
   }
 }
 
-function printing() {
-  let opened = [];
-  addEventListener("beforeprint", () => {
-    opened = [...document.querySelectorAll("main details:not([open])")];
-    for (const details of opened) details.open = true;
-  });
-  addEventListener("afterprint", () => {
-    for (const details of opened) details.open = false;
-  });
-}
-
 // Load one of the site's scripts. Resolves when it has run.
 const load = (name) =>
   new Promise((done) => {
@@ -363,4 +352,3 @@ menu();
 copying();
 document.querySelectorAll("main pre, .table, figure.drawing, .math, .pausable").forEach(mayScroll);
 whereabouts();
-printing();
