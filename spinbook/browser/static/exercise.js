@@ -162,11 +162,13 @@ function opening(section) {
     announce(checked.problem ?? checked.total);
   };
   const checking = button("Check", `Check ${file}`, async () => {
+    // Not `disabled`, with which a button loses the focus.
+    if (checking.ariaDisabled) return;
     clear();
     edits.note("checked");
-    checking.disabled = true;
+    checking.ariaDisabled = "true";
     await attempt(runChecks);
-    checking.disabled = false;
+    checking.ariaDisabled = null;
   });
   const play = (scenario) => {
     clear();
