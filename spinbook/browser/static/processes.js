@@ -94,9 +94,11 @@ export class Process {
     this.worker.onerror = (event) => this.#broke(event.message || "The browser could not start it.");
     shared ??= load();
     shared.catch(() => (shared = null));
-    this.ready = Promise.all([shared, memory]).then(([[compiled, ...archives], memory]) =>
+    const started = Promise.all([shared, memory]).then(([[compiled, ...archives], memory]) =>
       this.call("start", { version: VERSION, identity: this.identity, compiled, archives, memory }),
     );
+    // Once it was ended, nobody waits for what it would start with.
+    this.ready = Promise.race([started, new Promise((resolve) => (this.finish = resolve))]);
     this.ready.then(() => (this.isReady = true), () => this.end());
   }
 
@@ -195,6 +197,7 @@ export class Process {
   end() {
     if (!this.alive) return;
     this.alive = this.running = false;
+    this.finish();
     all.delete(this.identity);
     clearInterval(this.watching);
     this.worker.terminate();

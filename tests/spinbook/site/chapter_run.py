@@ -37,7 +37,7 @@ _ENDLESS = re.compile(
 _NUMBER = re.compile(r"\b([0-9a-f]{2}\.){8,}[0-9a-f]{2}\b|\b[0-9a-f]{32}\b|-?(?<![\w.])\d+(\.\d+)?(e[+-]?\d+)?")
 _FILE = re.compile(r'File "[^"]*?([^/"<>]+|<[^>]*>)"')
 _OF_THE_NOTEBOOK = re.compile(
-    r"^— .* —$|^\(restarting .*\)$|^env: |^\.\.\. \(\d+ lines|^~?\^+~?$"
+    r"^— .*\s—$|^\(restarting .*\)$|^env: |^\.\.\. \(\d+ lines|^~?\^+~?$"
     # A call that is made too early waits, in a notebook as in a page.
     r"|^waiting for service"
 )
