@@ -31,7 +31,7 @@ export function show(cell, { picture, words, problem }, className) {
   figure.dataset.words = words;
   if (picture.includes("@keyframes")) figure.append(globalThis.pauseButton(figure));
   cell.shown?.append(figure);
-  globalThis.mayScroll(figure);
+  globalThis.sideways.observe(figure);
 }
 
 // Return a figure with a picture for each part of the graph.

@@ -14,8 +14,8 @@ export const changes = new EventTarget();
 const all = new Map();
 let count = 0;
 // The memory of the first process when Python had started, a Blob. All others start with a copy of it, also after a
-// reload: this takes a tenth of the computing.
-let memory = keptMemory();
+// reload: this takes a tenth of the computing. Without a secure connection, or where storage is forbidden, none is kept.
+let memory = keptMemory().catch(() => null);
 // What all processes share: Python's code, compiled, and the archives with its modules and with ROS 2, which the browser
 // keeps once, as Blobs.
 let shared = null;
@@ -45,12 +45,7 @@ async function archive(name) {
 }
 
 async function keptMemory() {
-  try {
-    const kept = await caches.match(MEMORY);
-    return kept ? await kept.blob() : null;
-  } catch {
-    return null; // Without a secure connection, or where storage is forbidden, there is no cache.
-  }
+  return (await caches.match(MEMORY))?.blob();
 }
 
 async function keepMemory(blob) {

@@ -14,7 +14,7 @@ export async function tryOut({ exercise, file, source, scenario, place, say }) {
   await Promise.all(playing.map((process) => process.stop()));
   bar();
   const figure = element("figure");
-  globalThis.mayScroll(figure);
+  globalThis.sideways.observe(figure);
   const log = (label) => element("pre", { tabIndex: 0, role: "log", ariaLabel: label });
   const around = log("What surrounds your node");
   const own = log(`What ${file} prints`);

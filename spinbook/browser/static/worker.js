@@ -141,7 +141,7 @@ async function start({ identity, archives, memory }) {
 let ready = null;
 
 // What functions of in_page need besides ros.zip: interfaces with their files, or the checks and these.
-const NEEDS_SHARES = /^((advice|launch_plan|plot|robot)\.|cells\.(define|run_command)$|timeline\.record$)/;
+const NEEDS_SHARES = /^((advice|check|launch_plan|plot|robot|trial)\.|cells\.(define|run_command)$|timeline\.record$)/;
 const NEEDS_CHECKS = /^(check|trial)\./;
 
 // Do what the page asks for: start, or call a function of in_page by its module and name, and its arguments by theirs.
@@ -153,15 +153,10 @@ async function answer({ op, id, files, ...given }) {
     return void (await ready);
   }
   const { py, process } = await ready;
-  if (NEEDS_SHARES.test(op)) await shares(py);
-  if (NEEDS_CHECKS.test(op)) await checks(py, process);
+  if (NEEDS_SHARES.test(op)) await (py.shared ??= unpackShares(py));
+  if (NEEDS_CHECKS.test(op)) await (py.checks ??= unpackChecks(py, process));
   await put(py, files);
   return JSON.parse(await process.answer.callPromising(page, op, py.toPy(given)));
-}
-
-function checks(py, process) {
-  py.checks ??= unpackChecks(py, process);
-  return Promise.all([py.checks, shares(py)]);
 }
 
 async function unpackChecks(py, process) {
@@ -181,11 +176,6 @@ async function put(py, { pack, texts, more } = { texts: {} }) {
 }
 
 // Unpack the available interfaces and their files, when the first command or check runs.
-function shares(py) {
-  py.shared ??= unpackShares(py);
-  return py.shared;
-}
-
 async function unpackShares(py) {
   py.unpackArchive(await bytes("share.zip"), "zip", { extractDir: "/opt/ros" });
   py.runPython('import os; os.environ["AMENT_PREFIX_PATH"] = "/opt/ros"');

@@ -99,7 +99,7 @@ function copying() {
 }
 
 // Elements that scroll sideways must be reachable with the keyboard; those that don't must not take the focus.
-const sideways = new ResizeObserver((entries) => {
+globalThis.sideways = new ResizeObserver((entries) => {
   for (const { target } of entries) {
     const scrolls = target.scrollWidth > target.clientWidth + 1;
     if (scrolls) target.tabIndex = 0;
@@ -109,32 +109,23 @@ const sideways = new ResizeObserver((entries) => {
   }
 });
 
-function mayScroll(place) {
-  sideways.observe(place);
-}
-
 // Mark the current section in the list next to the text.
 function whereabouts() {
-  const links = new Map();
-  for (const link of document.querySelectorAll(".page-toc a[href^='#']")) links.set(link.hash.slice(1), link);
-  if (links.size === 0) return;
+  const sections = new Map();
+  for (const link of document.querySelectorAll(".page-toc a[href^='#']")) sections.set(document.getElementById(link.hash.slice(1)), link);
+  sections.delete(null); // the page itself
+  const all = [...sections.keys()];
   const seen = new Set();
   const observer = new IntersectionObserver(
     (entries) => {
-      for (const entry of entries) seen[entry.isIntersecting ? "add" : "delete"](entry.target.id);
-      const ids = [...links.keys()];
+      for (const entry of entries) seen[entry.isIntersecting ? "add" : "delete"](entry.target);
       // At the top of a part, the first of its sections is the one to come.
-      const at = ids.filter((id) => seen.has(id)).pop() ?? ids.find((id) => document.getElementById(id)?.checkVisibility());
-      for (const [id, link] of links) {
-        link.ariaCurrent = id === at ? "true" : null;
-      }
+      const at = all.filter((each) => seen.has(each)).pop() ?? all.find((each) => each.checkVisibility());
+      for (const [section, link] of sections) link.ariaCurrent = section === at ? "true" : null;
     },
     { rootMargin: "-80px 0px -70% 0px" },
   );
-  for (const id of links.keys()) {
-    const section = document.getElementById(id);
-    if (section) observer.observe(section);
-  }
+  for (const section of all) observer.observe(section);
 }
 
 // Load one of the site's scripts. Resolves when it has run.
@@ -350,5 +341,5 @@ robots();
 progress();
 menu();
 copying();
-document.querySelectorAll("main pre, .table, figure.drawing, .math, .pausable").forEach(mayScroll);
+for (const place of document.querySelectorAll("main pre, .table, figure.drawing, .math, .pausable")) sideways.observe(place);
 whereabouts();
