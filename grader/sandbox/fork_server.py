@@ -26,7 +26,7 @@ _START_S = 30.0
 _DEATH_S = 30.0
 
 
-class SandboxedProgram(Monitor):
+class SandboxedProgram(Monitor, contextlib.AbstractContextManager["SandboxedProgram"]):
     """A student's program in its sandbox, which is watched. Leaving the `with` block kills all of it."""
 
     def __init__(self, control: socket.socket, output: int, limits: Limits) -> None:
@@ -82,10 +82,6 @@ class SandboxedProgram(Monitor):
         self.join()
         return self.exit or ProcessExit(None, int(signal.SIGKILL), None)
 
-    def __enter__(self) -> SandboxedProgram:
-        """Return itself. It is running already."""
-        return self
-
     def __exit__(self, *error: object) -> None:
         """Kill everything."""
         self.kill()
@@ -99,7 +95,7 @@ PRELOAD = (
 )
 
 
-class ForkServer:
+class ForkServer(contextlib.AbstractContextManager["ForkServer"]):
     """Starts students' programs. One serves a whole worker: create it before the runners fork; they share it."""
 
     def __init__(self, preload: Sequence[str] = PRELOAD, forked: tuple[socket.socket, int] | None = None) -> None:
@@ -167,10 +163,6 @@ class ForkServer:
         if os.getpid() == self._owner:
             os.kill(self._pid, signal.SIGTERM)
             os.waitpid(self._pid, 0)
-
-    def __enter__(self) -> ForkServer:
-        """Return itself. It has been started already."""
-        return self
 
     def __exit__(self, *error: object) -> None:
         """Close it."""

@@ -133,6 +133,7 @@ _MOST_DESCRIPTORS = 8
 
 def main() -> None:
     """Serve until the last user of the socket is gone. Return only as a student whose program has ended."""
+    _put_ours_first()
     descriptor, owner, modules = int(sys.argv[1]), sys.argv[2], sys.argv[3:]
     path = sys.path.copy()
     sys.path[:] = own_path(sys.path)  # a .pth file may have added another installation's modules
@@ -151,6 +152,16 @@ def main() -> None:
     job = serve(descriptor, fault)
     if job is not None:
         run_program(job.program, job.paths)
+
+
+def _put_ours_first() -> None:
+    """Start again if PyPI's wheels, which start Python again themselves, have put their libraries before ours."""
+    own = str(Path(os.environ.get("LD_PRELOAD", "")).parent)
+    folders = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
+    ordered = sorted(folders, key=lambda folder: not folder.startswith(own))
+    if ordered != folders:
+        os.environ["LD_LIBRARY_PATH"] = os.pathsep.join(ordered)
+        os.execv(sys.executable, sys.orig_argv)
 
 
 def _fork_for(owner: str, descriptor: int, modules: list[str], path: list[str]) -> int:

@@ -41,7 +41,7 @@ class HostFault(Exception):
     """Raised if a job failed several times because of a fault of ours or the machine's."""
 
 
-class Worker:
+class Worker(contextlib.AbstractContextManager["Worker"]):
     """One process of a worker pool, created when it is first needed; use it as a context manager, from one thread.
 
     The process keeps what it has prepared for one job, such as a runner's namespaces and memory copied from the worker,
@@ -101,9 +101,6 @@ class Worker:
                 self._process.close()
         self._process = None
 
-    def __enter__(self) -> Worker:
-        return self
-
     def __exit__(self, *error: object) -> None:
         self.close()
 
@@ -135,7 +132,7 @@ class _NumpyWhenUsed(ModuleType):
 BEGIN, PREPARE_TO_JUDGE, PREPARE_TYPES, PROCESS, SHARE, JUDGE = b"b", b"p", b"t", b"j", b"s", b"c"
 
 
-class WorkerPool:
+class WorkerPool(contextlib.AbstractContextManager["WorkerPool"]):
     """A worker process that forks the processes which do jobs, and is restarted if it dies.
 
     Any thread may call `do` and `reserve`; use it as a context manager.
@@ -239,9 +236,6 @@ class WorkerPool:
         self._control.close()
         self._worker.wait()
         shutil.rmtree(self._temporary, ignore_errors=True)
-
-    def __enter__(self) -> WorkerPool:
-        return self
 
     def __exit__(self, *error: object) -> None:
         self.close()
