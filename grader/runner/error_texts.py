@@ -15,7 +15,7 @@ _NO_SCREEN = (
 _BY_TEXT = (
     (r"ParameterNotDeclaredException", "Declare it first, in __init__: self.declare_parameter(…)."),
     (r"returned an invalid type", "An on-set callback has to return a SetParametersResult, each way through it."),
-    (r"InvalidParameterValue", "The value at the start is refused by the on-set callback or the range: is that right?"),
+    (r"InvalidParameterValue", "The declared range or the on-set callback does not allow this value."),
     (r"ParameterTypeException", "A parameter has the type of its default: 1 declares an integer, 1.0 a double."),
     (r"field must be of type 'float'", "A float field needs a float: write 2.0 instead of 2, or float(value)."),
     (r"The '(\w+)' field must be of type 'int'", "An integer field needs an integer: int(value) makes one."),
