@@ -6,6 +6,7 @@ import contextlib
 import json
 import os
 import shutil
+import sqlite3
 import sys
 import tempfile
 import threading
@@ -127,7 +128,7 @@ def _trust(file: Path) -> None:
 
     Who can't write to Jupyter's folder at home reads the descriptions.
     """
-    with contextlib.suppress(OSError), NotebookNotary() as notary:
+    with contextlib.suppress(OSError, sqlite3.Error), NotebookNotary() as notary:
         notary.sign(nbformat.read(file, as_version=4))
 
 

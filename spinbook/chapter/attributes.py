@@ -26,7 +26,10 @@ CODE = frozenset({"code-cell", "code-block", "code", "sourcecode", "highlight"})
 #: Directives that make lists of pages and similar things, which a reader of one chapter does not need.
 UNSEEN = frozenset({"toctree", "tableofcontents", "contents", "index", "bibliography", "only", "raw", "eval-rst"})
 #: The kinds of blocks that a misspelt one may mean.
-BLOCKS = (*_STYLE, *CODE, *UNSEEN, "dropdown", "details", "tab-item", "tab-set", "tabs", "literalinclude", "figure")
+BLOCKS = (
+    *(*_STYLE, *CODE, *UNSEEN, "dropdown", "details", "tab", "tab-item", "tab-set", "tabs", "literalinclude", "figure"),
+    *("figure-md", "subfigure", "notes", "questions"),
+)
 #: Tags that hold blocks: MDX's, HTML's, Liquid's.
 _TABS = frozenset({"Tabs", "TabItem", "Tab", "tabs", "tab", "CodeGroup", "TabPanel"})
 _HOLDING = frozenset({"Admonition", "details", "Details", "highlight", "raw", "capture", "comment", "code"})
@@ -233,7 +236,7 @@ def with_imports(text: str) -> str:
         quoted = f'"{path}"'.replace("\\", r"\\")
         text = re.sub(rf"(?<=\bsrc=)\{{\s*{name}(?:\.\w+)?\s*\}}", quoted, text)
         if is_source or path.endswith((".md", ".mdx")):
-            shown = rf"<{name}\s*/>|(?:<CodeBlock\b[^>\n]*>)?\{{\s*{name}\s*\}}(?:</CodeBlock>)?"
+            shown = rf"<{name}\b[^<>\n]*/>|(?:<CodeBlock\b[^>\n]*>)?\{{\s*{name}\s*\}}(?:</CodeBlock>)?"
             text = re.sub(rf"(?m)^[ \t]*(?:{shown})[ \t]*$", f"--8<-- {quoted}", text)
     return text
 

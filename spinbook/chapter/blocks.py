@@ -211,9 +211,11 @@ class _Reader:
         if path.suffix not in _TEXTS:
             info = f'{path.suffix[1:]} title="{path.name}"'
             return [fence_block(make_fence(info, text.rstrip("\n") + "\n", lines[0].number), lines)]
+        # A file that includes itself, directly or not, is for itself not there.
+        inner = _Reader(lambda other: None if other == name else self.include(other), self.depth + 1)
         return [
             replace(block, new=block.new or block.lines) if block.kind is BlockKind.TEXT else block
-            for block in self.inside(_at(lines, *text.split("\n")))
+            for block in inner.blocks(_at(lines, *attributes.with_imports(text).split("\n")))
         ]
 
     def _container_any_open(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
@@ -265,15 +267,13 @@ class _Reader:
         return [Block(BlockKind.DROPPED, lines, title=name, style=mark, new=_at(lines, token.info))]
 
     def _liquid(self, token: Token, lines: tuple[SourceLine, ...]) -> list[Block]:
-        if token.tag in {"include", "figure", "img", "image"}:
+        if token.tag in {"include", "include_relative", "figure", "img", "image"}:
             properties = attributes.pairs(token.info)
             source = next((properties[key] for key in ("image_path", "src", "url", "file") if key in properties), "")
             if source:
                 return [Block(BlockKind.TEXT, lines, new=_at(lines, attributes.image(source, properties)))]
             name = token.info.split(" ")[0].strip("\"'")
-            if name.endswith(_CHAPTERS):
-                return self._blocks_of(name, lines)
-            return [Block(BlockKind.DROPPED, lines)]
+            return self._blocks_of(name, lines) if name.endswith(_CHAPTERS) else self._dropped(token, lines)
         if token.tag.startswith("end"):
             return self._marked(token, lines, "close", token.tag[3:])
         return self._marked(token, lines, "open", token.tag)

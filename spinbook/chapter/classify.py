@@ -181,9 +181,10 @@ def _is_no_launch_file(code: str) -> bool:
 def _by_content(fence: Fence, file: Path) -> ClassifiedFence:
     if (fence.is_python or fence.is_shell or not fence.language) and (name := not_included(fence.code)):
         fix = "Write the path relative to the chapter's folder, or to the course's."
-        text, group = f"the chapter includes `{name}`, and there is no such file.", "files to include"
+        text = f"`{name}` can't be included: the course has no such file, or it includes itself."
+        problem = Problem(file, fence.line, text, fix, Severity.NOT_RUN, "files to include")
         why = f"it includes `{name}`, which is not here"
-        return static(fence, why, Problem(file, fence.line, text, fix, Severity.NOT_RUN, group), sign=f"{why}.")
+        return static(fence, why, problem, sign=f"{why}.")
     if fence.is_shell:
         return _shell(fence, file)
     if fence.is_python:

@@ -72,10 +72,12 @@ def on_paper(content: str, width: int, height: int, key: str, title: str, words:
 
     Elements with the class `key` + "i" have the text colour, those with `key` + "b" are dimmed in the dark.
     """
-    return (
+    svg = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" '
         f'role="img" aria-labelledby="{key}t {key}d" font-family="{FONT}">'
         f'<title id="{key}t">{escape(title)}</title><desc id="{key}d">{escape(words)}</desc>'
         f"{_COLOURS.format(key=key)}"
         f'<rect class="{key}p" width="{width}" height="{height}" rx="6" fill="#fff"/>{content}</svg>'
     )
+    # XML has no control characters, which the names of joints and frames may have.
+    return re.sub(r"[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", "\ufffd", svg)

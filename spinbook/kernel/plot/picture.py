@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
 from itertools import chain, groupby, pairwise
+from operator import itemgetter
 
 from ros_in_python.animation import Cycle, coord, on_paper
 from ros_in_python.axis_marks import round_values
@@ -36,9 +37,15 @@ def in_words(recording: PlotRecording) -> str:
     lines = []
     for curve in chain.from_iterable(curves.values() for curves in panels(recording).values()):
         quantity = curve.quantity
-        span = f"{min(curve.values):.3f} … {max(curve.values):.3f} {quantity.unit}".rstrip()
+        drawn = list(filter(_is_drawn, curve.values))
+        span = f"{min(drawn):.3f} … {max(drawn):.3f} {quantity.unit}".rstrip() if drawn else "none can be drawn"
         lines.append(f"{quantity.kind} {quantity.label}: {len(curve.values)} samples, {span}")
     return "\n".join(lines)
+
+
+def _is_drawn(value: float) -> bool:
+    """Return whether it is a number, and not so large that differences overflow."""
+    return abs(value) < 1e300
 
 
 @dataclass(frozen=True)
@@ -66,16 +73,8 @@ def around(values: list[float], start: float, end: float) -> Scale:
     return Scale(low - room, high + room, start, end)
 
 
-@dataclass(frozen=True)
-class PlotSize:
-    """A plot's width (px), and how many points a curve may have: otherwise it is drawn more coarsely."""
-
-    width: int
-    most_points: int
-
-
-#: For pages, where a plot has to be small and fits a phone; and for a notebook on its reader's own screen.
-FOR_PAGES, FOR_NOTEBOOKS = PlotSize(420, 120), PlotSize(640, 2_000)
+#: A plot's width (px) in pages, where it has to be small and fits a phone; and in a notebook on its reader's screen.
+FOR_PAGES, FOR_NOTEBOOKS = 420, 640
 #: A curve is drawn to within this many pixels of its samples.
 PRECISION_PX = 0.5
 #: Width of the axis' numbers and of the margin on the other side, and height of a panel (px).
@@ -86,21 +85,20 @@ _NAME_CHAR = 6.9
 
 
 def panel(
-    name: str, curves: Mapping[str, PlotCurve], top: float, across: Scale, start: float, key: str, size: PlotSize
+    name: str, curves: Mapping[str, PlotCurve], top: float, across: Scale, start: float, key: str, width: int
 ) -> tuple[str, float]:
     """Return the panel of these curves below `top`, and where it ends (px).
 
     Curves are seen through the clip path `key` + "c"; the class `key` + "x" moves the pointer.
     """
     bottom = top + 24 + HEIGHT
-    values = [value for curve in curves.values() for value in curve.values if math.isfinite(value)]
+    values = [value for curve in curves.values() for value in curve.values if _is_drawn(value)]
     up = around(values or [0.0], bottom, bottom - HEIGHT)
     looks = {label: _look(index) for index, label in enumerate(curves)}
     lines = "".join(
-        f'<path d="{_path(curve, across, up, start, size)}" {looks[label]} {_ROUND}/>'
-        for label, curve in curves.items()
+        f'<path d="{_path(curve, across, up, start)}" {looks[label]} {_ROUND}/>' for label, curve in curves.items()
     )
-    legend, end = _legend(looks, bottom + 38, size.width)
+    legend, end = _legend(looks, bottom + 38, width)
     title = f'<text x="{LEFT}" y="{coord(top + 17)}">{escape(name)}</text>'
     pointer = f'<path class="{key}x" d="M{LEFT} {coord(bottom)}v-{HEIGHT}" stroke="{_GREY}" opacity="0"/>'
     return f'{title}{_axes(across, up)}<g clip-path="url(#{key}c)">{lines}</g>{pointer}{legend}', end
@@ -147,19 +145,25 @@ _ROUND = 'stroke-linejoin="round" stroke-linecap="round"'
 _DOT = 2
 
 
-def _path(curve: PlotCurve, across: Scale, up: Scale, start: float, size: PlotSize) -> str:
-    """Return the curve's path, with a gap where a value is no finite number."""
-    pieces, precision = list(_pieces(curve, across, up, start)), PRECISION_PX
-    drawn = [thinned(piece, precision) for piece in pieces]
-    while sum(map(len, drawn)) > size.most_points and precision < HEIGHT:
-        precision *= 2
-        drawn = [thinned(piece, precision) for piece in pieces]
+def _path(curve: PlotCurve, across: Scale, up: Scale, start: float) -> str:
+    """Return the curve's path, with a gap where a value is no finite number; its outline if it has too many points."""
+    pieces = list(_pieces(curve, across, up, start))
+    drawn = [thinned(piece, PRECISION_PX) for piece in pieces]
+    if sum(map(len, drawn)) > across.end:
+        drawn = [list(_outline(piece)) for piece in pieces]
     return "".join(map(_polyline, drawn))
+
+
+def _outline(points: list[tuple[float, float]]) -> Iterator[tuple[float, float]]:
+    """Yield the lowest and the highest point of each two pixels, in the order in which they were recorded."""
+    for _, column in groupby(points, lambda point: int(point[0] / 2)):
+        by_height = sorted(column, key=itemgetter(1))
+        yield from sorted({by_height[0], by_height[-1]})
 
 
 def _pieces(curve: PlotCurve, across: Scale, up: Scale, start: float) -> Iterator[list[tuple[float, float]]]:
     every = zip(curve.times, curve.values, strict=True)
-    for is_drawn, samples in groupby(every, lambda sample: math.isfinite(sample[1])):
+    for is_drawn, samples in groupby(every, lambda sample: _is_drawn(sample[1])):
         if is_drawn:
             yield [(across.at(time - start), up.at(value)) for time, value in samples]
 
@@ -186,16 +190,19 @@ def plot_svg(recording: PlotRecording, title: str = "", *, moves: bool = True) -
 
     It moves unless it must not, or no time has passed, or there are too many curves.
     """
-    size = FOR_PAGES if moves else FOR_NOTEBOOKS
+    width = FOR_PAGES if moves else FOR_NOTEBOOKS
     curves = recording.in_order()
-    end = max(curve.times[-1] for curve in curves) - recording.start
-    across = Scale(0.0, end or 1.0, LEFT, size.width - RIGHT)
+    end = max(max(curve.times) for curve in curves) - recording.start
+    across = Scale(0.0, end or 1.0, LEFT, width - RIGHT)
     name = title or ", ".join(dict.fromkeys(curve.quantity.topic for curve in curves))
     words = in_words(recording)
-    key = "p" + hashlib.sha256(repr((name, words, moves, [curve.values for curve in curves])).encode()).hexdigest()[:8]
+    key = (
+        "p"
+        + hashlib.sha256(repr((name, words, moves, end, [curve.values for curve in curves])).encode()).hexdigest()[:8]
+    )
     y, drawn = float(_TOP), []
     for kind, by_label in panels(recording).items():
-        part, y = panel(kind, by_label, y, across, recording.start, key, size)
+        part, y = panel(kind, by_label, y, across, recording.start, key, width)
         drawn.append(part)
     heading = f'<text x="{LEFT}" y="20" font-size="14" font-weight="600">{escape(name)}</text>'
     content = f'<g class="{key}i" font-size="12">{heading}{"".join(drawn)}</g>'
@@ -204,7 +211,7 @@ def plot_svg(recording: PlotRecording, title: str = "", *, moves: bool = True) -
     if moving:
         words = f"{words}\nThe curves are drawn {pace} they were recorded, again and again."
     window = moving or _window(across, y, key)
-    return on_paper(window + content, size.width, math.ceil(y), key, name, words)
+    return on_paper(window + content, width, math.ceil(y), key, name, words)
 
 
 def shown_faster(duration: float) -> tuple[int, str]:

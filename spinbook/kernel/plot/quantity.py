@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -91,7 +90,7 @@ def _numbers(
     value: Any, names: tuple[str, ...], indices: tuple[int, ...]
 ) -> Iterator[tuple[tuple[tuple[str, ...], tuple[int, ...]], float]]:
     if isinstance(value, (bool, int, float)):
-        yield (names, indices), float(value) if not isinstance(value, bool) else float(int(value))
+        yield (names, indices), float(value)
     elif fields := fields_in(value):
         for name in fields:
             if name not in {"header", "stamp"}:
@@ -104,12 +103,10 @@ def _numbers(
 def _describe(
     path: TopicPath, message: Any, type_name: str, names: tuple[str, ...], indices: tuple[int, ...]
 ) -> PlotQuantity:
-    unit = next(
-        (UNITS[type_name, key] for key in _prefixes(names) if (type_name, key) in UNITS),
-        "",
-    )
+    fields = ((type_name, "/".join(names[:length])) for length in range(len(names), 0, -1))
+    unit = next((UNITS[field] for field in fields if field in UNITS), "")
     kind = names[0] if names else path.topic
-    label = "/".join(names[1:]) or ("" if indices else "/".join(names)) or ""
+    label = "/".join(names[1:]) or ("" if indices else "/".join(names))
     if indices:
         joints = getattr(message, "name", None)
         index = indices[-1]
@@ -120,15 +117,7 @@ def _describe(
     return PlotQuantity(path.topic, kind, unit, label or kind)
 
 
-def _prefixes(names: tuple[str, ...]) -> Iterator[str]:
-    for length in range(len(names), 0, -1):
-        yield "/".join(names[:length])
-
-
 def stamp_of(message: Any) -> float | None:
     """Return the message's own time in seconds, if it has a header with one."""
     stamp = getattr(getattr(message, "header", None), "stamp", None)
-    if stamp is None or (stamp.sec == 0 and stamp.nanosec == 0):
-        return None
-    seconds = stamp.sec + stamp.nanosec * 1e-9
-    return seconds if math.isfinite(seconds) else None
+    return (stamp.sec + stamp.nanosec * 1e-9 or None) if stamp is not None else None

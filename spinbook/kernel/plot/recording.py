@@ -67,8 +67,8 @@ class PlotRecording:
 
     @property
     def start(self) -> float:
-        """The time of the first sample (s)."""
-        return min((curve.times[0] for curve in self.curves.values()), default=0.0)
+        """The earliest time (s): not the first sample's where a publisher's clock was put back."""
+        return min((min(curve.times) for curve in self.curves.values()), default=0.0)
 
 
 #: How long the recorder may take to start, and after that a topic's first message to arrive (s).

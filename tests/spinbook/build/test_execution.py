@@ -13,10 +13,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import nbformat
 import pytest
 from course_folder import CourseFolder
 from nbformat.sign import NotebookNotary
 from process_mark import ProcessMark
+
+from spinbook.build import execution
+from spinbook.build.execution import ExecutionResult, NotebookJob
 
 TALKER = """```python title="talker.py" seconds=60 until=talking
 import rclpy
@@ -123,6 +127,21 @@ def test_jupyterlab_trusts_notebooks_that_ran_here_so_that_it_shows_their_pictur
     with NotebookNotary() as notary:
         assert notary.check_signature(built.folder.notebook("1.one", "executed"))
         assert not notary.check_signature(built.folder.notebook("1.one"))
+
+
+def test_a_notebook_runs_where_jupyter_can_not_note_that_it_is_trusted(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("JUPYTER_DATA_DIR", str(tmp_path))
+    with NotebookNotary() as notary:
+        notary.store.db.execute(
+            "CREATE TRIGGER full BEFORE INSERT ON nbsignatures BEGIN SELECT RAISE(ABORT, 'readonly'); END"
+        )
+    nbformat.write(nbformat.v4.new_notebook(), tmp_path / "one.ipynb")
+    job = NotebookJob(Path("one.md"), tmp_path / "one.ipynb", tmp_path)
+    ran = ExecutionResult(job.chapter, job.notebook, (), 0.0, cached=True)
+    monkeypatch.setattr(execution, "_execute_one", lambda *_: ran)
+    assert list(execution.execute([job], 1, lambda progress: None)) == [ran]
 
 
 def test_chapters_with_dots_in_their_names_keep_their_own_outputs(built: BuiltCourse) -> None:

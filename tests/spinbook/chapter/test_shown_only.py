@@ -147,8 +147,8 @@ def test_a_fence_that_includes_a_file_which_is_not_here_is_shown_only(tmp_path: 
     assert [(item.line, item.severity) for item in result.problems] == [(3, Severity.NOT_RUN)]
 
 
-INCLUDES = ['--8<-- "{}"', "```{{include}} {}\n```", "{{{{< include {} >}}}}", "{{% include {} %}}"]
-SHOWN = ["import Part from './{0}';\n\n<Part />", "import Part from '@site/{0}';\n\n<Part/>"]
+INCLUDES = ['--8<-- "{}"', "```{{include}} {}\n```", "{{{{< include {} >}}}}", "{{% include_relative {} %}}"]
+SHOWN = ["import Part from './{0}';\n\n<Part name='x' />", "import Part from '@site/{0}';\n\n<Part/>"]
 
 
 def page(root: Path, text: str) -> ReadResult:
@@ -160,7 +160,7 @@ def page(root: Path, text: str) -> ReadResult:
 def test_a_text_that_is_included_is_part_of_the_chapter_or_said_to_be_missing(tmp_path: Path, written: str) -> None:
     missing = page(tmp_path, written.format("words.md"))
     assert missing.chapter is not None
-    assert [(one.severity, "words.md`, and there is no" in one.problem) for one in missing.problems] == [
+    assert [(one.severity, "words.md` can't be included" in one.problem) for one in missing.problems] == [
         (Severity.NOT_RUN, True)
     ]
     assert "words.md`, which is not here" in missing.chapter.static_fences[0].sign
@@ -170,6 +170,25 @@ def test_a_text_that_is_included_is_part_of_the_chapter_or_said_to_be_missing(tm
     assert shown.chapter is not None
     assert not shown.problems
     assert [cell.kind for cell in cells(shown.chapter)] == [CellKind.SNIPPET]
+
+
+@pytest.mark.parametrize("written", ["{{% include {} %}}", SHOWN[0]])
+def test_texts_that_include_each_other_are_read_once(tmp_path: Path, written: str) -> None:
+    for name, other in (("a.md", "b.md"), ("b.md", "a.md")):
+        includes = f"{written.format(other)}\n\n"
+        (tmp_path / name).write_text(f"Words of {name}\n\n{includes * 3}")
+    result = page(tmp_path, written.format("a.md"))
+    assert result.chapter is not None
+    assert sum(cell.source.count("Words of a.md") for cell in result.chapter.cells) == 1
+    assert {item.problem.partition(" can't")[0].replace("./", "") for item in result.problems} == {"`a.md`"}
+
+
+def test_blocks_of_other_tools_are_not_taken_for_misspelt_ones(tmp_path: Path) -> None:
+    pandoc = "notes aside column-margin panel-tabset proof card grid subfigure figure-md code-group details"
+    carpentries = "tab questions objectives keypoints challenge instructor prereq spoiler testimonial"
+    assert not page(
+        tmp_path, "".join(f":::{kind}\nA.\n:::\n\n" for kind in (pandoc + " " + carpentries).split())
+    ).problems
 
 
 def test_the_source_that_a_component_shows_is_the_program(tmp_path: Path) -> None:
@@ -243,7 +262,9 @@ def test_a_literalinclude_shows_the_lines_that_it_asks_for(tmp_path: Path, optio
     missing = reading(tmp_path, "```{literalinclude} none.py\n```\n").problems
 
     assert cell.source.endswith(code)
-    assert [item.problem for item in missing] == ["the chapter includes `none.py`, and there is no such file."]
+    assert [item.problem for item in missing] == [
+        "`none.py` can't be included: the course has no such file, or it includes itself."
+    ]
 
 
 def test_prompts_and_tables_of_sphinx_are_read(tmp_path: Path) -> None:
