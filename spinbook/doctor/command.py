@@ -55,9 +55,10 @@ def doctor(checks: tuple[str, ...], as_json: bool, save_space: bool) -> None:
 
     Exit code: 0 everything needed works (there may be warnings), 1 something needed does not work.
     """
+    if save_space and (checks or as_json):
+        raise click.UsageError("--save-space checks nothing: run it by itself.")
     if save_space:
-        _save_space()
-        return
+        return _save_space()
     words = checks or (OF_GRADING if only_grades() else OF_STUDENTS if in_handout() else ())
     chosen = [check for check in CHECKS if not words or check.word in words]
     findings = _with_progress(chosen)

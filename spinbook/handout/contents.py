@@ -160,7 +160,7 @@ def handout(course: Course) -> Handout:
         sorted(compiled),
         packages,
         texts,
-        imports_matplotlib(_code(files, every)),
+        imports_matplotlib(_code(files, exercises)),
     )
     files |= base_files(files)
     _prove(files, known)

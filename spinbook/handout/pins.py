@@ -15,7 +15,7 @@ from grader.gradescope.pins import LOCKS, needed
 #: Required by IPython and ipykernel, which do without: guesses at code that has not run, and a debugger (55 MB).
 _LEFT_OUT = {"jedi", "parso", "debugpy"}
 
-_IMPORTS_MATPLOTLIB = re.compile(r"^\s*(import|from)\b[^\n#]*\b(matplotlib|mpl_toolkits|pylab)\b", re.MULTILINE)
+_IMPORTS_MATPLOTLIB = re.compile(r"^\s*(import\b|from\b|%)[^\n#]*\b(matplotlib|mpl_toolkits|pylab)\b", re.MULTILINE)
 
 
 def imports_matplotlib(sources: Iterable[str]) -> bool:

@@ -11,10 +11,6 @@ import click
 class SvgFile(click.Path):
     """The file that a picture is written into; another kind of picture is refused before anything runs."""
 
-    def __init__(self) -> None:
-        """A file that need not exist."""
-        super().__init__(path_type=Path)
-
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         """Return the file. Its name ends in `.svg`, or has no ending."""
         file = Path(str(super().convert(value, param, ctx)))

@@ -76,10 +76,13 @@ function isPackage(name) {
   return name === document.documentElement.dataset.package || [...cells.values()].some(names);
 }
 
+// A node that was killed, or stopped while it started, has none.
+const exitCode = ({ status }) => (status === null ? "" : ` (exit code ${status})`);
+
 export function showNodes(cell) {
   if (started.size === 0) cell.print("No node runs. Run one.");
   for (const [name, process] of started) {
-    const state = process.running ? "running" : `ended (exit code ${process.status})`;
+    const state = process.running ? "running" : `ended${exitCode(process)}`;
     cell.print(`${name.padEnd(28)} ${state.padEnd(22)} ${logs.get(name)?.length ?? 0} lines logged`);
   }
 }
@@ -138,7 +141,7 @@ export async function stop(cell, { words, all }) {
 }
 
 function stopped({ name, status, forced }, hadEnded) {
-  if (hadEnded) return `${name} had ended before (exit code ${status}).`;
+  if (hadEnded) return `${name} had ended before${exitCode({ status })}.`;
   if (forced) return `${name} ignored Ctrl-C for 2 s; it was ended.`;
   return status ? `${name} stopped with exit code ${status}; a node that ends normally has 0.` : `${name} stopped.`;
 }

@@ -175,9 +175,6 @@ def _polyline(points: list[tuple[float, float]]) -> str:
     return f"M{coord(whole[0][0])} {coord(whole[0][1])}{''.join(steps) or f'm-{_DOT} 0h{2 * _DOT}'}"
 
 
-# In print, and for readers who prefer no motion, the whole curves are shown, still.
-
-
 #: A longer recording (s) is shown faster, so that it takes no longer than this.
 LONGEST_S = 20.0
 #: More curves than this do not move: the picture would be large, and nobody could follow.
@@ -188,7 +185,8 @@ _TOP = 28
 def plot_svg(recording: PlotRecording, title: str = "", *, moves: bool = True) -> str:
     """Return the picture of a recording that has a curve.
 
-    It moves unless it must not, or no time has passed, or there are too many curves.
+    It moves unless it must not, or no time has passed, or there are too many curves. In print, and for readers who
+    prefer no motion, the whole curves are shown, still.
     """
     width = FOR_PAGES if moves else FOR_NOTEBOOKS
     curves = recording.in_order()

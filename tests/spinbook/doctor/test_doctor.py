@@ -79,6 +79,7 @@ def test_an_environment_that_can_not_be_written_stays_as_it_is(monkeypatch: pyte
     assert said.exit_code == 1
     assert said.output.startswith(f"Error: {sys.prefix}")
     assert "No such file or directory. Every library is there, as before." in said.output
+    assert "run it by itself" in CliRunner().invoke(command.doctor, ["--save-space", "ros"]).output
 
 
 def test_ros2_doctor_says_whether_ros_works(monkeypatch: pytest.MonkeyPatch) -> None:

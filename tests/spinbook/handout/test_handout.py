@@ -176,7 +176,7 @@ def test_packages_that_exercises_declare_are_installed_with_what_they_need() -> 
         ("import matplotlib.pyplot as plt\n", True),
         ("def draw():\n    import numpy as np, matplotlib\n", True),
         ("from matplotlib import pyplot\n", True),
-        ("%matplotlib inline\nfrom pylab import plot\n", True),
+        ("%matplotlib inline\ntable.plot()\n", True),
         ("# import matplotlib\nimport numpy  # not matplotlib\n%plot /ticks\n", False),
     ],
 )

@@ -201,9 +201,8 @@ def _following(samples: Sequence[TrackSample], times: AnimationSchedule, size: f
 
 def _trail(samples: Sequence[TrackSample], name: str, size: float) -> str:
     pen = _pen(samples)
-    dash = (
-        f' class="{name}" stroke-dasharray="{coord(math.ceil(_lengths(samples)[-1]) + pen.width, 0)}"' if name else ""
-    )
+    length = coord(math.ceil(_lengths(samples)[-1]) + pen.width, 0)
+    dash = f' class="{name}" stroke-dasharray="{length}"' if name else ""
     return path([(sample.x, sample.y) for sample in samples], (pen.r, pen.g, pen.b), pen.width, dash, size)
 
 
