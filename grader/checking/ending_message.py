@@ -33,6 +33,7 @@ ADVICE = (
         "Type this character again: copied text may have other quotes, dashes or spaces than Python's.",
     ),
     (r'SyntaxError: [^`]*`.*"<[^"]*="\w', "Inside \"…\" a text can't have the same quotes: write it as '…'."),
+    (r"outside async function", "A function in which you write await begins with async def."),
     (r"SyntaxError: '\w+' outside", "Indent this line as the other lines of its function or loop."),
     (r"SyntaxError: invalid syntax(?!\. )", "Python can't read this line. Look at the end of the line before it, too."),
     (r"Address family not", "A node has no network while it is graded and needs none: it communicates over ROS 2."),

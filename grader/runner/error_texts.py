@@ -18,7 +18,6 @@ _BY_TEXT = (
     (r"InvalidParameterValue", "The declared range or the on-set callback does not allow this value."),
     (r"ParameterTypeException", "A parameter has the type of its default: 1 declares an integer, 1.0 a double."),
     (r"field must be of type 'float'", "A float field needs a float: write 2.0 instead of 2, or float(value)."),
-    (r"The '(\w+)' field must be of type 'int'", "An integer field needs an integer: int(value) makes one."),
     (
         r"Expected <class '[\w.]*\.(\w+)'>, got <class '[\w.]+'>",
         r"publish() takes a whole \1: create one, put the value into its field, and publish that.",
@@ -33,12 +32,12 @@ _BY_TEXT = (
     ),
     (r"'Time' object has no attribute '(?:nano)?sec'", "A Time is not yet a stamp: its to_msg() is one."),
     (
-        r"must be real number, not (?!NoneType)|'(?!float)\w+' object cannot be interpreted as an integer",
+        r"must be real number, not (?!NoneType)|'(?!float|NoneType)\w+' object cannot be interpreted as an integer",
         "A number belongs here: float(text) and int(text) make one, and that of a message is in its field, as in "
         "message.data.",
     ),
     (r"returned a result with an exception set", "A field has a value of another type: an integer field takes an int."),
-    (r"'float' object cannot be interpreted as an integer", "An integer belongs here: int(value) makes one."),
+    (r"of type 'int'|'float' object cannot be interpreted as an int", "An integer belongs here: int(value) makes one."),
     (
         r"'(?:\w*function\w*|method)' (?:object (?:has no|is not)|and )|and '(?:function|method)'",
         "A function without parentheses is no value yet: with () behind its name, it is called.",
@@ -74,7 +73,7 @@ _BY_TEXT = (
     (r"'list' object has no attribute '(?:name|value|type_)'", "The callback gets a list of parameters: loop over it."),
     (
         r"multiply sequence by non-int|only concatenate (?:str|list)|unsupported operand type\(s\) for .*'str'",
-        "A value of this line is a text or a list, and no number: where does it come from? '0.5' is a text.",
+        "A value of this line is a text, such as '0.5', or a list, and no number. f'{number} m' makes a text of one.",
     ),
     (r"argument: 'self'|'property' object is not iterable", "Write parentheses after the class: node = MyNode()."),
     (r"required positional argument: 'qos_profile'", "The last argument is the queue depth, such as 10."),
@@ -92,8 +91,8 @@ _BY_TEXT = (
     (r"ParameterAlreadyDeclaredException", "Declare it once, in __init__, and not in a callback."),
     (
         r"UnboundLocalError",
-        "A function that assigns to a name has a variable of its own with this name. What a node remembers is an "
-        "attribute: self.name, set in __init__.",
+        "A function that assigns to a name has a variable of its own with this name, and came here without setting it. "
+        "What a node remembers is an attribute: self.name, set in __init__.",
     ),
     (r"FileNotFoundError.*: '\s*<", "A file's name belongs here, and this is a text: fromstring(text) reads one."),
     (r"FileNotFoundError", "Your node runs on another computer, which has only the files that you hand in."),
@@ -108,7 +107,8 @@ _BY_TEXT = (
     (r"'Future' object has no", "A future is not yet the answer: call future.result() in its add_done_callback()."),
     (r"'Service' object has no", "This is the side that answers. The side that asks is made by create_client()."),
     (r"'Subscription' object has no", "This is the side that receives. The other is made by create_publisher()."),
-    (r"'(?:float|int|bool)' object is not [is]", "A list belongs here, as in a list field: write [value]."),
+    (r"'(?:float|int|bool)' object is not s", "This is one number and no list: it has no index."),
+    (r"'(?:float|int|bool)' object is not i", "A list belongs here: write [value], or to count range(number)."),
     (
         r"'([A-Z]\w*)' object is not (?:iterable|subscriptable)",
         r"A \1 is not a list. Where a list belongs, write [value]; if one of its fields is a list, use that field.",

@@ -191,9 +191,8 @@ def _code(files: dict[str, bytes], exercises: list[Exercise]) -> Iterator[str]:
             yield from ("".join(cell["source"]) for cell in json.loads(content)["cells"] if cell["cell_type"] == "code")
         elif name.endswith(".py"):
             yield content.decode()
-    for exercise in exercises:
-        if exercise.solution_file:
-            yield exercise.solution_file.read_text(encoding="utf-8")
+    for solution in filter(None, (exercise.solution_file for exercise in exercises)):
+        yield solution.read_text(encoding="utf-8")
 
 
 def _used(course: Course, notebooks: dict[str, bytes]) -> list[str]:

@@ -159,6 +159,7 @@ def test_an_import_from_the_wrong_package_of_interfaces_comes_with_the_right_one
         ("SyntaxError: invalid character '‘' (U+2018)", "copied text may have other quotes, dashes or spaces"),
         ("SyntaxError: invalid syntax", "Look at the end of the line before it, too."),
         ("SyntaxError: 'return' outside function", "Indent this line as the other lines of its function"),
+        ("SyntaxError: 'await' outside async function", "begins with async def"),
         ('SyntaxError: invalid syntax. Perhaps you forgot a comma? in line 3: `x("<a b="c">")`', "write it as '…'"),
         ("TypeError: unsupported operand type(s) for -: 'float' and 'NoneType'", "Something in this line is None"),
         ("SyntaxError: invalid non-printable character U+00A0", "Type this character again"),

@@ -44,7 +44,7 @@ MISTAKES: list[tuple[str, dict[str, str], str]] = [
     ("motor_switch", {"'motors on' if": "'Motors on' if"}, "Only capital letters, spaces or punctuation differ."),
     ("motor_switch", {"'/switch_motors'": "'/switch_motor'"}, "Is /switch_motor a misspelling of /switch_motors?"),
     ("motor_switch", {"# END SOLUTION\n        return response": "# END SOLUTION"}, "end each way through it with"),
-    ("calibration", {"position=[answer.offset]": "position=answer.offset"}, "A list belongs here, as in a list field"),
+    ("calibration", {"position=[answer.offset]": "position=answer.offset"}, "A list belongs here: write [value]"),
     ("calibration", {"name=[joint]": "name=joint"}, "is one letter: a text stands where a list of texts belongs."),
     ("calibration", {"append(message.data)": "append(message)"}, "A text field of it needs a str"),
     (

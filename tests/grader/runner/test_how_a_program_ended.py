@@ -446,6 +446,8 @@ def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_i
             "get_parameter() returns a Parameter",
         ),
         ("TypeError: 'float' object is not iterable", "write [value]"),
+        ("TypeError: 'float' object is not subscriptable", "one number and no list"),
+        ('TypeError: can only concatenate str (not "float") to str', "f'{number} m' makes a text"),
         (
             "TypeError: 'Range' object is not subscriptable",
             "A Range is not a list. Where a list belongs, write [value]",
@@ -471,7 +473,7 @@ def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_i
         ("TypeError: '>' not supported between instances of 'Duration' and 'int'", "is duration.nanoseconds"),
         ("TypeError: unsupported operand type(s) for ^: 'float' and 'float'", "A power is written with **"),
         ("FileNotFoundError: [Errno 2] No such file or directory: '<robot/>'", "fromstring(text) reads one"),
-        ("rclpy.exceptions.InvalidParameterValueException: Invalid parameter value (2)", "at the start is refused"),
+        ("rclpy.exceptions.InvalidParameterValueException: Invalid parameter value (2)", "does not allow this value"),
         ("TypeError: 'Twist' object is not iterable", "A Twist is not a list."),
         (
             "TypeError: unsupported operand type(s) for -: 'array.array' and 'array.array'",
