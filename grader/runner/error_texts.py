@@ -73,7 +73,7 @@ _BY_TEXT = (
     (r"'list' object has no attribute '(?:name|value|type_)'", "The callback gets a list of parameters: loop over it."),
     (
         r"multiply sequence by non-int|only concatenate (?:str|list)|unsupported operand type\(s\) for .*'str'",
-        "A value of this line is a text, such as '0.5', or a list, and no number. f'{number} m' makes a text of one.",
+        "A value of this line is a text or a list, and no number: '0.5' is a text, and f'{number} m' makes one.",
     ),
     (r"argument: 'self'|'property' object is not iterable", "Write parentheses after the class: node = MyNode()."),
     (r"required positional argument: 'qos_profile'", "The last argument is the queue depth, such as 10."),

@@ -447,7 +447,7 @@ def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_i
         ),
         ("TypeError: 'float' object is not iterable", "write [value]"),
         ("TypeError: 'float' object is not subscriptable", "one number and no list"),
-        ('TypeError: can only concatenate str (not "float") to str', "f'{number} m' makes a text"),
+        ('TypeError: can only concatenate str (not "float") to str', "f'{number} m' makes one"),
         (
             "TypeError: 'Range' object is not subscriptable",
             "A Range is not a list. Where a list belongs, write [value]",
