@@ -77,7 +77,7 @@ def _before_init(last: LastError, sources: Mapping[str, str]) -> str:
     missing = re.search(r"AttributeError: '(\w+)' object has no attribute '_\w+'", last.error)
     if last.raised_there or not missing:
         return ""
-    own = re.search(rf"^\s*class {missing[1]}\(.*Node\b.*\):", sources.get(last.file, ""), re.MULTILINE)
+    own = re.search(rf"^[ \t]*class {missing[1]}\(.*Node\b", sources.get(last.file, ""), re.MULTILINE)
     return "Begin __init__ with super().__init__('name'): that makes the node." if own else ""
 
 
@@ -132,7 +132,7 @@ def _of_a_field(last: LastError, sources: Mapping[str, str]) -> str:
 
 
 def _imports_message(name: str, sources: Mapping[str, str]) -> bool:
-    pattern = rf"\.(?:msg|srv|action) import [^\n]*\b{name}\b"
+    pattern = rf"\.(?:msg|srv|action) import [^\n]{{0,500}}\b{name}\b"
     return any(re.search(pattern, source) for source in sources.values())
 
 
@@ -147,17 +147,17 @@ def _of_an_attribute(last: LastError, sources: Mapping[str, str]) -> str:
         swapped = _swapped(match[1], match[2], sources)
         return f"The fields of a {match[1].replace('_', '.')} are: {', '.join(fields)}.{swapped}"
     source = sources.get(last.file, "")
-    if not re.search(rf"^\s*class {match[1]}\b", source, re.MULTILINE):
+    if not re.search(rf"^[ \t]*class {match[1]}\b", source, re.MULTILINE):
         return ""
     if re.search(rf"^def {match[2]}\(self", source, re.MULTILINE):
         return f"def {match[2]} is outside of the class: indent it like the other methods."
-    if re.search(rf"^\s+{match[2]} = ", source, re.MULTILINE):
+    if re.search(rf"^[ \t]+{match[2]} = ", source, re.MULTILINE):
         return (
             f"{match[2]} = … in a method is a local variable, which the others don't have: write self.{match[2]} = …."
         )
     if "Did you mean" in last.error:
         return ""
-    names = re.findall(r"\bself\.(\w+)\s*(?::[^=\n]+)?=(?!=)|^\s*def (\w+)\(self", source, re.MULTILINE)
+    names = re.findall(r"\bself\.(\w+)\s*(?::[^=\n]{1,200})?=(?!=)|^[ \t]*def (\w+)\(self", source, re.MULTILINE)
     assigned = sorted({name for pair in names for name in pair if name})
     if match[2] in assigned:
         return f"self.{match[2]} is set only later: set it in __init__, before anything can use it."
@@ -170,13 +170,10 @@ def _of_a_name(last: LastError, sources: Mapping[str, str]) -> str:
     """Explain a name that only the object has, a misspelt __init__, and a parameter that has another name."""
     code = sources.get(last.file, "")
     name = re.search(r"NameError: name '(\w+)' is not defined", last.error)
-    if name and re.search(rf"^\s+def {name[1]}\(self|\bself\.{name[1]} = ", code, re.MULTILINE):
+    if name and re.search(rf"^[ \t]+def {name[1]}\(self|\bself\.{name[1]} = ", code, re.MULTILINE):
         return f"A method reaches what belongs to its object through self: write self.{name[1]}."
-    if (
-        "'node_name'" in last.error
-        and (misspelt := re.search(r"def (_*ini?t_*)\(self", code))
-        and "def __init__" not in code
-    ):
+    misspelt = re.search(r"def (_*ini?t_*)\(self", code)
+    if misspelt and "'node_name'" in last.error and "def __init__" not in code:
         return f"Is {misspelt[1]} meant to be __init__, with two underscores on each side?"
     declared = re.findall(r"declare_parameter\(\s*['\"]([\w.]+)", code)
     if "ParameterNotDeclaredException" in last.error and declared:
@@ -209,7 +206,7 @@ def _fields(name: str, sources: Mapping[str, str]) -> list[str]:
     """
     whole, _, part = name.partition("_")
     loaded = (module.partition(".")[0] for module in sys.modules if module.endswith((".srv", ".action")))
-    pattern = rf"^\s*from ({'|'.join((*_PACKAGES, *loaded))})\.(msg|srv|action) import [^\n]*\b{whole}\b"
+    pattern = rf"^[ \t]*from ({'|'.join((*_PACKAGES, *loaded))})\.(msg|srv|action) import [^\n]*\b{whole}\b"
     imported = re.search(pattern, "\n".join(sources.values()), re.MULTILINE)
     try:
         found = message_class(f"{imported[1]}/{imported[2]}/{whole}") if imported else None

@@ -31,7 +31,7 @@ _OF_A_LIBRARY = re.compile(
 )
 
 #: The cause of an error in C++, which stands before it: the error itself says nothing.
-_CAUSE = re.compile(r"(?:^|\n)(\w+: .*)\n\nThe above exception was the direct cause[^\n]*\s*$")
+_CAUSE = re.compile(r"(?:^|\n)(\w+: .*)\n\nThe above exception was the direct cause[^\n]*\n+$")
 
 #: The text of a SyntaxError has no header.
 _OF_A_SYNTAX_ERROR = '  File "'

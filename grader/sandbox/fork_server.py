@@ -157,6 +157,10 @@ class ForkServer(contextlib.AbstractContextManager["ForkServer"]):
             forget()
             raise
 
+    def has_ended(self) -> bool:
+        """Return whether the process is gone, for example for lack of memory; then it can start nothing more."""
+        return os.waitid(os.P_PID, self._pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None
+
     def close(self) -> None:
         """End the process. The students it has started end with their runners."""
         self._socket.close()

@@ -200,7 +200,7 @@ def uses_other_files(code: Code) -> bool:
         return False
     own = {path.partition("/")[0].removesuffix(".py") for path in code.files}
     return any(module.partition(".")[0] in own for module in python_code.imported(code.source)) or (
-        re.search(r"^\s*from\s+\.", code.source, re.MULTILINE) is not None or "# file: " in code.source
+        re.search(r"^[ \t]*from[ \t]+\.", code.source, re.MULTILINE) is not None or "# file: " in code.source
     )
 
 

@@ -39,6 +39,11 @@ SETTINGS = {
 LAUNCH_FILE = re.compile(r"launch\.(?:py|xml|ya?ml)$|\.launch$")
 #: What a launch file can set for all nodes of a group, in Python, XML and YAML.
 _OF_GROUPS = re.compile(rb"SetRemap|SetParameters?|PushRosNamespace|set_remap|set_parameter|push[-_]ros[-_]namespace")
+#: A node in XML, with the elements in it, and in YAML. No part is looked through twice, whatever a student wrote.
+_NODE = re.compile(
+    r"(?P<itself><node\b[^<>]*>|^[ \t]*-[ \t]*node:.*?(?=^[ \t]*-|\Z))(?:(?<=[^/]>).*?(?=</?node\b|\Z))?",
+    re.DOTALL | re.MULTILINE,
+)
 
 
 def launched(files: Mapping[str, bytes]) -> list[LaunchFileNode]:
@@ -49,9 +54,9 @@ def launched(files: Mapping[str, bytes]) -> list[LaunchFileNode]:
         if name.endswith("launch.py") or (name.endswith(".py") and "def generate_launch_description" in text):
             found += _launched_by_python(text)
         elif LAUNCH_FILE.search(name):
-            for node in re.findall(r"<node\b[^>]*>|^\s*-\s*node:.*?(?=^\s*-|\Z)", text, re.DOTALL | re.MULTILINE):
-                values = dict(re.findall(r"""\b(exec|name|pkg)\s*[=:]\s*["']?([\w.-]+)""", node))
-                keys = [key for key in SETTINGS if re.search(rf"\b{key}\b\s*[=:]|<{key}\b", _element(text, node))]
+            for node in _NODE.finditer(text):
+                values = dict(re.findall(r"""\b(exec|name|pkg)\s*[=:]\s*["']?([\w.-]+)""", node["itself"]))
+                keys = [key for key in SETTINGS if re.search(rf"\b{key}\b\s*[=:]|<{key}\b", node[0])]
                 names = (values.get("exec", ""), values.get("name", ""))
                 found.append(LaunchFileNode(*names, _in_words(keys), values.get("pkg", "")))
     return [one for one in found if one.executable]
@@ -69,13 +74,6 @@ def _launched_by_python(text: str) -> Iterator[LaunchFileNode]:
             keys = [keyword.arg or "" for keyword in node.keywords]
             names = (values.get("executable", ""), values.get("name", ""))
             yield LaunchFileNode(*names, _in_words(keys), values.get("package", ""))
-
-
-def _element(text: str, tag: str) -> str:
-    """Return an XML element with what is in it, given its first tag; any other text as it is."""
-    if not tag.startswith("<node") or tag.endswith("/>"):
-        return tag
-    return tag + text.partition(tag)[2].partition("</node>")[0]
 
 
 def _in_words(keys: Iterable[str]) -> tuple[str, ...]:

@@ -89,7 +89,7 @@ def _import_root(file: str, files: Mapping[str, bytes]) -> str:
 def _is_imported(package: str, file: str, files: Mapping[str, bytes]) -> bool:
     siblings = [name for name in files if posixpath.dirname(name) == posixpath.dirname(file) and name.endswith(".py")]
     texts = [files[name].decode("utf-8", errors="replace") for name in siblings]
-    return any(re.search(rf"^\s*(?:from|import)\s+{re.escape(package)}\b", text, re.MULTILINE) for text in texts)
+    return any(re.search(rf"^[ \t]*(?:from|import)\s+{re.escape(package)}\b", text, re.MULTILINE) for text in texts)
 
 
 def _unknown_package(file: str, files: Mapping[str, bytes]) -> str:

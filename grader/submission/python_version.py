@@ -13,15 +13,15 @@ from grader.submission.unreadable import not_python
 
 _Version = tuple[int, int]
 
-#: The first version that can read a syntax, a pattern of the syntax, and its name.
-_SYNTAX: tuple[tuple[_Version, re.Pattern[str], str], ...] = (
-    ((3, 14), re.compile(r"""(?<![\w'"])[tT][rR]?(?:"|')"""), 'a template string (t"…")'),
-    ((3, 14), re.compile(r"^\s*except\*? +[\w.]+ *, *[\w., ]+:", re.MULTILINE), "`except A, B:` without parentheses"),
-    ((3, 13), re.compile(r"^\s*(?:class|def|type)\s+\w+\[[^\]]*=[^\]]*\]", re.MULTILINE), "a type parameter's default"),
-    ((3, 12), re.compile(r"^\s*(?:class|(?:async\s+)?def)\s+\w+\[", re.MULTILINE), "type parameters (`def f[T](…)`)"),
-    ((3, 12), re.compile(r"^\s*type\s+\w+(?:\[[^\]]*\])?\s*=", re.MULTILINE), "a `type` statement"),
-    ((3, 11), re.compile(r"^\s*except\s*\*", re.MULTILINE), "`except*`"),
-    ((3, 11), re.compile(r"\[[^\]\n]*(?<=[\[,])\s*\*\w+[^\]\n]*\]\s*="), "a starred expression in an index"),
+#: The first version that can read a syntax, a pattern of its line, and its name.
+_SYNTAX: tuple[tuple[_Version, str, str], ...] = (
+    ((3, 14), r"""(?<![\w'"])[tT][rR]?(?:"|')""", 'a template string (t"…")'),
+    ((3, 14), r"^\s*except\*? +[\w.]+ *,[\w., ]+:", "`except A, B:` without parentheses"),
+    ((3, 13), r"^\s*(?:class|def|type)\s+\w+\[[^\]=]{0,500}=", "a type parameter's default"),
+    ((3, 12), r"^\s*(?:class|(?:async\s+)?def)\s+\w+\[", "type parameters (`def f[T](…)`)"),
+    ((3, 12), r"^\s*type\s+\w+(?:\[[^\]]{0,500}\])?\s*=", "a `type` statement"),
+    ((3, 11), r"^\s*except\s*\*", "`except*`"),
+    ((3, 11), r"\[[^][\n]{0,200}(?<=[\[,])\s*\*\w+[^\]\n]{0,200}\]\s*=", "a starred expression in an index"),
 )
 
 #: Names that Python has added since 3.10, by the first version that has them.
@@ -84,7 +84,7 @@ def _of_error(error: SyntaxError, source: str) -> tuple[str, ...]:
     if running() < (3, 12) and ("f-string" in error.msg or re.search(r"""\b[rR]?[fF][rR]?['"].*\{""", text)):
         return (_needs(line, "an f-string with quotes, backslashes or comments inside its braces", (3, 12)),)
     for version, pattern, feature in _SYNTAX:
-        if version > running() and pattern.search(text):
+        if version > running() and re.search(pattern, text):
             return (_needs(line, feature, version),)
     return ()
 

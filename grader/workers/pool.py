@@ -19,6 +19,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from grader.sandbox.environment import for_trusted
+from grader.sandbox.filesystem import memory_file
 from grader.sandbox.fork_server import PRELOAD, start_zygote
 from grader.sandbox.middleware import require_middleware
 from grader.workers.shared import SharedObjects
@@ -121,11 +122,14 @@ def leave_cpus_to_workers() -> None:
 
 
 class _NumpyWhenUsed(ModuleType):
-    """Stands for numpy until somebody looks up a name in it."""
+    """Stands for numpy until somebody looks up a name in it. `import` itself would load a `LazyLoader`'s module."""
+
+    _lock = threading.Lock()
 
     def __getattr__(self, name: str) -> Any:
-        if sys.modules["numpy"] is self:
-            del sys.modules["numpy"]
+        with self._lock:
+            if sys.modules.get("numpy") is self:
+                del sys.modules["numpy"]
         return getattr(importlib.import_module("numpy"), name)
 
 
@@ -155,8 +159,10 @@ class WorkerPool(contextlib.AbstractContextManager["WorkerPool"]):
 
     def _start(self) -> None:
         self._control, self._worker = start_zygote(PRELOAD, "grader.workers.worker")
-        environment = for_trusted() | {"TMPDIR": str(self._temporary)}
-        self._send(BEGIN, pickle.dumps((environment, Path.cwd(), self._folders)))
+        # Not the user's RMW_IMPLEMENTATION: rcl ends a process that an author's check starts if it names another one.
+        environment = for_trusted() | {"TMPDIR": str(self._temporary), "RMW_IMPLEMENTATION": "", "PYTHONHASHSEED": "0"}
+        here = Path("/proc/self/cwd").readlink()  # Path.cwd() raises an error if it was removed
+        self._send(BEGIN, pickle.dumps((environment, here, self._folders)))
         for content in self._sent:
             self._send(SHARE, content)
 
@@ -185,11 +191,8 @@ class WorkerPool(contextlib.AbstractContextManager["WorkerPool"]):
                 self._send(SHARE, self._sent[-1])
 
     def _send(self, command: bytes, content: bytes) -> None:
-        number = os.memfd_create("shared", os.MFD_CLOEXEC)
-        with os.fdopen(number, "wb") as stream:
-            stream.write(content)
-            stream.flush()
-            socket.send_fds(self._control, [command], [number])
+        with os.fdopen(memory_file(content)) as stream:
+            socket.send_fds(self._control, [command], [stream.fileno()])
 
     def prepare_types(self, modules: Iterable[str]) -> None:
         """Let the worker load modules of message types, such as `sensor_msgs.msg`, for all later jobs."""
@@ -207,14 +210,9 @@ class WorkerPool(contextlib.AbstractContextManager["WorkerPool"]):
     def _process(self, command: bytes = PROCESS) -> Connection:
         """Return a connection to a new process that does jobs. Raises OSError if there is none."""
         ours, theirs = socket.socketpair()
-        try:
+        with ours, theirs:
             self._hand_over(command, theirs.fileno())
-        except OSError:
-            ours.close()
-            raise
-        finally:
-            theirs.close()
-        return multiprocessing.connection.Connection(ours.detach())
+            return multiprocessing.connection.Connection(ours.detach())
 
     def _hand_over(self, command: bytes, descriptor: int) -> None:
         """Request one more process from the worker; if it has died, for example for lack of memory, start another."""

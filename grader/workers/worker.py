@@ -15,6 +15,7 @@ import signal
 import socket
 import sys
 import threading
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -56,7 +57,6 @@ def take_shared(descriptor: int) -> None:
 
 def _content(descriptor: int) -> bytes:
     with os.fdopen(descriptor, "rb") as stream:
-        stream.seek(0)
         return stream.read()
 
 
@@ -95,6 +95,8 @@ def main(descriptor: int, fork_server: ForkServer) -> None:
             _reap(working)
             if not command:
                 break
+            if fork_server.has_ended():
+                os._exit(1)  # a new worker will have another one
             if command == PREPARE_TO_JUDGE:
                 preload_judging()
             elif command.startswith(PREPARE_TYPES):
@@ -116,10 +118,8 @@ def main(descriptor: int, fork_server: ForkServer) -> None:
                 os.close(descriptors[0])
                 working.add(pid)
         for pid in working:
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(pid, signal.SIGKILL)
-            with contextlib.suppress(ChildProcessError):
-                os.waitpid(pid, 0)
+            os.kill(pid, signal.SIGKILL)
+            os.waitpid(pid, 0)
     for folder in folders:
         shutil.rmtree(folder, ignore_errors=True)
 
@@ -130,7 +130,9 @@ def _begin(control: socket.socket) -> tuple[Path, ...]:
     environment, directory, folders = pickle.loads(_content(descriptor))
     os.environ.clear()
     os.environ.update(environment)
-    os.chdir(directory)
+    time.tzset()
+    with contextlib.suppress(FileNotFoundError):  # it was removed: any other will do
+        os.chdir(directory)
     sys.dont_write_bytecode = "PYTHONDONTWRITEBYTECODE" in environment
     sys.pycache_prefix = environment.get("PYTHONPYCACHEPREFIX")
     return tuple(folders)

@@ -33,7 +33,7 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str, shown: str = "
 def look_alike(text: str, expected: str = "") -> str:
     """Return a sentence on the character because of which `text` is not `expected`, although both look the same.
 
-    Without `expected`, on the first character that is not in ASCII. "" if there is none.
+    Without `expected`, on the first character that no name may have, because it is not in ASCII. "" if there is none.
     """
     strange = next((char for char in text if not char.isascii()), "")
     bare = "".join(filter(str.isascii, text))
@@ -43,4 +43,5 @@ def look_alike(text: str, expected: str = "") -> str:
     if not strange or not expected.isascii() or (expected and bare != expected and not replaced):
         return ""
     name = unicodedata.name(strange, "a character without a name")
-    return f"It has the character U+{ord(strange):04X} ({name}), which is easily overlooked: type it again."
+    todo = "which is easily overlooked: type it again" if expected else "which no name may have: type that part again"
+    return f"It has the character U+{ord(strange):04X} ({name}), {todo}."

@@ -24,11 +24,28 @@ from grader.workers.shared import SharedObjects, receive
 EXERCISE = ROOT / "exercises" / "joint_velocity"
 
 
-def test_jobs_are_done_until_the_pool_is_closed_whatever_process_of_it_dies() -> None:
+class _Surroundings:
+    """A job that brings its own code: the worker can't import this module."""
+
+    def __reduce__(self) -> tuple[object, ...]:
+        asked = "__import__('time').tzname[0], __import__('os').environ['RMW_IMPLEMENTATION']"
+        return eval, (f"type('Surroundings', (), {{'run': lambda *_: ({asked})}})()",)
+
+
+def test_jobs_are_done_until_the_pool_is_closed_whatever_process_of_it_dies(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In the time zone of the command, with the middleware that is here, and also where its folder was removed."""
     exercise = load(EXERCISE)
+    monkeypatch.setenv("TZ", "Asia/Tokyo")
+    monkeypatch.setenv("RMW_IMPLEMENTATION", "of_another_installation")
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    (tmp_path / "here").rmdir()
     job = ListJob(exercise)
     others = workers_of(psutil.Process())
     with WorkerPool() as workers:
+        assert workers.do(_Surroundings()) == ("JST", "")  # type: ignore[arg-type]
         with workers.reserve() as worker:
             before = worker.do(job)
             process = new_worker(others)
@@ -42,9 +59,13 @@ def test_jobs_are_done_until_the_pool_is_closed_whatever_process_of_it_dies() ->
         wait_until(lambda: not runs(second))
         workers.share([exercise])
         assert workers.do(job) == before
-        process.kill()
-        wait_until(lambda: not runs(process))
+        [fork_server] = [child for child in process.children() if child.name() == "fork server"]
+        fork_server.kill()
+        wait_until(lambda: not runs(fork_server))
         assert workers.do(job) == before, "the new worker has what jobs share"
+        assert not runs(process), "a worker whose fork server is gone can run no program"
+        new_worker(others).kill()
+        assert workers.do(job) == before
     with pytest.raises(HostFault, match="the worker process is gone"):
         workers.do(job)
 

@@ -395,7 +395,7 @@ def raised(line: int, error: str, *frames: str) -> str:
         (
             raised(5, "rclpy.exceptions.InvalidTopicNameException: Invalid topic name: must not contain …"),
             NODE.replace(NODE.splitlines()[4], "        self.a = self.create_publisher(Bool, '/a\u200b', 10)"),
-            "It has the character U+200B (ZERO WIDTH SPACE), which is easily overlooked: type it again.",
+            "It has the character U+200B (ZERO WIDTH SPACE), which no name may have: type that part again.",
         ),
     ],
 )
@@ -602,3 +602,18 @@ def test_a_line_of_a_megabyte_does_not_keep_the_grader_busy() -> None:
     error = last_error(log, {"turnstile.py": f"{SOURCE}# {'create_timer(' * 75_000}"})
     assert error
     assert error.line == 2
+
+
+@pytest.mark.parametrize(
+    ("error", "repeated"),
+    [
+        ("AttributeError: 'Turnstile' object has no attribute '_coins'", "\n"),
+        ("AttributeError: 'Turnstile' object has no attribute 'coins'", "# class Turnstile(Node"),
+        ("AttributeError: 'Turnstile' object has no attribute 'coins'", "# self.a:"),
+        ("NameError: name 'coins' is not defined", " \n"),
+    ],
+)
+def test_a_program_of_a_megabyte_does_not_either(error: str, repeated: str) -> None:
+    log = RAISES.replace("ValueError: no coins", error)
+    source = SOURCE + repeated * (900_000 // len(repeated))
+    assert error in of_exit(ProcessExit(1, None, None), log, {"turnstile.py": source})[0]

@@ -271,6 +271,11 @@ def test_a_mistake_is_not_taken_for_a_newer_python(code: str) -> None:
     assert not any("3.13" in note or "3.14" in note for note in newer_syntax(code))
 
 
+@pytest.mark.parametrize(("begins", "repeated"), [("except a,", " "), ("class A[", "= ")])
+def test_a_line_that_fills_a_file_does_not_keep_the_reader_busy(begins: str, repeated: str) -> None:
+    assert newer_syntax(begins + repeated * (290_000 // len(repeated))) == newer_syntax(begins + repeated * 9)
+
+
 NAMES_ADDED = {
     "AttributeError: module 'itertools' has no attribute 'batched'": (3, 12),
     "ImportError: cannot import name 'override' from 'typing' (/usr/lib/python3.11/typing.py)": (3, 12),

@@ -14,6 +14,7 @@ from grader.exercise import Exercise, load
 from grader.grading import Options, grading_of
 from grader.runner.program_end import survived_by
 from grader.submission.code import Code, code_of
+from grader.submission.launch_files import launched
 from grader.submission.problems import AmbiguousProgram, Unreadable
 from grader.submission.reader import of_content
 from grader.workers import WorkerPool
@@ -152,3 +153,9 @@ def test_what_does_not_go_with_a_launch_file_is_an_authors_error(
     (first, *_) = problems_of(path.parent)
     assert problem in first.problem
     assert first.line
+
+
+def test_what_is_set_for_a_node_stands_in_its_own_element_in_a_file_of_any_length() -> None:
+    text = '<node exec="beat"></node><node exec="beat"><remap from="a" to="b"/>' + "<node>" * 150_000
+    nodes = launched({"a.launch.xml": text.encode()})
+    assert [(node.executable, node.settings) for node in nodes] == [("beat", ()), ("beat", ("remappings",))]
