@@ -50,7 +50,7 @@ def timeline_svg(lanes: Sequence[Lane], title: str = "", *, moves: bool = True) 
     across = Scale(start, max(end, start + 0.1), _LEFT, _WIDTH - _RIGHT)
     words = in_words(lanes, start)
     name = title or ", ".join(dict.fromkeys(lane.name for lane in lanes))
-    key = "t" + hashlib.sha256(f"{name} {lanes if moves else ''}".encode()).hexdigest()[:8]
+    key = "t" + hashlib.sha256(f"{name} {moves} {lanes}".encode()).hexdigest()[:8]
     heading = f'<text x="{_MARGIN}" y="22" font-size="14" font-weight="600">{escape(title)}</text>'
     y, labels, drawn = float(_TOP), [heading], []
     for lane in lanes:

@@ -96,6 +96,9 @@ def test_the_picture_is_still_for_who_wants_no_motion_and_has_no_faults(browser:
     texts = {node.text for node in ET.fromstring(live).iter("{http://www.w3.org/2000/svg}text")}
     assert {"Moving <slowly>", "/<move> goal 1", "SUCCEEDED", "2 s"} <= texts
     assert live == still(live)
+    later = timeline_svg(recorded("/<move>", "topic", (0.0, "message", "")), "Moving <slowly>", moves=False)
+    identities = [{node.get("id") for node in ET.fromstring(each)} - {None} for each in (live, later)]
+    assert not identities[0] & identities[1], "both may be in one notebook"
     (tmp_path / "page.html").write_text("<!doctype html><title>timeline</title>" + svg)
     animations = "document.getAnimations().length"
     with opened(browser, tmp_path / "page.html") as shown:

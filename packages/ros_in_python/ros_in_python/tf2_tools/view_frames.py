@@ -86,20 +86,21 @@ def _label(one: Mapping[str, Any]) -> str:
 
 
 def places(frames: Mapping[str, Mapping[str, Any]]) -> dict[str, FrameInTree]:
-    """Return where each frame is drawn: parents above the middle of their children, roots at the top."""
+    """Return where each frame is drawn: above the middle of its children; at the top a root, or the first of a ring."""
     children: dict[str, list[str]] = {}
     for name in sorted(frames):
         children.setdefault(str(frames[name]["parent"]), []).append(name)
     drawn: dict[str, FrameInTree] = {}
-    for root in sorted(parent for parent in children if parent not in frames):
-        _place(root, 0, children, drawn)
+    for root in (*sorted(children.keys() - frames), *sorted(frames)):
+        if root not in drawn:
+            _place(root, 0, children, drawn)
     return drawn
 
 
 def _place(name: str, depth: int, children: Mapping[str, list[str]], drawn: dict[str, FrameInTree]) -> float:
-    below = [_place(child, depth + 1, children, drawn) for child in children.get(name, [])]
-    leaves = sum(1 for one in drawn.values() if one.name not in children)
-    across = (below[0] + below[-1]) / 2 if below else float(leaves)
+    drawn[name] = FrameInTree(name, depth, -1.0)
+    below = [_place(child, depth + 1, children, drawn) for child in children.get(name, []) if child not in drawn]
+    across = (below[0] + below[-1]) / 2 if below else max(one.across for one in drawn.values()) + 1
     drawn[name] = FrameInTree(name, depth, across)
     return across
 
@@ -109,11 +110,8 @@ def as_svg(frames: Mapping[str, Mapping[str, Any]]) -> str:
     tree = places(frames)
     width = math.ceil(max(one.across for one in tree.values()) + 1) * _BESIDE
     height = (max(one.depth for one in tree.values()) + 1) * _BELOW
-    arrows = [
-        _arrow(tree[str(one["parent"])], tree[name], _label(one).split("\\n"))
-        for name, one in frames.items()
-        if name in tree
-    ]
+    lines = ((name, str(one["parent"]), _label(one).split("\\n")) for name, one in frames.items())
+    arrows = [_arrow(tree[parent], tree[name], label) for name, parent, label in lines]
     head = f'<marker id="head" markerWidth="8" markerHeight="8" refX="7" refY="4" orient="auto">{_HEAD}</marker>'
     content = f'<g class="fi" text-anchor="middle">{head}{"".join(arrows)}{"".join(map(_box, tree.values()))}</g>'
     return on_paper(content, width, height, "f", "The tree of frames", as_graph(frames))

@@ -43,3 +43,11 @@ def test_names_of_frames_are_text() -> None:
     frames = yaml.safe_load(buffer_of(stamped("a<b", "c&d")).all_frames_as_yaml())
     texts = [node.text for node in ET.fromstring(view_frames.as_svg(frames)).iter() if node.tag.endswith("}text")]
     assert sorted(filter(None, texts)) == ["a<b", "c&d"]
+
+
+def test_frames_that_are_each_others_parents_are_all_in_the_picture() -> None:
+    pairs = (("arm", "hand"), ("hand", "arm"), ("arm", "tool"), ("map", "base"))
+    frames = yaml.safe_load(buffer_of(*(stamped(parent, child) for parent, child in pairs)).all_frames_as_yaml())
+    places = {name: (one.depth, one.across) for name, one in view_frames.places(frames).items()}
+    assert places == {"map": (0, 0.0), "base": (1, 0.0), "arm": (0, 1.5), "hand": (1, 1.0), "tool": (1, 2.0)}
+    ET.fromstring(view_frames.as_svg(frames))
