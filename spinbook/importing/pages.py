@@ -6,6 +6,7 @@ import functools
 import json
 import re
 from collections.abc import Iterator
+from glob import glob
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
@@ -52,8 +53,11 @@ class Pages:
 
     def find_all(self, folder: Path, name: str) -> list[Path]:
         """Return the file of this name, or, for a pattern such as `more/*.md`, all that match it."""
-        matches = sorted(folder.glob(name), key=self._place) if "*" in name else [self.find(folder, name)]
-        return [match.resolve() for match in matches if match and match.suffix in ENDINGS]
+        if "*" not in name:
+            return [file] if (file := self.find(folder, name)) else []
+        names = glob(name, root_dir=folder, recursive=True)  # noqa: PTH207  # Path's raises for some patterns
+        matches = sorted(map(folder.joinpath, names), key=self._place)
+        return [file.resolve() for file in matches if file.suffix in ENDINGS and self._is_inside(file)]
 
     def _is_inside(self, path: Path) -> bool:
         return path.resolve().is_relative_to(self._root)
@@ -107,9 +111,8 @@ class Pages:
             return False
         # Docusaurus and Quarto include files whose names begin with `_`; Hugo's `_index.md` is a page.
         is_part = entry.stem.startswith("_") and entry.stem != "_index"
-        return (
-            entry.suffix in ENDINGS and entry.stem.lower() not in _NOT_CHAPTERS and not is_root_readme and not is_part
-        )
+        is_chapter = entry.suffix in ENDINGS and entry.stem.lower() not in _NOT_CHAPTERS
+        return is_chapter and not is_root_readme and not is_part
 
     def _place(self, entry: Path) -> tuple[float, bool, list[tuple[int, str]]]:
         first = entry.stem.lower() in {"index", "readme", "intro", "introduction"} and entry.is_file()

@@ -160,9 +160,8 @@ def _renamed(folder: Path, shell: Any) -> Path | None:
     request: dict[str, Any] = getattr(shell, "get_parent", dict)()
     cell = request.get("metadata", {}).get("cellId")
     with contextlib.suppress(OSError):
-        holding = [
-            file for file in folder.glob("*.ipynb") if cell and json.dumps(cell) in file.read_text("utf-8", "replace")
-        ]
+        readable = (file for file in folder.glob("*.ipynb") if cell and file.is_file() and os.access(file, os.R_OK))
+        holding = [file for file in readable if json.dumps(cell) in file.read_text("utf-8", "replace")]
         return max(holding, key=lambda file: file.stat().st_mtime, default=None)
     return None
 

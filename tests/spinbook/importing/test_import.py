@@ -205,9 +205,12 @@ def test_a_folder_that_is_not_listed_follows_the_page_of_its_name(tmp_path: Path
 
 def test_a_pattern_stands_for_its_pages_and_those_that_are_not_listed_are_named(tmp_path: Path) -> None:
     root = book(tmp_path / "b", "index.md", "part/10.md", "part/2.md", "_words.md", "other.md")
-    (root / "myst.yml").write_text("project:\n  toc:\n    - file: index.md\n    - pattern: part/*.md\n")
+    patterns = "".join(f"    - pattern: {pattern}\n" for pattern in ("part/*.md", "../*.md", "/a**b"))
+    (root / "myst.yml").write_text(f"project:\n  toc:\n    - file: index.md\n{patterns}")
+    (tmp_path / "beyond.md").write_text("# Not of the book\n")
 
     said = spinbook_import(root).stdout
+    assert "Left out because they are missing or of another kind: ../*.md, /a**b\n" in said
     assert order(root) == ["index.md", "part/2.md", "part/10.md"]
     assert "\nNot listed there, so no chapters: other.md\n" in said
 

@@ -92,6 +92,7 @@ def test_a_cell_that_was_changed_since_it_was_run_is_reported_and_one_that_was_n
     assert "Run that cell again, then %check joint_velocity." in shown.text
 
     (place / "week3.ipynb").rename(place / "mine.ipynb")
+    (place / "a.ipynb").symlink_to("gone.ipynb")
     elsewhere.from_cell("checked")
     assert "WARNING: You have changed the cell" in elsewhere.run(f"{BEGUN} --course {place}").text
 
