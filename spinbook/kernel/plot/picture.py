@@ -128,9 +128,10 @@ def time_axis(across: Scale, top: float, bottom: float) -> str:
 
 
 def _legend(looks: Mapping[str, str], y: float, room: float) -> tuple[str, float]:
-    """Return the names in rows of this width, the first at `y`, and where they end (px)."""
-    x, texts = float(LEFT), ""
-    for label, look in looks.items():
+    """Return the names in rows of this width, the first at `y`, and where they end (px); of longer ones, the end."""
+    x, texts, most = float(LEFT), "", int((room - LEFT - 23) / _NAME_CHAR)
+    for name, look in looks.items():
+        label = name if len(name) <= most else f"…{name[1 - most :]}"
         width = 38 + _NAME_CHAR * len(label)
         if x > LEFT and x + width > room:
             x, y = float(LEFT), y + 18
@@ -221,14 +222,8 @@ def shown_faster(duration: float) -> tuple[int, str]:
 def pointer_moves(cycle: Cycle, width: float) -> str:
     """Return the keyframes of the pointer: to the right over this width (px), and gone when it is there."""
     away = f"transform:translateX({width}px)"
-    return cycle.keyframes(
-        "x",
-        [
-            (0.0, "transform:translateX(0px);opacity:1"),
-            (cycle.moving_s, f"{away};opacity:1"),
-            (cycle.moving_s + 0.2, f"{away};opacity:0"),
-        ],
-    )
+    end = [(cycle.moving_s, f"{away};opacity:1"), (cycle.moving_s + 0.2, f"{away};opacity:0")]
+    return cycle.keyframes("x", [(0.0, "transform:translateX(0px);opacity:1"), *end])
 
 
 def _moving(cycle: Cycle, across: Scale, height: float) -> str:

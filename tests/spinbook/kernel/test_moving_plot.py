@@ -78,6 +78,15 @@ def test_a_clock_that_was_put_back_and_a_name_with_a_control_character_are_drawn
     assert len(curves_of(plot_svg(recording))) == 1
 
 
+def test_a_name_that_is_wider_than_the_picture_ends_in_it() -> None:
+    name = "/robot/left_arm/joint_states " + "left_shoulder_pitch_joint" * 2
+    svg = plot_svg(recorded(joints=[name]))
+    (shown,) = (node.text for node in ET.fromstring(svg).iter() if node.text and node.text.startswith("…"))
+    assert name.endswith(shown[1:])
+    assert 40 < len(shown) < 55
+    assert f"{name}: 41 samples" in svg
+
+
 def test_words_and_axis_are_of_the_values_that_can_be_drawn() -> None:
     values = [math.nan, 1.0, math.inf, 2.0, -1.7e308, 1.7e308]
     recording = recorded(lambda t: values[round(t * 10)], seconds=0.5, joints=["a"])
