@@ -18,9 +18,9 @@ _FRAME = re.compile(
 )
 
 
-#: What Python's faulthandler prints when C code ends a program: the student reads the line elsewhere.
+#: What faulthandler prints when C code ends a program; the line is told elsewhere. Why Python itself does has a colon.
 _OF_AN_ABORT = re.compile(
-    r"^Fatal Python error: .*\n(?:\n*(?:Stack|Current thread|Extension modules).*\n(?:  .*\n)*)*", re.MULTILINE
+    r"^Fatal Python error: [^:\n]*\n(?:\n*(?:Stack|Current thread|Extension modules).*\n(?:  .*\n)*)*", re.MULTILINE
 )
 
 

@@ -354,10 +354,12 @@ def folder_of_a_user() -> Iterator[Path]:
     before = os.geteuid()
     if before == 0:
         os.seteuid(65534)
-    with tempfile.TemporaryDirectory() as folder:
-        yield Path(folder)
-        os.chmod(Path(folder, "class", "bert"), 0o700)  # noqa: PTH101
-    os.seteuid(before)
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            yield Path(folder)
+            os.chmod(Path(folder, "class", "bert"), 0o700)  # noqa: PTH101
+    finally:
+        os.seteuid(before)
 
 
 def test_what_may_not_be_read_stops_the_class_and_is_nobodys_zero(folder_of_a_user: Path) -> None:

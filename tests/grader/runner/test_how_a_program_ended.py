@@ -538,6 +538,8 @@ def test_a_value_of_another_type_that_aborts_the_program_is_named_with_its_line(
     assert line == 12
     # Python 3.14 adds the stack in C.
     assert {without_paths(f"{log}{printed}more\n") for printed in (stack, in_c)} == {f"{log}\nmore\n"}
+    pythons_own = "Fatal Python error: _enter_buffered_busy: could not acquire lock at interpreter shutdown\n"
+    assert without_paths(pythons_own) == pythons_own
     assert text == (
         "it put a value of another type into a message (push result) in line 12: `self.coin += 1`. A float field of it "
         "needs a float: 2.0 instead of 2, float(value), or the data of a message."
