@@ -76,8 +76,8 @@ function isPackage(name) {
   return name === document.documentElement.dataset.package || [...cells.values()].some(names);
 }
 
-// A node that was killed, or stopped while it started, has none.
-const exitCode = ({ status }) => (status === null ? "" : ` (exit code ${status})`);
+// A node that was killed, stopped while it started or could not be loaded has none.
+const exitCode = ({ status }) => (Number.isInteger(status) ? ` (exit code ${status})` : "");
 
 export function showNodes(cell) {
   if (started.size === 0) cell.print("No node runs. Run one.");

@@ -195,10 +195,8 @@ def plot_svg(recording: PlotRecording, title: str = "", *, moves: bool = True) -
     across = Scale(0.0, end or 1.0, LEFT, width - RIGHT)
     name = title or ", ".join(dict.fromkeys(curve.quantity.topic for curve in curves))
     words = in_words(recording)
-    key = (
-        "p"
-        + hashlib.sha256(repr((name, words, moves, end, [curve.values for curve in curves])).encode()).hexdigest()[:8]
-    )
+    shown = repr((name, words, moves, end, [curve.values for curve in curves]))
+    key = "p" + hashlib.sha256(shown.encode()).hexdigest()[:8]
     y, drawn = float(_TOP), []
     for kind, by_label in panels(recording).items():
         part, y = panel(kind, by_label, y, across, recording.start, key, width)
