@@ -13,7 +13,7 @@ _LIBRARY = re.compile(
 #: A frame with its code; a launched program's has the program's name before it. Which files are libraries' is asked
 #: afterwards: a pattern of both would take quadratic time for a long line.
 _FRAME = re.compile(
-    r'^((?:\[[\w./-]+\] )? *)File "([^"\n]*)", line \d+.*\n(?:\1(?: +(?!File ")|\[Previous line repeated ).*\n)*',
+    r'^((?:\[[\w./-]+\] )? *)File "([^"\n]*)", line \d+.*\n(?:\1(?: (?! *File ")|\[Previous line repeated ).*\n)*',
     re.MULTILINE,
 )
 

@@ -37,3 +37,8 @@ def test_a_traceback_loses_the_frames_of_libraries_with_their_code_and_nothing_e
     )
     lines = [launched + line for line in log.splitlines(keepends=True)]
     assert with_own_frames("".join(lines)) == "".join(lines[:5] + lines[9:])
+
+
+def test_spaces_without_end_behind_a_frame_do_not_keep_the_grader_busy() -> None:
+    printed = '  File "talker.py", line 3\n' + " " * 2_000_000
+    assert with_own_frames(printed) == printed
