@@ -8,18 +8,15 @@ import os
 import pickle
 import signal
 import socket
-import subprocess
 from collections.abc import Sequence
 from dataclasses import replace
 
 from grader.sandbox import bubblewrap, filesystem, landlock, namespaces
 from grader.sandbox.confine import StartRequest
-from grader.sandbox.environment import RUNTIME_VARIABLES, for_trusted
 from grader.sandbox.isolation import forget
-from grader.sandbox.middleware import variables
 from grader.sandbox.monitor import Monitor
 from grader.sandbox.program import START_REQUEST, Isolation, Limits, ProgramSpec, SandboxError
-from groundwork.clean_environment import module_command
+from grader.sandbox.zygote_start import PRELOAD, start_zygote
 from groundwork.process_exit import ProcessExit
 
 _START_S = 30.0
@@ -85,14 +82,6 @@ class SandboxedProgram(Monitor, contextlib.AbstractContextManager["SandboxedProg
     def __exit__(self, *error: object) -> None:
         """Kill everything."""
         self.kill()
-
-
-PRELOAD = (
-    *("rclpy", "rclpy.action", "rclpy.executors", "rclpy.qos", "numpy", "rcl_interfaces.msg", "rcl_interfaces.srv"),
-    *("rosgraph_msgs.msg", "builtin_interfaces.msg", "std_msgs.msg", "geometry_msgs.msg", "sensor_msgs.msg"),
-    "type_description_interfaces.msg",  # for a service that each node has
-    "type_description_interfaces.srv",
-)
 
 
 class ForkServer(contextlib.AbstractContextManager["ForkServer"]):
@@ -171,28 +160,6 @@ class ForkServer(contextlib.AbstractContextManager["ForkServer"]):
     def __exit__(self, *error: object) -> None:
         """Close it."""
         self.close()
-
-
-def start_zygote(preload: Sequence[str], owner: str = "") -> tuple[socket.socket, subprocess.Popen[bytes]]:
-    """Start a new Python that imports the modules, and is then the process from which students are forked; return the
-    socket to it. With an `owner` it forks that process, and becomes the owner: see `grader.sandbox.zygote`.
-    """
-    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    environment = for_trusted(RUNTIME_VARIABLES)
-    environment |= variables(environment)
-    # One thread: a child forked from several could hang. A fixed hash seed: sets have the same order in each run.
-    environment |= {"OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1"}
-    environment["MALLOC_ARENA_MAX"] = "4"  # address space is limited: many threads would reserve 64 MiB of it each
-    with theirs:
-        process = subprocess.Popen(
-            module_command("grader.sandbox.zygote", str(theirs.fileno()), owner, *preload),
-            pass_fds=[theirs.fileno()],
-            env=environment,
-            cwd="/",
-            stdin=subprocess.DEVNULL,
-            start_new_session=True,
-        )
-    return ours, process
 
 
 def _root(program: ProgramSpec, isolation: Isolation, limits: Limits) -> tuple[tuple[filesystem.Mount, ...], bytes]:

@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from grader.sandbox.environment import for_trusted
 from grader.sandbox.filesystem import memory_file
-from grader.sandbox.fork_server import PRELOAD, start_zygote
 from grader.sandbox.middleware import require_middleware
+from grader.sandbox.zygote_start import PRELOAD, start_zygote
 from grader.workers.shared import SharedObjects
 
 if TYPE_CHECKING:
