@@ -13,7 +13,7 @@ import pytest
 from over_hub import run_over_hub
 from sandbox_runner import Runner
 
-from grader.sandbox import ForkServer, Isolation, ProgramSpec, SandboxError, fork_server
+from grader.sandbox import ForkServer, Isolation, ProgramSpec, SandboxError, zygote_start
 
 NAME_IT = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
 
@@ -160,15 +160,15 @@ def test_fast_dds_never_takes_its_place_unnoticed(either_runner: Runner) -> None
 
 def start_with_the_wrong_middleware(rig_fork_server: ForkServer, level: Isolation) -> str:
     """Return the runner's answer when the library that should be first is not found."""
-    found = fork_server.variables
-    fork_server.variables = lambda of: {"RMW_IMPLEMENTATION": "rmw_lockstep_cpp"}  # type: ignore[assignment]
+    found = zygote_start.variables
+    zygote_start.variables = lambda of: {"RMW_IMPLEMENTATION": "rmw_lockstep_cpp"}  # type: ignore[assignment]
     try:
         with ForkServer() as wrong:
             wrong.start(ProgramSpec("student.py", {"student.py": b""}, hub=0), level)
     except SandboxError as fault:
         return str(fault)
     finally:
-        fork_server.variables = found
+        zygote_start.variables = found
     return "it was started"
 
 
