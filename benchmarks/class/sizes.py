@@ -22,7 +22,9 @@ from students import EXERCISE, ROOT, the_class, write
 
 from grader.classroom.signatures import signatures
 from grader.exercise import load
+from grader.exercise.mistakes import mistakes_of
 from grader.grading import Options, grading_of
+from grader.submission.reader import of_source
 from grader.workers import WorkerPool
 
 
@@ -38,7 +40,12 @@ def main() -> int:
         "| MB largest process (RSS) |\n| --- |" + " --- |" * 6
     )
     with WorkerPool() as workers:
-        signatures(grading_of(load(ROOT / "exercises" / EXERCISE), Options(), workers))
+        exercise = load(ROOT / "exercises" / EXERCISE)
+        grading = grading_of(exercise, Options(), workers)
+        mistakes = [
+            of_source(f"{mistake.name}.py", mistake.source.encode(), exercise) for mistake in mistakes_of(exercise)
+        ]
+        signatures(grading, [grading.grade(mistake) for mistake in mistakes])
     try:
         for size in sizes:
             made = the_class(size, seed=2, hostile=False)
