@@ -14,7 +14,7 @@ from grader.recording.types import message_class
 from grader.runner.error_texts import advice_on_text
 from grader.runner.node_attributes import advice_on_node_attribute
 from grader.runner.tracebacks import LastError
-from groundwork.words import look_alike, similar
+from groundwork.words import beyond_ascii, similar
 
 _RESULT = "An action's execute callback has to return a Result, such as `return {action}.Result()`."
 
@@ -69,7 +69,9 @@ def _of_newer_ros(last: LastError, sources: Mapping[str, str]) -> str:
 
 def _of_an_invalid_name(last: LastError, sources: Mapping[str, str]) -> str:
     """Name the character of a name that can't be seen, or that looks like another one."""
-    return look_alike(last.text.partition("#")[0]) if re.match(r"[\w.]*Invalid\w*NameException", last.error) else ""
+    if not re.match(r"[\w.]*Invalid\w*NameException", last.error):
+        return ""
+    return beyond_ascii(last.text.partition("#")[0], "no name may have: type that part again")
 
 
 def _before_init(last: LastError, sources: Mapping[str, str]) -> str:

@@ -30,18 +30,23 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str, shown: str = "
     return f"Did you mean {shown.format(near)}?" if near else otherwise
 
 
-def look_alike(text: str, expected: str = "") -> str:
+def look_alike(text: str, expected: str) -> str:
     """Return a sentence on the character because of which `text` is not `expected`, although both look the same.
 
-    Without `expected`, on the first character that no name may have, because it is not in ASCII. "" if there is none.
+    "" if there is none, or if nothing is expected.
     """
-    strange = next((char for char in text if not char.isascii()), "")
     bare = "".join(filter(str.isascii, text))
     replaced = len(text) == len(expected) and all(
         not a.isascii() or a == b for a, b in zip(text, expected, strict=True)
     )
-    if not strange or not expected.isascii() or (expected and bare != expected and not replaced):
+    looks_alike = bool(expected) and expected.isascii() and (bare == expected or replaced)
+    return beyond_ascii(text, "is easily overlooked: type it again") if looks_alike else ""
+
+
+def beyond_ascii(text: str, what: str) -> str:
+    """Return a sentence that names the first character beyond ASCII, and says this of it; "" if there is none."""
+    strange = next((char for char in text if not char.isascii()), "")
+    if not strange:
         return ""
     name = unicodedata.name(strange, "a character without a name")
-    todo = "which is easily overlooked: type it again" if expected else "which no name may have: type that part again"
-    return f"It has the character U+{ord(strange):04X} ({name}), {todo}."
+    return f"It has the character U+{ord(strange):04X} ({name}), which {what}."

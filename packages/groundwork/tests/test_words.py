@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundwork.words import counted, did_you_mean, look_alike, similar
+from groundwork.words import beyond_ascii, counted, did_you_mean, look_alike, similar
 
 
 def test_a_number_has_its_noun_in_the_right_form() -> None:
@@ -22,5 +22,7 @@ def test_the_most_similar_name_is_suggested_and_otherwise_something_else() -> No
 def test_a_character_that_can_not_be_seen_or_that_looks_like_another_is_named() -> None:
     assert "U+200B (ZERO WIDTH SPACE)" in look_alike("torso\u200b", "torso")
     assert "U+043E (CYRILLIC SMALL LETTER O)" in look_alike("t\u043erso", "torso")
-    assert "U+00A0" in look_alike("self.a = '/a\u00a0'")
+    assert "U+00A0 (NO-BREAK SPACE), which no name may have." in beyond_ascii("'/a\u00a0'", "no name may have")
+    assert beyond_ascii("'/a'", "no name may have") == ""
     assert [look_alike(text, "torso") for text in ("torso", "Rümpfe", "", "chest")] == [""] * 4
+    assert look_alike("grüße", "") == "", "nothing is expected that it could be taken for"
