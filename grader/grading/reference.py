@@ -8,7 +8,6 @@ import platform
 import re
 from dataclasses import replace
 from functools import cache
-from importlib import metadata
 from pathlib import Path
 
 import ros_in_python
@@ -22,6 +21,7 @@ from grader.recording.recording import Recording, from_json, to_json
 from grader.submission.reader import of_source
 from grader.workers.pool import HostFault
 from groundwork.files import cached, keep, read_kept
+from groundwork.installed import version_of
 from interface_compiler import activation
 from rmw_lockstep.library import SOURCES, sources
 
@@ -33,7 +33,7 @@ def versions() -> dict[str, str]:
     """Return the versions of Python and ROS, and digests of all source of ours that a program or its judging uses."""
     return {
         "python": platform.python_version(),
-        "rclpy": _version("ros-jazzy-rclpy", "rclpy"),
+        "rclpy": version_of("ros-jazzy-rclpy", "rclpy", otherwise="unknown"),
         "rmw": digest_of([*sources(), *sorted(SOURCES.rglob("*.py"))])[:12],
         "grader": digest_of(sorted(GRADER.rglob("*.py")))[:12],
         "ros_in_python": digest_of(sorted(Path(ros_in_python.__file__).parent.rglob("*.py")))[:12],
@@ -55,15 +55,6 @@ def exercise_digest(exercise: Exercise) -> str:
     settings = repr(replace(exercise, folder=Path(), solution_folder=None, task=""))
     checks, data = digest_of([*with_modules(exercise.check_files)]), digest_of(data_paths(exercise), exercise.folder)
     return hashlib.sha256(f"{settings} {checks} {data}".encode()).hexdigest()
-
-
-def _version(*names: str) -> str:
-    for name in names:
-        try:
-            return metadata.version(name)
-        except metadata.PackageNotFoundError:
-            continue
-    return "unknown"
 
 
 def reference(runner: ScenarioRunner) -> dict[str, Recording]:

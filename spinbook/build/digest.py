@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import hashlib
-import importlib.metadata
 import os
 import platform
 from collections.abc import Iterable
@@ -13,6 +11,7 @@ from pathlib import Path
 
 import ros_in_python
 import spinbook
+from groundwork.installed import version_of
 
 
 def digest(*parts: str | bytes) -> str:
@@ -58,13 +57,5 @@ def code_digest(*folders: str) -> str:
 def versions() -> str:
     """Return the versions on which a notebook's outputs depend."""
     names = ("ros-rclpy", "matplotlib", "ipykernel", "nbclient")
-    packages = [f"{name}={version_of(name)}" for name in names]
+    packages = [f"{name}={version_of(name, otherwise='none')}" for name in names]
     return " ".join([f"python={platform.python_version()}", *packages])
-
-
-def version_of(*distributions: str, otherwise: str = "none") -> str:
-    """Return the version of the first of these distributions that is installed."""
-    for name in distributions:
-        with contextlib.suppress(importlib.metadata.PackageNotFoundError):
-            return importlib.metadata.version(name)
-    return otherwise

@@ -12,8 +12,9 @@ from html import escape
 from typing import Any
 
 from grader.exercise.exercise import Exercise
+from groundwork.installed import version_of
 from spinbook import __version__
-from spinbook.build.digest import digest, version_of
+from spinbook.build.digest import digest
 from spinbook.chapter.chapter import Chapter, ChapterCell
 from spinbook.course.course import Course
 from spinbook.site.chapter_page import ExecutedNotebook, alternative, is_picture, wrong_cells
