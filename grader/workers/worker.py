@@ -82,7 +82,8 @@ def _share() -> None:
 def main(descriptor: int, fork_server: ForkServer) -> None:
     """Serve jobs until the other end of the control socket is closed; remove the folders with the jobs' files.
 
-    `descriptor` is the control socket. Whoever has imported rclpy calls this: see `grader.sandbox.zygote`.
+    `descriptor` is the control socket. A process that has already imported rclpy calls this: see
+    `grader.sandbox.zygote`.
     """
     control = socket.socket(fileno=descriptor)
     folders = _begin(control)
