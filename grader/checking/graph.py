@@ -292,7 +292,7 @@ def _wrong(text: str, expected: str, got: str, cause: str | Cause = UNKNOWN) -> 
 
 
 def _of_qos(end: Endpoint, durability: str) -> str:
-    if durability == "transient_local" != end.durability and end.kind == "publisher":
+    if durability == "transient_local" and end.durability != durability and end.kind == "publisher":
         return "A late subscriber gets nothing that it published before."
     if durability == "volatile" and end.durability == "transient_local" and end.kind == "subscription":
         return "A transient local subscription gets nothing from a volatile publisher."

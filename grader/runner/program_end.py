@@ -41,7 +41,7 @@ _VALUES = {
 
 
 def _of_signal(signal: int, log: str, at: LastError | None) -> str:
-    place = f" in {at.place}: `{at.text}`" if at else ""
+    place = at.where if at else ""
     if other := OTHER_CLASS.search(log):
         text = f"it gave ROS 2 an object of another class than {other['expected']}{place}."
         action, _, kind = other["expected"].rpartition("_")
@@ -54,11 +54,9 @@ def _of_signal(signal: int, log: str, at: LastError | None) -> str:
 
 def described(last: LastError, sources: Mapping[str, str]) -> str:
     """Return an error with its line, the line's source and advice, as far as they are known."""
-    place = f" in {last.place}" if last.place else ""
-    text = f": `{last.text}`" if last.text else ""
     advice = advice_on(last, sources)
     error = re.sub(r"\. Did you mean: '\w+'\?$", "", last.error) if advice else last.error
-    return " ".join(filter(None, (f"{error}{place}{text}".rstrip(".") + ".", advice)))
+    return " ".join(filter(None, (f"{error}{last.where}".rstrip(".") + ".", advice)))
 
 
 def of_exit(exit_: ProcessExit, log: str, sources: Mapping[str, str]) -> tuple[str, int | None]:

@@ -56,6 +56,11 @@ class LastError:
     file: str = ""
     place: str = ""
 
+    @property
+    def where(self) -> str:
+        """The place and its line, to be appended to a sentence; "" if neither is known."""
+        return (f" in {self.place}" if self.place else "") + (f": `{self.text}`" if self.text else "")
+
 
 def last_error(log: str, sources: Mapping[str, str]) -> LastError | None:
     """Return the last error in `log`, or None if there is none. `sources` are the student's files: path -> text.

@@ -7,10 +7,10 @@ import json
 import re
 import subprocess
 import time
-from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 import click
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -139,7 +139,9 @@ def handout(course: Course) -> Handout:
             copy = exercise_files(exercise, workers)
             listings.append(_listing(exercise, workers))
             files |= {f"exercises/{exercise.name}/{name}": content for name, content in copy.items()}
-    taught = "\n".join([*_nodes(notebooks), authors_code(files)])
+    cells, own = _code_cells(notebooks), authors_code(files)
+    nodes = [cell["source"] for cell in cells if cell["metadata"].get("spinbook", {}).get("kind") == "node"]
+    taught = "\n".join([*nodes, own])
     every = [load(course.root / "exercises" / name) for name in sorted(course.exercises)]
     known, names = secrets_of_all(every, taught)
     _prove(files, known + names)
@@ -148,6 +150,7 @@ def handout(course: Course) -> Handout:
     compiled = dict([middleware_wheel(), *interface_wheels(course, [texts]).items()])
     files[f"wheels/{name}"] = content
     files |= {f"wheels/{file}": data for file, data in compiled.items()}
+    solutions = (exercise.solution_file.read_text(encoding="utf-8") for exercise in exercises if exercise.solution_file)
     slug = re.sub(r"[^a-z0-9]+", "-", course.title.lower()).strip("-") or "course"
     packages = sorted({package for exercise in exercises for package in exercise.packages})
     files |= guide_files(
@@ -160,7 +163,7 @@ def handout(course: Course) -> Handout:
         sorted(compiled),
         packages,
         texts,
-        imports_matplotlib(_code(files, exercises)),
+        imports_matplotlib([*(cell["source"] for cell in cells), own, *solutions]),
     )
     files |= base_files(files)
     _prove(files, known)
@@ -176,23 +179,9 @@ def _notebooks(course: Course) -> dict[str, bytes]:
     }
 
 
-def _nodes(notebooks: dict[str, bytes]) -> Iterator[str]:
-    """Yield the code of the chapters' own nodes."""
-    for content in notebooks.values():
-        for cell in json.loads(content)["cells"]:
-            if cell["metadata"].get("spinbook", {}).get("kind") == "node":
-                yield cell["source"]
-
-
-def _code(files: dict[str, bytes], exercises: list[Exercise]) -> Iterator[str]:
-    """Yield the code of cells, starters and solutions."""
-    for name, content in files.items():
-        if name.endswith(".ipynb"):
-            yield from ("".join(cell["source"]) for cell in json.loads(content)["cells"] if cell["cell_type"] == "code")
-        elif name.endswith(".py"):
-            yield content.decode()
-    for solution in filter(None, (exercise.solution_file for exercise in exercises)):
-        yield solution.read_text(encoding="utf-8")
+def _code_cells(notebooks: dict[str, bytes]) -> list[dict[str, Any]]:
+    cells = (cell for content in notebooks.values() for cell in json.loads(content)["cells"])
+    return [cell for cell in cells if cell["cell_type"] == "code"]
 
 
 def _used(course: Course, notebooks: dict[str, bytes]) -> list[str]:

@@ -75,27 +75,24 @@ def next_step(grade: Grade, exercise: Exercise) -> str:
 def as_html(grade: Grade, exercise: Exercise) -> str:
     """Return HTML that loads and runs nothing, with all text from the student escaped."""
     plot = feedback_plot(grade, exercise)
-    return (
-        environment(_source)
-        .get_template("self_check_view.html")
-        .render(
-            title=exercise.title,
-            total=public_total(grade.verdicts),
-            full=grade.full_marks,
-            message=grade.message,
-            step=_first_step(grade, exercise),
-            log=_end(grade.log),
-            log_open=grade.outcome != "graded",
-            rows=[_row(check, grade, exercise) for check in shown_checks(grade)],
-            fold_hints=not exercise.count_hints,
-            # In an <img>, an SVG can neither run nor load anything.
-            plot=Markup("data:image/svg+xml;base64,") + base64.b64encode(plot.encode()).decode() if plot else "",
-            plot_says=plot_says(shown_checks(grade), plot) if plot else "",
-            more_help=more_help(exercise) if first_hints(grade)[1] else "",
-            next_step=next_step(grade, exercise),
-            to_come=terminal.hidden_checks_to_come(grade),
-            standing=terminal.self_check_standing(grade),
-        )
+    page = environment(_source).get_template("self_check_view.html")
+    return page.render(
+        title=exercise.title,
+        total=public_total(grade.verdicts),
+        full=grade.full_marks,
+        message=grade.message,
+        step=_first_step(grade, exercise),
+        log=_end(grade.log),
+        log_open=grade.outcome != "graded",
+        rows=[_row(check, grade, exercise) for check in shown_checks(grade)],
+        fold_hints=not exercise.count_hints,
+        # In an <img>, an SVG can neither run nor load anything.
+        plot=Markup("data:image/svg+xml;base64,") + base64.b64encode(plot.encode()).decode() if plot else "",
+        plot_says=plot_says(shown_checks(grade), plot) if plot else "",
+        more_help=more_help(exercise) if first_hints(grade)[1] else "",
+        next_step=next_step(grade, exercise),
+        to_come=terminal.hidden_checks_to_come(grade),
+        standing=terminal.self_check_standing(grade),
     )
 
 

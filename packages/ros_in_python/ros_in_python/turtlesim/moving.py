@@ -104,10 +104,11 @@ def world_svg(world: WorldPicture, *, moves: bool = True) -> str:
     key = "t" + hashlib.sha256(world.to_json().encode()).hexdigest()[:8]
     tracks, error = _few(world.tracks if moves else ())
     times = timeline([track.samples for track in tracks])
-    rules, content, words = "", still_content(world, key), caption(world)
     if times.spans:
         rules, content = _moving_content(world, tracks, times, key)
         words = _words(world, times, error)
+    else:
+        rules, content, words = "", still_content(world, key), caption(world)
     whole = PANEL.format(key=key) + rules + framed(world, key, content)
     title = "The turtle's way" if len(world.turtles) == 1 else "The turtles' ways"
     return on_paper(whole, *sizes(world), key, title, words)

@@ -56,13 +56,17 @@ def still_content(world: WorldPicture, key: str) -> str:
 
 def framed(world: WorldPicture, key: str, content: str) -> str:
     """Return the world's axes and caption, and within its frame this content."""
-    side = round(world.size * PIXELS_PER_UNIT)
+    side = _side(world)
     return f'{axes(world, key)}<svg x="{LEFT}" y="{TOP}" width="{side}" height="{side}">{content}</svg>'
+
+
+def _side(world: WorldPicture) -> int:
+    return round(world.size * PIXELS_PER_UNIT)
 
 
 def sizes(world: WorldPicture) -> tuple[int, int]:
     """Return the width and height of the whole picture (px)."""
-    side = round(world.size * PIXELS_PER_UNIT)
+    side = _side(world)
     return LEFT + side + RIGHT, TOP + side + BOTTOM
 
 
@@ -128,7 +132,7 @@ def _drawn(command: str, places: Sequence[Place], side: int = 1) -> str:
 
 
 def ground(world: WorldPicture, key: str) -> str:
-    side = round(world.size * PIXELS_PER_UNIT)
+    side = _side(world)
     lines = "".join(
         f"M0 {coord(side - n * PIXELS_PER_UNIT)}H{side}M{coord(n * PIXELS_PER_UNIT)} 0V{side}" for n in _marks(world)
     )
@@ -142,7 +146,7 @@ def _marks(world: WorldPicture) -> range:
 
 
 def axes(world: WorldPicture, key: str) -> str:
-    side = round(world.size * PIXELS_PER_UNIT)
+    side = _side(world)
     texts = []
     for n in _marks(world):
         at = n * PIXELS_PER_UNIT
