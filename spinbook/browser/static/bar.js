@@ -4,6 +4,8 @@ import { follow } from "./graph.js";
 import { changes, running, working } from "./processes.js";
 
 let place = null;
+// The head in which the reader has pressed a button, and from which he has not scrolled since.
+let pressed = null;
 
 // Show the bar from now on, whenever something runs.
 export function bar() {
@@ -18,17 +20,23 @@ export function bar() {
     document.documentElement.style.setProperty("--running", `${place.offsetHeight}px`);
     uncover();
   };
-  new ResizeObserver(measure).observe(place);
+  const observer = new ResizeObserver(measure);
+  observer.observe(place);
+  // Output above a head moves it, too.
+  observer.observe(document.body);
+  const press = (target) => (pressed = target?.closest(".cell-head, .check-tools"));
+  press(document.activeElement);
+  for (const scroll of ["wheel", "touchmove", "pointerdown", "keydown"]) addEventListener(scroll, () => press(null), { passive: true });
+  addEventListener("click", ({ target }) => press(target));
 }
 
 // What runs, one entry for each launch, however many nodes it has.
 const entries = () => [...new Set([...running().map((process) => process.launch ?? process), ...working()])];
 
-// Scroll so that the bar does not cover the cell's head in which the reader has just pressed a button.
+// Scroll so that the bar does not cover the pressed head.
 function uncover() {
-  const head = document.activeElement?.closest(".cell-head, .check-tools");
-  if (!head || place.hidden) return;
-  const covered = head.getBoundingClientRect().bottom - place.getBoundingClientRect().top;
+  if (!pressed || place.hidden) return;
+  const covered = pressed.getBoundingClientRect().bottom - place.getBoundingClientRect().top;
   if (covered > 0) scrollBy({ top: covered + 8, behavior: "instant" });
 }
 

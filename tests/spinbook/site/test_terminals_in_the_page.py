@@ -29,15 +29,34 @@ def cell(shown: Opened, number: int) -> Locator:
 
 
 def run(shown: Opened, number: int) -> Locator:
-    """Press Run; return the block's output."""
+    """Press Run; return the block's output, once that of an earlier run is gone."""
     place = cell(shown, number)
+    output = place.get_by_role("log")
+    earlier = output.element_handles()
     place.locator(".run-button", has_text="Run").filter(has_not_text="all").click()
-    return place.get_by_role("log")
+    for each in earlier:
+        each.wait_for_element_state("hidden")
+    return output
 
 
 def stop_all(shown: Opened) -> None:
     shown.page.get_by_role("button", name="Stop all nodes").click()
     expect(shown.page.get_by_role("region", name="Running nodes")).to_be_hidden(timeout=DEADLINE_MS)
+
+
+def at_the_end(shown: Opened, number: int) -> Locator:
+    """Scroll a block's head to the window's lower end."""
+    head = cell(shown, number).locator(".cell-head")
+    head.evaluate("head => head.scrollIntoView({ block: 'end', behavior: 'instant' })")
+    return head
+
+
+def is_covered(shown: Opened, head: Locator) -> bool:
+    bar = shown.page.get_by_role("region", name="Running nodes").bounding_box()
+    box = head.bounding_box()
+    assert bar
+    assert box
+    return box["y"] + box["height"] > bar["y"]
 
 
 def test_ros2_run_starts_the_newest_version_above(shown: Opened) -> None:
@@ -95,17 +114,30 @@ def test_a_launch_is_one_entry_and_bad_words_leave_it_alone(shown: Opened) -> No
 def test_run_answers_in_the_head_of_its_block_and_the_bar_does_not_cover_it(shown: Opened) -> None:
     for number, version, width in ((1, "one", 1280), (2, "two", 390)):  # the bar is there only when the second is run
         shown.page.set_viewport_size({"width": width, "height": 844})
-        head = cell(shown, number).locator(".cell-head")
-        head.evaluate("head => head.scrollIntoView({ block: 'end', behavior: 'instant' })")
+        head = at_the_end(shown, number)
         run(shown, number)
         expect(head.get_by_role("status")).not_to_be_empty()
         expect(head.locator(".run-last")).to_have_text(f"[INFO] [talker]: version {version}", timeout=DEADLINE_MS)
         expect(head.get_by_role("status")).to_have_text("talker runs.")
-        bar = shown.page.get_by_role("region", name="Running nodes").bounding_box()
-        shown_head = head.bounding_box()
-        assert bar
-        assert shown_head
-        assert shown_head["y"] + shown_head["height"] <= bar["y"]
+        assert not is_covered(shown, head)
         assert not shown.scrolls_sideways()
     head.get_by_role("button", name="Ctrl-C").click()
     expect(head.get_by_role("status")).to_have_text("talker ended with 0.", timeout=DEADLINE_MS)
+
+
+def test_output_above_moves_no_head_behind_the_bar_unless_the_reader_scrolls(shown: Opened) -> None:
+    def waits_for_another_line() -> None:
+        expect(published.nth(published.count())).to_be_attached(timeout=DEADLINE_MS)
+
+    shown.page.set_viewport_size({"width": 390, "height": 844})
+    published = run(shown, 4).locator("span")
+    head = at_the_end(shown, 5)
+    expect(run(shown, 5)).to_contain_text("data: 5", timeout=DEADLINE_MS)
+    waits_for_another_line()
+    assert not is_covered(shown, head)
+
+    shown.page.mouse.wheel(0, -100)
+    while not is_covered(shown, head):
+        shown.page.evaluate("() => new Promise(requestAnimationFrame)")
+    waits_for_another_line()
+    assert is_covered(shown, head)
