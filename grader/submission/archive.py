@@ -24,18 +24,22 @@ from pathlib import Path, PurePosixPath
 from typing import IO, NoReturn, cast
 
 from grader.submission.file_kinds import MOST_BYTES_OF, NOT_UNPACKED, OTHER_ARCHIVES, kind_of
-from grader.submission.problems import Unreadable
+from grader.submission.problems import AmbiguousProgram, Unreadable
 
 #: The most files that can matter. What a build left behind does not count.
 MOST_FILES = 400
 MOST_BYTES = 4_000_000
 #: The most entries of any kind.
 MOST_ENTRIES = 50_000
-#: The limit of a decompressed tar archive, and the most archives inside each other.
+#: The limit of a decompressed tar archive, and the most archives inside each other, and in all.
 MOST_TAR_BYTES = 60_000_000
-DEEPEST = 3
+DEEPEST, MOST_ARCHIVES = 3, 50
 
 ADVICE = "Hand in your code only, without what was built from it."
+_OUTPUTS = (
+    f"The notebook has more than {MOST_BYTES_OF['notebook'] // 1_000_000} MB, nearly all of them outputs. Clear them: "
+    "in Jupyter, or with `jupyter nbconvert --clear-output --inplace FILE`."
+)
 
 #: Folders and files of version control, Python, colcon, editors and operating systems, which no student writes.
 _NOISE = re.compile(
@@ -66,11 +70,13 @@ class Contents:
     files: dict[str, bytes] = field(default_factory=dict)
     damaged: list[str] = field(default_factory=list)
     links: list[str] = field(default_factory=list)
+    archives: int = 0
     left: int = MOST_BYTES
     left_for_notebooks: int = MOST_BYTES_OF["notebook"]
 
     def add(self, name: str, data: bytes) -> None:
-        """Keep a file. Raises `Unreadable` if that exceeds a limit."""
+        """Keep a file. Raises `Unreadable` if that exceeds a limit, and `AmbiguousProgram` as `content_of`."""
+        _refuse_pointer(name, data)
         if kind_of(name) == "notebook":  # a notebook's outputs may be large
             self.left_for_notebooks -= len(data)
         else:
@@ -78,8 +84,7 @@ class Contents:
         if self.left < 0:
             raise Unreadable(f"It holds more than {MOST_BYTES // 1_000_000} MB. {ADVICE}")
         if self.left_for_notebooks < 0:
-            most = MOST_BYTES_OF["notebook"] // 1_000_000
-            raise Unreadable(f"Its notebooks are larger than {most} MB. Clear their outputs, and save them.")
+            raise AmbiguousProgram(_OUTPUTS)
         if len(self.files) >= MOST_FILES:
             raise Unreadable(f"It holds more than {MOST_FILES} files. {ADVICE}")
         if name in self.files:
@@ -163,7 +168,11 @@ def _keep(entries: Sequence[_Entry], prefix: str, contents: Contents, depth: int
 
 
 def content_of(path: Path, most: int) -> bytes:
-    """Return the content of a regular file, without following links. Raises `Unreadable`, and OSError."""
+    """Return the content of a regular file, without following links.
+
+    Raises `Unreadable`, OSError, and `AmbiguousProgram` for what is no fault of the program: many outputs, or a pointer
+    of Git LFS instead of the file.
+    """
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError as error:
@@ -177,9 +186,17 @@ def content_of(path: Path, most: int) -> bytes:
             content = file.read(most + 1)
     finally:
         os.close(descriptor)
+    _refuse_pointer(path.name, content)
+    if len(content) > most and kind_of(path.name) == "notebook":
+        raise AmbiguousProgram(_OUTPUTS)
     if len(content) > most:
         raise Unreadable(f"It is larger than {most // 1_000_000} MB. Hand in your code only, with outputs cleared.")
     return content
+
+
+def _refuse_pointer(name: str, content: bytes) -> None:
+    if content.startswith(b"version https://git-lfs.github.com/") and kind_of(name) != "other":
+        raise AmbiguousProgram(f"{name} is Git LFS's pointer to a file, not the file. Fetch it with `git lfs pull`.")
 
 
 def _unpack(content: bytes, prefix: str, contents: Contents, depth: int) -> None:
@@ -207,12 +224,13 @@ def _unpack(content: bytes, prefix: str, contents: Contents, depth: int) -> None
 def _add(name: str, data: bytes | None, contents: Contents, depth: int) -> None:
     if data is None:
         contents.damaged.append(name)
-    elif kind_of(name) == "archive" and depth == DEEPEST:
-        raise Unreadable(f"It holds more than {DEEPEST} archives inside each other: {name}. {ADVICE}")
     elif kind_of(name) == "archive":
-        folder = f"{name.partition('.')[0]}/" if "/" not in name else f"{name.rpartition('/')[0]}/"
+        contents.archives += 1
+        if depth == DEEPEST or contents.archives > MOST_ARCHIVES:
+            limit = f"{DEEPEST} archives inside each other" if depth == DEEPEST else f"{MOST_ARCHIVES} archives"
+            raise Unreadable(f"It holds more than {limit}: {name}. {ADVICE}")
         try:
-            _unpack(data, folder if depth or "/" in name else "", contents, depth + 1)
+            _unpack(data, f"{name.rpartition('.')[0]}/", contents, depth + 1)
         except Unreadable as error:
             if "valid" not in str(error):
                 raise

@@ -68,6 +68,9 @@ def _described(prefix: Path, script: Path) -> Executable:
 #: The suffixes of the files that are collected for a class, and the size limit for each (bytes).
 MOST_BYTES = {suffix: MOST_BYTES_OF[kind_of(suffix)] for suffix in (".py", ".ipynb", ".zip")}
 
+#: What says that there is no program to run.
+NO_PROGRAM = (Unreadable, AmbiguousProgram)
+
 
 class NoSubmission(click.UsageError):
     """Raised if there is nothing to grade under a name, because the command was used wrongly."""
@@ -96,7 +99,7 @@ def _read_path(place: str, path: Path, exercise: Exercise) -> Submission:
         )
     try:
         content = content_of(path, MOST_BYTES_OF[kind_of(place)])
-    except Unreadable as error:
+    except NO_PROGRAM as error:
         return _without_program(place, _digest(str(error).encode()), exercise, error)
     return of_content(place, content, exercise)
 
@@ -125,7 +128,7 @@ def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:
     """Return the submission in an archive. `warning` says what in it does not match its record; it is graded anyway."""
     try:
         upload = unpack(content)
-    except Unreadable as error:
+    except NO_PROGRAM as error:
         return _without_program(name, _digest(content), exercise, error)
     read = _read(name, _digest(content), exercise, lambda: _code(upload, exercise))
     read = replace(read, warning=_warning(upload, exercise))
@@ -172,7 +175,7 @@ def _folder(place: str, path: Path, exercise: Exercise) -> Submission:
     """Return the submission in a folder: a package, a workspace, or some files."""
     try:
         contents = folder_contents(path)
-    except Unreadable as error:
+    except NO_PROGRAM as error:
         return _without_program(place, _digest(str(error).encode()), exercise, error)
     total = hashlib.sha256()
     for name, data in sorted(contents.files.items()):
@@ -184,7 +187,7 @@ def _read(name: str, digest: str, exercise: Exercise, code: Callable[[], Code]) 
     """Return the submission of the program that `code` reads, or of none, with what is wrong."""
     try:
         return of_code(name, code(), exercise, digest)
-    except (Unreadable, AmbiguousProgram) as error:
+    except NO_PROGRAM as error:
         return _without_program(name, digest, exercise, error)
 
 
@@ -196,7 +199,7 @@ def of_code(name: str, code: Code, exercise: Exercise, digest: str = "") -> Subm
     return Submission(name, digest, exercise.file_name, code.source, program, notes=code.notes, newer_python=newer)
 
 
-def _without_program(name: str, digest: str, exercise: Exercise, why: Unreadable | AmbiguousProgram) -> Submission:
+def _without_program(name: str, digest: str, exercise: Exercise, why: Exception) -> Submission:
     nothing = Submission(name, digest, exercise.file_name, "", None)
     if isinstance(why, AmbiguousProgram):
         return replace(nothing, question=str(why))

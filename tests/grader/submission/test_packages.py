@@ -339,6 +339,10 @@ QUESTIONS = {
     "cells": {"a.ipynb": notebook(NODE, OLD)},
     "an executable and its older source": {"beat": f"#!/usr/bin/python3\n{PROGRAM}", "beat.py": OLD.partition("\n")[2]},
     "a file and a notebook": {"heartbeat.py": PROGRAM, "a.ipynb": notebook(OLD)},
+    "a file and a zip": {"heartbeat.py": PROGRAM, "all.zip": zipped({"heartbeat.py": OLD})},
+    "two zips": {"v1.0.zip": zipped({"heartbeat.py": PROGRAM}), "v1.1.zip": zipped({"heartbeat.py": OLD})},
+    "many outputs": {"a.ipynb": notebook(NODE) + b" " * 30_000_000},
+    "a pointer": {"heartbeat.py": "version https://git-lfs.github.com/spec/v1\noid sha256:0\n"},
     "a download and another": {"heartbeat.py": PROGRAM, "heartbeat (1).py": OLD.partition("\n")[2]},
 }
 
@@ -411,14 +415,16 @@ def test_a_notebooks_program_brings_the_modules_beside_it(exercise: Exercise) ->
     assert sorted(submission.program.files) == ["heartbeat.py", "my_robot/__init__.py", "my_robot/rates.py"]
 
 
+MANY_ZIPS = zipped({f"{i}.zip": zipped({}) for i in range(400)})
 HOSTILE = {
     "a file that is also a folder": zipped({"a": "x", "a/heartbeat.py": PROGRAM}),
     "names that lead elsewhere": zipped({"../../etc/heartbeat.py": PROGRAM, "/tmp/x.py": "x = 1\n"}),
     "a long name": zipped({f"{'x' * 300}.py": "x = 1\n", "heartbeat.py": PROGRAM}),
     "a deep path": zipped({f"{'d/' * 1500}x.py": "x = 1\n", "heartbeat.py": PROGRAM}),
     "a zip that holds itself many times": zipped(
-        {f"{i}.zip": zipped({f"{j}.zip": zipped({"x.py": "x = 1\n"}) for j in range(9)}) for i in range(9)}
+        {f"{i}.zip": zipped({f"{j}.zip": zipped({"x.py": PROGRAM}) for j in range(5)}) for i in range(5)}
     ),
+    "a zip of many zips": zipped({f"{i}.zip": MANY_ZIPS for i in range(400)}),
     "a broken zip beside": zipped({"x.zip": b"PK\3\4rubbish", "heartbeat.py": PROGRAM}),
     "a bomb in a tar": tarred({"x.py": bytes(70_000_000), "heartbeat.py": PROGRAM}),
     "a truncated tar": tarred({"heartbeat.py": PROGRAM})[:100],
