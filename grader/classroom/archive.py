@@ -27,6 +27,9 @@ NOISE = {"__MACOSX", "__pycache__", "Thumbs.db", "desktop.ini"}
 WHY_NOISE = "made by a program, not handed in"
 ENCRYPTED = "it is encrypted. Unpack the zip file with its password, and give the folder."
 
+#: A zip's earliest date, which programs write that leave out dates.
+NO_DATE = (1980, 1, 1, 0, 0, 0)
+
 #: Enough for a thousand students with 20 files each.
 MOST_FILES = 20_000
 MOST_BYTES_IN_ALL = 2_000_000_000
@@ -45,8 +48,10 @@ def walk(root: Path) -> Iterator[File | SkippedFile]:
 
     Raises `SubmissionsError` for what may not be read: its student would be left out.
     """
+    cloned: tuple[str, ...] = ()
     for folder, folders, names in os.walk(root, onerror=_refuse):
         inside = Path(folder).relative_to(root)
+        cloned += (f"{folder}/",) if ".git" in (*folders, *names) else ()  # the files' dates are git's
         for name in sorted([*folders, *names]):
             if is_noise(name):
                 yield SkippedFile((inside / name).as_posix(), WHY_NOISE)
@@ -58,7 +63,7 @@ def walk(root: Path) -> Iterator[File | SkippedFile]:
                 path = Path(folder, name)
                 if path.is_file() and not os.access(path, os.R_OK, effective_ids=True):
                     _refuse(PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path)))
-                yield File((inside / name).as_posix(), path, date_of(path))
+                yield File((inside / name).as_posix(), path, UNKNOWN if str(path).startswith(cloned) else date_of(path))
 
 
 def _refuse(error: OSError) -> NoReturn:
@@ -75,6 +80,8 @@ def date_of(path: Path) -> Time:
 
 
 def _time(seconds: float, source: str) -> Time:
+    if not seconds:  # what programs write that leave out dates
+        return UNKNOWN
     try:
         return Time(datetime.fromtimestamp(seconds, timezone.utc), source)
     except (OSError, ValueError, OverflowError):
@@ -240,6 +247,6 @@ def _decoded(entry: zipfile.ZipInfo) -> str:
 def _entry_date(entry: zipfile.ZipInfo) -> Time:
     """Return an entry's date. A zip has the local time of its creator, without a zone: taken as this machine's."""
     try:
-        return Time(datetime(*entry.date_time).astimezone(), "the zip file")
+        return UNKNOWN if entry.date_time <= NO_DATE else Time(datetime(*entry.date_time).astimezone(), "the zip file")
     except (ValueError, OverflowError, OSError):
         return Time()

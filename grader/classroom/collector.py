@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import tzinfo
 from pathlib import Path
@@ -16,7 +16,7 @@ from grader.classroom.formats.format import Export, UploadedFile
 from grader.classroom.formats.per_student import without_suffix
 from grader.classroom.formats.registry import PLAIN
 from grader.classroom.groups import Attempt, Group, Unit, in_groups
-from grader.classroom.names import normal, unique_ids
+from grader.classroom.names import may_be_one, normal, same_but_for_numbers, unique_ids
 from grader.classroom.recogniser import GRADABLE, Recogniser, Recognition, can_be_graded
 from grader.classroom.roster import RosterRow, match, signs, with_row
 from grader.classroom.submissions import File, Question, StudentSubmission, Submissions, SubmissionsError
@@ -165,7 +165,7 @@ class Collector:
             tuple(sorted((*found.skipped, *extras), key=lambda one: one.file)),
             tuple(questions),
             tuple(replace(student, id=ids[normal(student.id)]) for student in missing),
-            (*_notes(handed_in), *_not_gradable(handed_in), *unlisted),
+            (*_notes(handed_in), *_not_gradable(handed_in), *unlisted, *self._ungrouped(units), *self._alike(ids)),
             found.dates,
             tuple(_mismatches(strangers, missing, bool(rows))),
         )
@@ -227,16 +227,29 @@ class Collector:
         missing += [member for member in members if not signs(member) & known]
         return missing
 
+    def _ungrouped(self, units: Sequence[Unit]) -> Iterator[str]:
+        """Yield a note on those who handed in and are in none of the groups."""
+        members = {sign for group in self.options.groups for member in group.members for sign in signs(member)}
+        alone = [one.id for unit in units for one in unit.students if not signs(one) & members]
+        if members and alone:
+            yield f"in no group of --groups: {', '.join(alone)}"
+
+    def _alike(self, names: Iterable[str]) -> Iterator[str]:
+        """Yield a note on names that may be one student's, if no roster says who is who."""
+        for same in () if self.options.roster else same_but_for_numbers(names):
+            yield f"counted as {len(same)} students: {', '.join(same)}. Rename the files if they are one student's"
+
 
 def _mismatches(strangers: Sequence[Student], missing: Sequence[Student], some_match: bool) -> Iterator[str]:
     """Yield what suggests that the roster names those who handed in otherwise than the files do."""
     if strangers and missing and not some_match:
         yield f"nobody is in both: {missing[0].id} is on the roster, {strangers[0].id} handed in"
         return
-    bare = {sign.lstrip("0"): one.id for one in missing for sign in signs(one)}  # spreadsheets drop zeros
     for one in strangers:
-        listed = {bare[sign.lstrip("0")] for sign in signs(one) if sign.lstrip("0") in bare}
-        yield from (f"{same} is on the roster, {one.id} handed in" for same in listed)
+        for listed in missing:
+            if any(may_be_one(name, other) for name in (one.id, one.name) for other in (listed.id, listed.name)):
+                known = f"{listed.id} ({listed.name})" if listed.name else listed.id
+                yield f"{known} is on the roster, {one.id} handed in"
 
 
 def _units(uploads: Sequence[tuple[File, UploadedFile]]) -> list[Unit]:

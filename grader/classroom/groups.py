@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -41,10 +42,17 @@ def read_groups(table: Path) -> tuple[Group, ...]:
     """
     members: dict[str, list[Student]] = defaultdict(list)
     groups: dict[str, str] = {}
+    spelled: dict[str, str] = {}
     for number, row in table_rows(table, ("group", "student"), ("name", "email")):
         if not row["group"] or not row["student"]:
             raise SubmissionsError(
                 f"{table}:{number}: group = {row['group']!r}, student = {row['student']!r}. Give both."
+            )
+        if re.search(r"[;\n/&]", row["student"]):
+            raise SubmissionsError(f"{table}:{number}: student = {row['student']!r}. Write one row per member.")
+        if (before := spelled.setdefault(row["group"].casefold(), row["group"])) != row["group"]:
+            raise SubmissionsError(
+                f"{table}:{number}: the group {row['group']!r} is {before!r} above. Write it like that, or rename it."
             )
         if groups.setdefault(normal(row["student"]), row["group"]) != row["group"]:
             raise SubmissionsError(f"{table}:{number}: {row['student']!r} is also in group {groups[row['student']]!r}.")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import difflib
 import hashlib
 import re
 import unicodedata
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cache
 
 #: Zero-width (non-)joiners, which Indic and Persian names need between letters (Unicode 15, chapter 23.2).
@@ -54,3 +55,40 @@ def unique_ids(names: Iterable[str]) -> dict[str, str]:
 def comparable(name: str) -> str:
     """Return only the letters and digits, in lower case, to compare names that platforms have shortened."""
     return "".join(char for char in normal(name).casefold() if _is_kept(char) and char not in ".@+-_")
+
+
+def words(name: str) -> frozenset[str]:
+    """Return the words and numbers of a name without what people vary: Müller is Mueller and Muller, 0042 is 42."""
+    letters = unicodedata.normalize("NFKD", name.casefold())
+    bare = "".join(char for char in letters if not unicodedata.category(char).startswith("M"))
+    return frozenset(word.lstrip("0") for word in re.findall(r"[^\W_]+", re.sub("([aou])e", r"\1", bare)))
+
+
+def may_be_one(name: str, other: str) -> bool:
+    """Return whether two names may be one student's: week1-anna and anna, Jorg_Muller and Jörg Müller, ana and anna."""
+    mine, theirs = words(name), words(other)
+    if not mine or not theirs:
+        return False
+    if mine <= theirs or theirs <= mine:
+        return True
+    if _numbers(mine) != _numbers(theirs):
+        return False
+    joined = "".join(sorted(mine))
+    is_login = len(mine) == 1 and any(len(word) > 4 and word in joined for word in theirs)
+    return is_login or difflib.SequenceMatcher(None, joined, "".join(sorted(theirs))).ratio() > 0.85
+
+
+def _numbers(of: frozenset[str]) -> set[str]:
+    return {number for word in of for number in re.findall(r"\d+", word)}
+
+
+def same_but_for_numbers(names: Iterable[str]) -> Iterator[list[str]]:
+    """Yield names that differ only in short numbers or in capitals, such as week1-anna and week2-anna.
+
+    Names of which nothing else is left, such as s1 and s2, are not meant, nor a whole class of them: team-1 and team-2.
+    """
+    alike: dict[frozenset[str], list[str]] = defaultdict(list)
+    for name in names:
+        alike[frozenset(word for word in words(name) if not re.fullmatch(r"[^\W\d]{0,8}\d{1,4}", word))].append(name)
+    if len(alike.keys() - {frozenset()}) > 1:
+        yield from (same for rest, same in alike.items() if rest and len(same) > 1)

@@ -28,6 +28,9 @@ IDENTITY = {
 #: Columns that say who a student is, in a table that is not a platform's.
 WHO = ("student", "username", "login", "email", "email address")
 
+#: What spreadsheets make of long numbers.
+SHORTENED = re.compile(r"\d([.,]\d+)?E\+\d+")
+
 #: The column with the time of submission, in our own table and in Moodle's grading worksheet.
 SUBMITTED = ("submitted", "Last modified (submission)")
 
@@ -55,7 +58,12 @@ def read_roster(table: Path, zone: tzinfo | None) -> tuple[RosterRow, ...]:
             raise SubmissionsError(
                 f"{table}:{number}: nothing in this row says who it is. Fill in a column student, or give the "
                 "list of students, grades or submissions that your platform exports (Moodle's worksheet: with English "
-                f"or one of {', '.join(LANGUAGES)} as your language there)."
+                f"or one of {', '.join(LANGUAGES)} as your language there). The columns are: {', '.join(row)}."
+            )
+        if SHORTENED.fullmatch(student.id):
+            raise SubmissionsError(
+                f"{table}:{number}: {student.id} is a number that a spreadsheet has shortened. Format its column as "
+                "text, write the whole numbers, and save it as CSV again."
             )
         if student.id:  # a student in two sections is listed twice
             listed = rows.setdefault(student.id, RosterRow(student, _time(row, f"{table}:{number}", zone)))

@@ -71,8 +71,10 @@ def _text_of(table: Path) -> str:
     """Return a table's text, in UTF-8 or, as spreadsheets save it with a byte order mark, in UTF-16."""
     try:
         content = table.read_bytes()
+        if content.startswith(b"PK\3\4"):
+            raise ValueError("it is a spreadsheet")
         text = content.decode("utf-16" if content.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig")
-        if "\0" in text or content.startswith(b"PK\3\4"):
+        if "\0" in text:
             raise ValueError("it is not a text file")
     except (OSError, ValueError) as error:
         raise SubmissionsError(f"{table}: it can't be read: {error}. Save it as CSV in UTF-8.") from None

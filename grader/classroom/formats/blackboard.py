@@ -1,6 +1,7 @@
 """Blackboard's "Download assignment submissions": ASSIGNMENT_USER_attempt_TIME_FILE in one folder, each with a .txt.
 
-Source: Blackboard's help, "Download assignments". The time has no zone: it is the institution's.
+Source: Blackboard's help, "Download assignments". The time has no zone: it is the institution's. In other languages,
+"attempt" and "Name" in the .txt are other words.
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ from grader.classroom.times import read_time
 from grader.grading.grade import Student
 
 NAME = re.compile(
-    r"(?P<before>.+?)_attempt_(?P<day>\d{4}-\d\d-\d\d)-(?P<h>\d\d)-(?P<m>\d\d)-(?P<s>\d\d)(?:_(?P<file>.+)|(?P<own>\.txt))"
+    r"(?P<before>.+?)_[^\W\d_]+_(?P<day>\d{4}-\d\d-\d\d)-(?P<h>\d\d)-(?P<m>\d\d)-(?P<s>\d\d)(?:_(?P<file>.+)|(?P<own>\.txt))"
 )
-WHO = re.compile(r"^Name: (?P<name>.*?) \((?P<user>[^()]*)\)\s*$", re.MULTILINE)
+WHO = re.compile(r"\A[^:\n]+: (?P<name>.*?) \((?P<user>[^()]*)\)\s*$", re.MULTILINE)
 SOURCE = "Blackboard"
 
 

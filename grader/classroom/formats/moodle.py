@@ -22,7 +22,6 @@ from grader.report.checks import shown_checks
 from grader.report.pages import points
 
 NAME = re.compile(r"(?P<name>.+?)(?:_(?P<number>\d+))?_assignsubmission_(?P<kind>[a-z]+)(?:_(?P<file>.*))?", re.DOTALL)
-WORKSHEET = ("Identifier", "Full name")
 
 
 def read(export: Export) -> Callable[[Parts], Interpretation]:
@@ -51,9 +50,10 @@ def _student(name: str, number: str, email: str, more: Mapping[str, str]) -> Stu
 
 def of_row(row: Mapping[str, str]) -> Student | None:
     """Return the student in a row of the grading worksheet."""
-    if not set(WORKSHEET) <= row.keys() or not row["Identifier"]:
+    if not row.get("Identifier") or not {"Full name", "Last modified (submission)"} & row.keys():
         return None
-    return _student(row["Full name"], row["Identifier"].rpartition(" ")[2], row.get("Email address", ""), row)
+    label, _, number = row["Identifier"].rpartition(" ")  # the only name in blind marking
+    return _student(row.get("Full name", label.replace("/", "")), number, row.get("Email address", ""), row)
 
 
 def table(exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None) -> str:

@@ -59,7 +59,7 @@ def in_english(row: dict[str, str]) -> dict[str, str]:
     fitting = {language: sum(word in row for word in words.values()) for language, words in LANGUAGES.items()}
     language = max(fitting, key=lambda one: fitting[one])
     words = LANGUAGES[language]
-    if not {words["Identifier"], words["Full name"]} <= row.keys() or fitting[language] < 4:
+    if words["Identifier"] not in row or fitting[language] < 4:
         return row
     names = {translated: english for english, translated in words.items()}
     return {**{names.get(name, name): value for name, value in row.items()}, LANGUAGE: language}

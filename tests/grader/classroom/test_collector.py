@@ -333,6 +333,15 @@ def test_a_damaged_file_in_a_zip_is_a_question_and_no_zero(tmp_path: Path) -> No
     assert "anna handed in anna.py: it can't be read: Bad CRC-32" in str(collected.questions[0])
 
 
+def test_dates_that_no_student_made_are_unknown(tmp_path: Path) -> None:
+    made = written(tmp_path / "class", "anna/node.py", "anna/.git/HEAD", "bert/node.py")
+    os.utime(made / "bert" / "node.py", (0, 0))
+    assert [one.file.submitted for one in taken(made, tmp_path).handed_in] == [None, None]
+    with zipfile.ZipFile(tmp_path / "class.zip", "w") as archive:
+        archive.writestr(zipfile.ZipInfo("anna.py"), "")
+    assert [one.file.submitted for one in taken(tmp_path / "class.zip", tmp_path).handed_in] == [None]
+
+
 def test_links_in_a_folder_are_not_followed(tmp_path: Path) -> None:
     root = written(tmp_path / "s", "anna.py")
     written(tmp_path / "elsewhere", "other.py")

@@ -66,6 +66,11 @@ def blackboard() -> Exported:
     return Exported(made, "blackboard")
 
 
+def blackboard_in_german() -> Exported:
+    made = blackboard().files
+    return Exported({name.replace("attempt", "Versuch"): text for name, text in made.items()}, "blackboard")
+
+
 def brightspace() -> Exported:
     made = {"index.html": "<html>"}
     for n, name, login in logins():
@@ -129,7 +134,18 @@ def nbgrader() -> Exported:
     return Exported(made, "nbgrader", attempts=False)
 
 
-EXPORTS = [canvas, moodle, blackboard, brightspace, sakai, sakai_without_folders, ilias, gradescope, nbgrader]
+EXPORTS = [
+    canvas,
+    moodle,
+    blackboard,
+    blackboard_in_german,
+    brightspace,
+    sakai,
+    sakai_without_folders,
+    ilias,
+    gradescope,
+    nbgrader,
+]
 
 
 @pytest.mark.parametrize("packed", [True, False])
@@ -185,7 +201,7 @@ def test_one_odd_file_changes_nothing_for_the_others_and_is_never_left_out_in_si
         inside
         if inside.endswith("/")
         else f"{inside}/"
-        if export not in (canvas, moodle, blackboard, brightspace)
+        if made.form not in ("canvas", "moodle", "blackboard", "brightspace")
         else ""
     )
     top = "Lab_3/Submissions/" if export is ilias else top
@@ -233,6 +249,10 @@ def test_a_team_in_moodle_gives_each_member_the_grade(tmp_path: Path, names: lis
     found = collected(archive(tmp_path / "class.zip", names), groups=read_groups(groups))
     assert {one.student.name for one in found.handed_in} >= {"Anna", "Bert"}
     assert len(found.students) == 3
+    assert [note for note in found.notes if "in no group" in note] == []
+    groups.write_text("group,student\nTeam A,anna\n", encoding="utf-8")
+    found = collected(tmp_path / "class.zip", groups=read_groups(groups))
+    assert any(note.startswith("in no group of --groups: ") for note in found.notes)
 
 
 def test_of_a_group_whose_members_differ_nobody_gets_nothing_in_silence(tmp_path: Path) -> None:

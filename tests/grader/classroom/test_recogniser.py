@@ -132,17 +132,49 @@ def test_a_students_folder_without_a_file_is_named(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("names", "listed", "asked"),
     [
-        (["week1-anna.py", "week1-bert.py"], ["anna", "bert"], ["nobody is in both: anna is on the roster"]),
+        (
+            ["week1-anna.py", "week1-bert.py"],
+            ["anna", "bert"],
+            ["nobody is in both: anna is on the roster, week1-anna handed in"],
+        ),
         (["0042.py", "bert.py"], ["42", "bert"], ["42 is on the roster, 0042 handed in"]),
         (["0042.py", "bert.py"], ["0042", "carl"], []),
+        (["week1-anna.py", "bert.py"], ["anna", "bert"], ["anna is on the roster, week1-anna handed in"]),
+        (["7_Lee_Anna.py", "bert.py"], ["7", "bert"], ["7 is on the roster, 7_Lee_Anna handed in"]),
+        (
+            ["Jorg_Muller.py", "bert.py"],
+            ["Jörg Müller", "bert"],
+            ["Jörg Müller is on the roster, Jorg_Muller handed in"],
+        ),
+        (["jmueller.py", "bert.py"], ["Jörg Müller", "bert"], ["Jörg Müller is on the roster, jmueller handed in"]),
+        (["ana.py", "bert.py"], ["anna", "bert"], ["anna is on the roster, ana handed in"]),
+        (["s12345.py", "Anna Lee.py", "bert.py"], ["s12346", "Anna Braun", "bert"], []),
     ],
 )
 def test_a_roster_with_other_names_than_the_files_is_a_question(
     names: list[str], listed: list[str], asked: list[str], tmp_path: Path
 ) -> None:
     found = collected(folder(tmp_path / "class", names), roster=tuple(RosterRow(Student(one)) for one in listed))
-    assert [mismatch.partition(", week1")[0] for mismatch in found.mismatches] == asked
+    assert list(found.mismatches) == asked
     assert any("the roster seems to name" in one.what for one in decisions(found, Adjuster(), {})) == bool(asked)
+
+
+@pytest.mark.parametrize(
+    ("names", "noted"),
+    [
+        (["week1-anna", "week2-anna", "week1-bert"], ["week1-anna, week2-anna"]),
+        (["Lee A - 2026-11-20", "Lee A - 2026-11-21", "Lee B"], ["Lee A - 2026-11-20, Lee A - 2026-11-21"]),
+        (["Anna", "anna", "bert"], ["Anna, anna"]),
+        (["team-1", "team-2", "team-3"], []),
+        (["s1", "s2", "anna_123456", "anna_123457"], []),
+    ],
+)
+def test_names_that_may_be_one_students_are_said_to_be_several(
+    names: list[str], noted: list[str], tmp_path: Path
+) -> None:
+    found = collected(folder(tmp_path / "class", [f"{name}.py" for name in names]))
+    notes = [f"counted as 2 students: {same}. Rename the files if they are one student's" for same in noted]
+    assert (len(found.handed_in), list(found.notes)) == (len(names), notes)
 
 
 def test_a_table_beside_the_folder_of_a_class_does_not_make_it_a_student(tmp_path: Path) -> None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import re
 from datetime import datetime, timezone
 from pathlib import Path
 
 import plain_grades as plain
 import pytest
+from classes import collected, folder
 
 from grader.classroom.formats import moodle
 from grader.classroom.formats.moodle_languages import COLUMNS, LANGUAGES
@@ -43,7 +45,11 @@ def test_a_roster_is_read_as_spreadsheets_save_it(content: bytes, tmp_path: Path
 REFUSED = {
     "nothing": (b"", "it has no rows below its columns"),
     "columns alone": (b"student,name\n", "it has no rows below its columns"),
-    "a spreadsheet": (b"PK\x03\x04\x00", "it is not a text file. Save it as CSV in UTF-8"),
+    "a spreadsheet": (b"PK\x03\x04\xb3", "it is a spreadsheet. Save it as CSV in UTF-8"),
+    "a number as Excel shows it": (
+        b"student\n1.23457E+12\n",
+        "2: 1.23457E+12 is a number that a spreadsheet has shortened",
+    ),
     "Latin-1": ("student\nMüller\n".encode("latin-1"), "Save it as CSV in UTF-8"),
     "a name with a comma": (
         b"student,name\nanna,Lee, Anna\n",
@@ -110,6 +116,35 @@ def test_a_time_in_it_that_can_not_be_read_is_an_error(time: str, fault: str, tm
     (tmp_path / "roster.csv").write_text(";".join(names) + f"\nTeilnehmer/in 7;Anna;x;{time}\n", encoding="utf-8")
     with pytest.raises(SubmissionsError, match=fault):
         read_roster(tmp_path / "roster.csv", None)
+
+
+GROUPS = {
+    "members in one cell": ("A,anna; bert", "2: student = 'anna; bert'. Write one row per member."),
+    "a group in two spellings": ("Team,anna\nteam,bert", "3: the group 'team' is 'Team' above."),
+    "a student in two groups": ("A,anna\nB,anna", "3: 'anna' is also in group 'A'."),
+    "a group without a student": ("A,", "2: group = 'A', student = ''. Give both."),
+}
+
+
+@pytest.mark.parametrize(("rows", "message"), GROUPS.values(), ids=GROUPS)
+def test_groups_that_would_lose_somebody_are_refused(rows: str, message: str, tmp_path: Path) -> None:
+    (tmp_path / "groups.csv").write_text(f"group,student\n{rows}\n")
+    with pytest.raises(SubmissionsError, match=re.escape(message)):
+        read_groups(tmp_path / "groups.csv")
+
+
+@pytest.mark.parametrize("language", ["", "de"])
+def test_moodles_worksheet_has_no_names_in_blind_marking(language: str, tmp_path: Path) -> None:
+    columns = [LANGUAGES.get(language, {}).get(name, name) for name in COLUMNS if name not in COLUMNS[1:3]]
+    label = {"": "Participant", "de": "Teilnehmer/in"}[language]
+    rows = [[f"{label} {number}", "x", "", 50, "x", "2026-11-22 23:59", "-", ""] for number in (7, 8)]
+    with (tmp_path / "roster.csv").open("w", encoding="utf-8-sig") as file:
+        csv.writer(file).writerows([columns, *rows])
+    names = [f"{label.replace('/', '')}_{number}_assignsubmission_file/node.py" for number in (7, 8)]
+    roster = read_roster(tmp_path / "roster.csv", timezone.utc)
+    found = collected(folder(tmp_path / "class", names), roster=roster)
+    assert ([one.file.name for one in found.handed_in], found.missing, found.mismatches) == (names, (), ())
+    assert found.handed_in[0].file.submitted == datetime(2026, 11, 22, 23, 59, tzinfo=timezone.utc)
 
 
 def test_columns_of_our_own_tables_may_be_in_any_case(tmp_path: Path) -> None:
