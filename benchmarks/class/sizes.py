@@ -24,7 +24,7 @@ from grader.classroom.signatures import signatures
 from grader.exercise import load
 from grader.exercise.mistakes import mistakes_of
 from grader.grading import Options, grading_of
-from grader.submission.reader import of_source
+from grader.submission.reader import of_mistake
 from grader.workers import WorkerPool
 
 
@@ -42,10 +42,7 @@ def main() -> int:
     with WorkerPool() as workers:
         exercise = load(ROOT / "exercises" / EXERCISE)
         grading = grading_of(exercise, Options(), workers)
-        mistakes = [
-            of_source(f"{mistake.name}.py", mistake.source.encode(), exercise) for mistake in mistakes_of(exercise)
-        ]
-        signatures(grading, [grading.grade(mistake) for mistake in mistakes])
+        signatures(grading, [grading.grade(of_mistake(mistake, exercise)) for mistake in mistakes_of(exercise)])
     try:
         for size in sizes:
             made = the_class(size, seed=2, hostile=False)

@@ -21,7 +21,7 @@ from grader.grading.reference import solution_file
 from grader.recording.recording import Recording
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Scenario
-from grader.submission.reader import of_source
+from grader.submission.reader import of_mistake, of_source
 from grader.submission.submission import Submission
 
 #: A node that exists and does nothing.
@@ -61,7 +61,7 @@ def mistakes(exercise: Exercise) -> list[Candidate]:
 
 
 def _of_mistake(mistake: Mistake, exercise: Exercise) -> Candidate:
-    submission = of_source(f"{mistake.name}.py", mistake.source.encode(), exercise)
+    submission = of_mistake(mistake, exercise)
     name, title, file = f"mistakes/{mistake.name}", mistake.summary, mistake.file
     return Candidate("mistake", name, file, title, submission, mistake.caught_by, mistake.line)
 

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Ending
-from grader.submission.python_code import imported
+from grader.submission.python_code import MATPLOTLIB, imported
 from grader.submission.python_version import newer_name
 
 #: What the sandbox has besides Python itself, as a student would import it.
@@ -23,7 +23,7 @@ NO_NAME = re.compile(r"ImportError: cannot import name '([^']+)' from '([^']+)'"
 ADVISED = re.compile(r" in line \d+[^`]*: `.*`\. \S")
 
 #: Modules that notebooks have or that students install, and so their programs have, but not what grades them.
-OF_NOTEBOOKS = {"matplotlib", "mpl_toolkits", "pylab", "PIL", "IPython", "nbformat"}
+OF_NOTEBOOKS = {*MATPLOTLIB, "PIL", "IPython", "nbformat"}
 
 ADVICE = (
     (r"IndentationError|TabError", "Compare the indentation of this line with the lines around it."),

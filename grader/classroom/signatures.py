@@ -13,7 +13,7 @@ from grader.exercise.mistakes import Mistake, mistakes_of
 from grader.grading.grade import Grade
 from grader.grading.grading import Grading
 from grader.grading.reference import cache_folder, reference_key
-from grader.submission.reader import of_source
+from grader.submission.reader import of_mistake
 from groundwork.files import keep, read_kept
 
 #: How many mistakes are graded at once. Each grading already runs several scenarios at once.
@@ -47,16 +47,15 @@ def _may_explain(mistake: Mistake, students: Sequence[tuple[Set[str], Set[str]]]
 
 
 def _failures(mistake: Mistake, grading: Grading) -> dict[str, Failure]:
-    code = mistake.source.encode()
     exercise = grading.runner.exercise
-    digest = hashlib.sha256(reference_key(grading.runner).encode() + code).hexdigest()
+    digest = hashlib.sha256(f"{reference_key(grading.runner)}{mistake.source}".encode()).hexdigest()
     kept = cache_folder().parent / "mistakes" / f"{exercise.name}-{mistake.name}-{digest[:24]}.json"
     stored = read_kept(
         kept, lambda content: {name: Failure(**failure) for name, failure in json.loads(content).items()}
     )
     if stored is not None:
         return stored
-    grade = grading.grade(of_source(f"{mistake.name}.py", code, exercise))
+    grade = grading.grade(of_mistake(mistake, exercise))
     failures = failures_of(grade)
     if grade.has_score:
         entries = {name: dataclasses.asdict(failure) for name, failure in failures.items()}

@@ -24,7 +24,7 @@ from grader.report.timeline import lines_of
 from grader.sandbox.isolation import choose
 from grader.scenario.declared import declared
 from grader.scenario.scenario import Step
-from grader.submission.reader import of_source, read
+from grader.submission.reader import of_mistake, of_source, read
 from grader.submission.submission import Submission
 from grader.workers.pool import HostFault, WorkerPool, leave_cpus_to_workers
 from ros_in_python.svg_file import SvgFile
@@ -119,8 +119,7 @@ def _run(asked: Trace, exercise: Exercise, workers: WorkerPool) -> tuple[Grade, 
 def _program(asked: Trace, exercise: Exercise) -> Submission | None:
     """Return the program that was named; None for the solution."""
     if asked.mistake:
-        mistake = mistake_of(exercise, asked.mistake)
-        return of_source(f"{mistake.name}.py", mistake.source.encode(), exercise)
+        return of_mistake(mistake_of(exercise, asked.mistake), exercise)
     return read(asked.program, exercise) if asked.program else None
 
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 
 from grader.runner.tracebacks import LastError
+from grader.submission.python_code import MATPLOTLIB
 
 _NO_SCREEN = (
     "A node that is graded has no screen. Leave out windows and plots: %plot in a notebook draws what it sends."
@@ -27,7 +28,7 @@ _BY_TEXT = (
     (r"transition from state (?:SUCCEEDED|ABORTED|CANCELED)", "This goal has ended already: end each goal only once."),
     (r"no display|Cannot load backend|could not connect to display|No module named '_?tkinter'", _NO_SCREEN),
     (
-        r"No module named '(?:matplotlib|mpl_toolkits|pylab)\b",
+        rf"No module named '(?:{'|'.join(MATPLOTLIB)})\b",
         "It is not installed here: pip install matplotlib, or in a notebook %pip install matplotlib.",
     ),
     (r"'Time' object has no attribute '(?:nano)?sec'", "A Time is not yet a stamp: its to_msg() is one."),

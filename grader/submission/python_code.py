@@ -13,6 +13,9 @@ from functools import lru_cache
 
 from grader.submission.unreadable import not_python
 
+#: The modules that matplotlib brings.
+MATPLOTLIB = ("matplotlib", "mpl_toolkits", "pylab")
+
 #: Longer code (bytes) is not analysed, because its tree takes a hundred times as much memory.
 LONGEST = 300_000
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 
 from grader.exercise.exercise import Exercise
+from grader.exercise.mistakes import Mistake
 from grader.sandbox.program import ProgramSpec
 from grader.submission.archive import Contents, content_of, folder_contents
 from grader.submission.code import Code, code_of, code_of_files, code_of_python
@@ -122,6 +123,11 @@ def of_source(name: str, code: bytes, exercise: Exercise) -> Submission:
     """Return the submission of this Python source. It always runs under the exercise's file name."""
     submission = _read(name, _digest(code), exercise, lambda: code_of_python(code, exercise))
     return submission if submission.program else replace(submission, source=code.decode("utf-8", errors="replace"))
+
+
+def of_mistake(mistake: Mistake, exercise: Exercise) -> Submission:
+    """Return the submission of one of the exercise's usual mistakes."""
+    return of_source(f"{mistake.name}.py", mistake.source.encode(), exercise)
 
 
 def of_upload(name: str, content: bytes, exercise: Exercise) -> Submission:

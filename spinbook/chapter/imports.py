@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import ros_in_python
+from grader.submission.python_code import MATPLOTLIB
 from groundwork.words import did_you_mean, similar
 from interface_compiler import prefixes, shipped
 from spinbook.chapter.python_code import PythonCode
@@ -22,7 +23,7 @@ _DISTRIBUTIONS = {
     "yaml": "PyYAML",
     "sklearn": "scikit-learn",
     "serial": "pyserial",
-    **dict.fromkeys(("matplotlib", "mpl_toolkits", "pylab"), "matplotlib"),
+    **dict.fromkeys(MATPLOTLIB, "matplotlib"),
 }
 #: Packages that exist but may not be installed here, so that none is taken for a misspelling of another.
 _REAL = frozenset(

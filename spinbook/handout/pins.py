@@ -11,11 +11,12 @@ from packaging.utils import canonicalize_name
 
 import spinbook
 from grader.gradescope.pins import LOCKS, needed
+from grader.submission.python_code import MATPLOTLIB
 
 #: Required by IPython and ipykernel, which do without: guesses at code that has not run, and a debugger (55 MB).
 _LEFT_OUT = {"jedi", "parso", "debugpy"}
 
-_IMPORTS_MATPLOTLIB = re.compile(r"^\s*(import\b|from\b|%)[^\n#]*\b(matplotlib|mpl_toolkits|pylab)\b", re.MULTILINE)
+_IMPORTS_MATPLOTLIB = re.compile(rf"^\s*(import\b|from\b|%)[^\n#]*\b({'|'.join(MATPLOTLIB)})\b", re.MULTILINE)
 
 
 def imports_matplotlib(sources: Iterable[str]) -> bool:

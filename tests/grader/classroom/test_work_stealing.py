@@ -10,7 +10,7 @@ from grader.classroom.local import LocalBackend
 from grader.exercise import load
 from grader.exercise.mistakes import mistake_of
 from grader.grading import Options, grading_of
-from grader.submission.reader import of_source
+from grader.submission.reader import of_mistake
 from grader.workers import Worker, WorkerPool
 
 
@@ -28,9 +28,10 @@ class Counting(WorkerPool):
 
 def test_whoever_has_no_submission_left_helps_with_the_last_one() -> None:
     exercise = load(TEMPLATE / "exercises" / EXERCISE)
-    submission = of_source("ada", mistake_of(exercise, "only_forwards").source.encode(), exercise)
+    submission = of_mistake(mistake_of(exercise, "only_forwards"), exercise)
     grades = []
-    with Counting() as workers:
+    workers = Counting()
+    with workers:
         grading = grading_of(exercise, Options(), workers)
         assert len(grading.runner.scenarios) >= 4
         for jobs in (1, 4):

@@ -14,7 +14,7 @@ from grader.grading import Grade, Options, grading_of
 from grader.grading.grading import Grading
 from grader.recording.recording import to_json
 from grader.submission import Submission, read
-from grader.submission.reader import of_source
+from grader.submission.reader import of_mistake, of_source
 from grader.workers import WorkerPool
 
 ROOT = Path(__file__).parents[3]
@@ -30,7 +30,7 @@ ANSWERS_ITSELF = ROOT / "benchmarks/determinism/programs/answers_itself.py"
 def submission_of(name: str, exercise: Exercise) -> Submission:
     """Return a usual mistake, or the program in a file."""
     if name == "joints_by_index":
-        return of_source(f"{name}.py", mistake_of(exercise, name).source.encode(), exercise)
+        return of_mistake(mistake_of(exercise, name), exercise)
     return read(str(ANSWERS_ITSELF if name == "answers_itself" else SOLUTIONS / "right" / f"{name}.py"), exercise)
 
 
