@@ -73,7 +73,8 @@ def otter_tests(folder: Path, names: list[str], lib: Path) -> None:
 def hand_in_otter(folder: Path, student: str, code: str) -> Path:
     """A student's notebook."""
     notebook = folder / f"{student}.ipynb"
-    cell = {"cell_type": "code", "id": "answer", "metadata": {}, "source": code, "outputs": [], "execution_count": None}
+    cell: dict[str, Any] = {"cell_type": "code", "id": "answer", "metadata": {}, "source": code}
+    cell |= {"outputs": [], "execution_count": None}
     notebook.write_text(_notebook([cell]), encoding="utf-8")
     return notebook
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import json
 import random
+from typing import Any
 
 from grader.submission.upload import pack
 
@@ -58,7 +59,7 @@ def _of_statements_outside_functions(tree: ast.Module) -> set[str]:
 def as_notebook(source: str, stem: str) -> str:
     """The program as the exercise's cell of a notebook that has other cells, too."""
     codes = ["import math", f"%%node {stem}\n{source}", "%ros2 topic list"]
-    cells = [
+    cells: list[dict[str, Any]] = [
         {"cell_type": "code", "id": f"c{n}", "metadata": {}, "source": code, "outputs": [], "execution_count": None}
         for n, code in enumerate(codes)
     ]

@@ -53,7 +53,7 @@ def main() -> None:
     for _ in range(runs):
         began = time.perf_counter()
         words = [Path(sys.executable).with_name("spinbook"), "grade", "joint_velocity", exercise.solution_file]
-        subprocess.run(words, cwd=ROOT, stdout=subprocess.DEVNULL, check=True)
+        subprocess.run(list(map(str, words)), cwd=ROOT, stdout=subprocess.DEVNULL, check=True)
         command.append(time.perf_counter() - began)
     unit = statistics.median(measure)
     rows = {"10 s of robot time at 10 Hz": lockstep, "a complete grade": whole, "the command": command}

@@ -105,8 +105,8 @@ def _count_chapter(root: Path, reading: ReadResult, counts: Counts) -> None:
         counts.fragments += bool(inspect(cell.whole).needs)
     lines = (root / chapter.file).read_text(encoding="utf-8", errors="replace").split("\n")
     for line, facts in programs(lines):
-        kind = kinds.get(line + 1) or next((CellKind.PROSE for at in (line, line + 1) if at in static), None)
-        shown = {None: "not seen", CellKind.PROSE: "static"}.get(kind, kind.value if kind else "")
+        unseen = "static" if {line, line + 1} & static.keys() else "not seen"
+        shown = kinds[line + 1].value if line + 1 in kinds else unseen
         counts.node_fences[shown] += 1
         if facts.needs or not facts.imports or not facts.is_complete or facts.relative_imports:
             continue

@@ -52,12 +52,12 @@ class Zoo(Node):
         self._declare()
 
     def _declare(self) -> None:
-        self.declare_parameters(
-            "", [("name", "zoo"), ("gain", 1.5), ("count", 3), ("flag", True), ("list_d", [1.0, 2.0])]
-        )
+        for name, value in {"name": "zoo", "gain": 1.5, "count": 3, "flag": True, "list_d": [1.0, 2.0]}.items():
+            self.declare_parameter(name, value)
         self.declare_parameter("fixed", 7, ParameterDescriptor(read_only=True, description="never changes"))
         self.declare_parameter("dyn", 1, ParameterDescriptor(dynamic_typing=True))
-        self.declare_parameters("arm", [("left.kp", 1.0), ("right.kp", 2.0)])
+        self.declare_parameter("arm.left.kp", 1.0)
+        self.declare_parameter("arm.right.kp", 2.0)
         self.add_on_set_parameters_callback(self._checked)
 
     def _checked(self, parameters: Any) -> SetParametersResult:

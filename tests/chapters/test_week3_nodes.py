@@ -167,7 +167,7 @@ class Partner:
         def answered() -> bool:
             answer = client.call_async(GetParameters.Request(names=["use_sim_time"]))
             self.executor.spin_until_future_complete(answer, timeout_sec=1)
-            return answer.done()
+            return bool(answer.done())
 
         self.spin_until(answered, f"{node} to answer")
 

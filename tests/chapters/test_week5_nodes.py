@@ -68,12 +68,16 @@ def ended_well(program: Program) -> bool:
 
 def test_the_swing_keeps_to_range_type_and_read_only_and_moves_by_what_was_set(files: Path) -> None:
     positions: list[float] = []
+
+    def collect(message: JointState) -> None:
+        positions.extend(message.position)
+
     with started(files / "elbow_swing.py") as (program, partner):
         node = Setter(partner, "elbow_swing")
         for refused in (double("amplitude", 1.1), integer("amplitude", 1), text("joint", "wrist"), double("amp", 0.5)):
             assert not node.set(refused).successful
         assert node.set(double("amplitude", 0.0)).successful
-        partner.node.create_subscription(JointState, "/joint_commands", lambda m: positions.extend(m.position), 10)
+        partner.node.create_subscription(JointState, "/joint_commands", collect, 10)
         partner.spin_until(lambda: len(positions) >= 3, "three commands")
         assert ended_well(program), "".join(program.log)
     assert positions[-1] == 1.2

@@ -24,12 +24,10 @@ def test_each_way_to_start_it():
 
 
 def test_a_copy_runs_its_own_code_in_every_process(tmp_path: Path) -> None:
-    copied = ("pyproject.toml", "spinbook", "grader", "packages")
     without = shutil.ignore_patterns("__pycache__", "kinds", "template", "definitions", "tests")
-    for name in copied:
-        copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
-        copy(ROOT / name, tmp_path / name, **({"ignore": without} if copy is shutil.copytree else {}))
-    shutil.copytree(ROOT / "tests" / "support", tmp_path / "tests" / "support", ignore=without)
+    for name in ("spinbook", "grader", "packages", "tests/support"):
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=without)
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
     shutil.copy(ROOT / "tests" / "conftest.py", tmp_path / "tests")
     (tmp_path / "spinbook" / "__init__.py").write_text('"""Another version."""\n\n__version__ = "99.0"\n')
     (tmp_path / "tests" / "test_version.py").write_text(TEST)

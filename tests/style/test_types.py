@@ -1,4 +1,4 @@
-"""mypy --strict finds nothing. It takes a quarter of a minute on one core, so it runs next to the other tests."""
+"""mypy --strict finds nothing in packages, tests and benchmarks: 20 s on one core, next to the other tests."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 
 
-def test_every_package_has_right_types() -> None:
+def test_packages_tests_and_benchmarks_have_right_types() -> None:
     done = subprocess.run([sys.executable, "-m", "mypy"], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -131,6 +131,6 @@ def hub(folder: Path) -> Iterator[dict[str, str]]:
     here = Path(__file__).resolve().parent
     paths = [here / "over_hub", here, *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
     try:
-        yield {HUB: address, "PYTHONPATH": os.pathsep.join(map(os.fspath, paths))}
+        yield {HUB: address, "PYTHONPATH": os.pathsep.join(map(str, paths))}
     finally:
         running.close()

@@ -68,7 +68,7 @@ def _values(slot: Any, items: int) -> st.SearchStrategy[Any]:
         return _numbers(slot.typename)
     if kind.endswith("String"):
         most = getattr(slot, "maximum_size", 12)
-        return st.text(st.characters(exclude_categories=("Cs",)), max_size=min(most, 12) // 2)
+        return st.text(st.characters(codec="utf-8"), max_size=min(most, 12) // 2)
     if kind == "NamespacedType":
         whole = getattr(importlib.import_module(".".join(slot.namespaces)), slot.name.split("_")[0])
         return messages(getattr(sys.modules[whole.__module__], slot.name), _ITEMS_INSIDE)

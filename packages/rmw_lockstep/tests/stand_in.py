@@ -132,7 +132,7 @@ class Process:
     def __init__(self, path: Path, pid: int = 1, joins: bool = True) -> None:
         self.raw = Raw(path)
         self.pid = pid
-        self.on: dict[bytes, Callable[[Process, bytes], None]] = {}
+        self.on: dict[bytes, Callable[[Process, bytes], object]] = {}
         self.wakes: list[tuple[int, Callable[[Process], None]]] = []
         self.children: tuple[int, ...] = ()
         self.seen: list[tuple[int, bytes, bytes]] = []

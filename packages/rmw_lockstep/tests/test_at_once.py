@@ -45,7 +45,7 @@ def sender(process: Make, ends: list[int], *frames: bytes) -> Process:
     return one.start()
 
 
-def why(hub: Hub) -> tuple[str, str, int]:
+def why(hub: Hub) -> tuple[str, str, float]:
     """Return why the hub stopped."""
     found = violation(hub)
     return found.reason, found.text, found.found
@@ -119,7 +119,7 @@ def test_what_is_kept_is_reported_by_who_sent_it(hub: Hub, process: Make, ends: 
 def test_each_moment_and_each_message_of_the_hub_begins_anew(hub: Hub, process: Make) -> None:
     asks = hub.node("runner").publisher("/asks", "std_msgs/msg/String", QosPolicies())
     one = process()
-    ends = (PUBLISHER, "/said", {}), (SUBSCRIPTION, "/asks", {})
+    ends: tuple[tuple[int, str, dict[str, int]], ...] = ((PUBLISHER, "/said", {}), (SUBSCRIPTION, "/asks", {}))
 
     def burst(process: Process, _: bytes = b"") -> None:
         for _number in range(MOST):

@@ -39,7 +39,7 @@ def talker(process: Process, period: int, topic: str = "/said") -> Process:
 
 def listener(process: Process, topic: str = "/said", **qos: int) -> Process:
     """Let a process create a subscription after joining."""
-    process.on[b"g"] = lambda process, _: process.make("listener", (SUBSCRIPTION, topic, qos)) and None
+    process.on[b"g"] = lambda process, _: process.make("listener", (SUBSCRIPTION, topic, qos))
     return process
 
 
@@ -122,7 +122,7 @@ def test_two_processes_talk_and_neither_gets_ahead_of_the_other(hub: Hub, proces
         one = talker(process(number), (10 if number == 1 else 15) * MS, f"/of_{number}")
         begin = one.on[b"g"]
 
-        def begin_both(process: Process, payload: bytes, begin: Callable[[Process, bytes], None] = begin) -> None:
+        def begin_both(process: Process, payload: bytes, begin: Callable[[Process, bytes], object] = begin) -> None:
             begin(process, payload)
             process.make("listener", (SUBSCRIPTION, f"/of_{3 - process.pid}", {}))
 

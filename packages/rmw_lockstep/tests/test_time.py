@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from programs import MS, QosPolicies, Watch, serialized
+from programs import MS, Watch, serialized
+
+from rmw_lockstep.qos import QosPolicies
 
 
 def test_time_goes_on_only_when_the_hub_says_so(watch: Watch) -> None:

@@ -63,8 +63,8 @@ def test_some_joints(chapter: Run) -> None:
 def test_a_weak_copy_of_joint_velocity_is_reported_check_by_check(
     tmp_path: Path, workers_with_interfaces: WorkerPool, cache: Path
 ) -> None:
-    for folder in ("exercises", "solutions"):
-        shutil.copytree(ROOT / folder / "joint_velocity", tmp_path / folder / "joint_velocity")
+    for name in ("exercises", "solutions"):
+        shutil.copytree(ROOT / name / "joint_velocity", tmp_path / name / "joint_velocity")
     folder = tmp_path / "exercises" / "joint_velocity"
     for check, (file, _) in REMOVED.items():
         remove_check(folder / file, check)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from grader.audit.result import Trial
 from grader.audit.worth import problems_of_checks, worth_running_on
@@ -11,7 +12,7 @@ from grader.checking.verdict import Finding, ListedCheck, Status
 
 def check(name: str, depends: tuple[str, ...] = ()) -> ListedCheck:
     """Return a check of its own scenario."""
-    place = {"file": Path("checks.py"), "line": 1}
+    place: dict[str, Any] = {"file": Path("checks.py"), "line": 1}
     return ListedCheck(1.0, "", depends, "", name=name, title=name, hidden=False, scenarios=(name,), **place)
 
 

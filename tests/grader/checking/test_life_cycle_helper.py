@@ -18,7 +18,7 @@ def transitions(*done: bool | None, served: bool = True) -> Recording:
     names = ("configure", "activate")
     calls = tuple(
         Call(
-            *(ns(second), *CHANGE, {"transition": {"label": name}}, "grader"),  # type: ignore[arg-type]
+            *(ns(second), *CHANGE, {"transition": {"label": name}}, "grader"),
             answered_ns=None if success is None else ns(second),
             response=None if success is None else {"success": success},
             served=served,

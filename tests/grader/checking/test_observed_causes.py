@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -131,7 +132,7 @@ def test_a_number_that_is_always_0_is_named_along_with_one_that_is_not() -> None
         (robot(roll=2.0), "ahead and turn are 0 in all 3 messages on /out, and roll is not."),
         (robot(), "ahead is 0 in all 3 messages on /out."),
     ):
-        assert finding(lambda mine=mine: run(mine, right, exercise).wrong_at(None, "x")).cause == seen
+        assert finding(partial(run(mine, right, exercise).wrong_at, None, "x")).cause == seen
     known = finding(lambda: run(robot(turn=2.0), right, exercise).wrong_at(None, "x", cause="Known."))
     assert known.cause == "Known."
 

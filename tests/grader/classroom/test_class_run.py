@@ -242,8 +242,8 @@ def test_no_name_of_a_student_and_no_fault_in_one_stops_a_class(small_class: Sma
     kept = {file.parent.name for file in results.glob("students/*/grade.json")}
     assert len(kept) == len(names) - 1
     assert {"index.html", "grades.csv", "junit.xml", "students"} < kept
-    with (results / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
-        assert sorted(row["points"] for row in csv.DictReader(file)) == ["", *["0"] * (len(kept) - 2), "20", "20"]
+    with (results / "grades.csv").open(encoding="utf-8-sig", newline="") as grades:
+        assert sorted(row["points"] for row in csv.DictReader(grades)) == ["", *["0"] * (len(kept) - 2), "20", "20"]
     page = (results / "index.html").read_text(encoding="utf-8")
     assert 'href="students/index.html/feedback.html"' in page
 

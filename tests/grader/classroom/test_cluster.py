@@ -101,7 +101,8 @@ class Answers:
     """What the scheduler of a cluster says of its workers, one answer after another, and whom it was to remove."""
 
     def __init__(self, answers: Iterable[dict[str, float]]) -> None:
-        self._answers, self.removed = iter(answers), []
+        self._answers = iter(answers)
+        self.removed: list[str] = []
 
     def sync(self, *asked: object, callback_timeout: float) -> dict[str, Any]:
         if (signs := next(self._answers, None)) is None:
@@ -119,7 +120,8 @@ class Answers:
 def test_a_worker_that_falls_silent_is_named_and_then_replaced_by_the_others() -> None:
     from grader.classroom.dask import SILENT_LOOKS, ClusterWatch
 
-    cluster, said = Answers({"busy": float(look), "stopped": 1.0} for look in range(SILENT_LOOKS + 1)), []
+    said: list[str] = []
+    cluster: Any = Answers({"busy": float(look), "stopped": 1.0} for look in range(SILENT_LOOKS + 1))
     watch = ClusterWatch(cluster, said.append)
     for _ in range(SILENT_LOOKS):
         watch.look(3)
@@ -138,7 +140,8 @@ def test_a_scheduler_that_stays_silent_is_given_up() -> None:
     from grader.classroom.dask import SILENT_LOOKS, ClusterWatch
 
     said: list[str] = []
-    watch = ClusterWatch(Answers(()), said.append)
+    cluster: Any = Answers(())
+    watch = ClusterWatch(cluster, said.append)
     for _ in range(SILENT_LOOKS - 1):
         watch.look(3)
     assert said == ["The scheduler does not answer. Waiting for it."] * (SILENT_LOOKS - 1)

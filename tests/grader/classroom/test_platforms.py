@@ -43,7 +43,9 @@ def logins() -> list[tuple[int, str, str]]:
 
 
 def canvas() -> Exported:
-    flat = lambda name: "".join(char for char in name.lower() if char.isalnum() or char == "_" or ord(char) > 0x300)  # noqa: E731
+    def flat(name: str) -> str:
+        return "".join(char for char in name.lower() if char.isalnum() or char == "_" or ord(char) > 0x300)
+
     made = {
         f"{flat(name)}{'_LATE' * (n == 4)}_{1000 + n}_{50 + n}_joint_velocity.py": login for n, name, login in logins()
     }
@@ -51,7 +53,9 @@ def canvas() -> Exported:
 
 
 def moodle() -> Exported:
-    clean = lambda name: "".join("" if char in '<>=%"' else char for char in name.replace("_", " "))  # noqa: E731
+    def clean(name: str) -> str:
+        return "".join("" if char in '<>=%"' else char for char in name.replace("_", " "))
+
     made = {f"{clean(name)}_{1000 + n}_assignsubmission_file/joint_velocity.py": login for n, name, login in logins()}
     text = {f"{clean(NAMES[0])}_1001_assignsubmission_onlinetext/onlinetext.html": "<p>"}
     return Exported({**made, **text}, "moodle", attempts=False, dates=False)
@@ -103,7 +107,9 @@ def sakai_without_folders() -> Exported:
 
 
 def ilias() -> Exported:
-    ascii_only = lambda name: "".join(char for char in name if char.isascii() and (char.isalnum() or char == " "))  # noqa: E731
+    def ascii_only(name: str) -> str:
+        return "".join(char for char in name if char.isascii() and (char.isalnum() or char == " "))
+
     made = {}
     for n, name, login in logins():
         first, _, last = (ascii_only(name) or "X Y").rpartition(" ")

@@ -176,7 +176,7 @@ def test_only_a_repository_whose_program_draws_waits_for_matplotlib(tmp_path: Pa
     printed = []
     for program in ("import rclpy\n", "import matplotlib.pyplot as plt\n"):
         (repository / "speed_limit.py").write_text(program)
-        command = [sys.executable, tmp_path / "autograder.py"]
+        command = [sys.executable, str(tmp_path / "autograder.py")]
         printed.append(subprocess.run(command, cwd=repository, capture_output=True, text=True, check=True).stderr)
 
     assert printed == ["set up without-trial\n", "set up plots\n"]

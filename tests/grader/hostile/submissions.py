@@ -38,8 +38,8 @@ class HostileProgram:
 def _program(edit: Edit, above: str = "") -> HostileProgram:
     tries, _, grade = (" ".join(part.split()) for part in edit.text.partition("Expected:"))
     expected = tomllib.loads(f"grade = {grade}")["grade"]
-    lists = {key: tuple(expected.pop(key)) for key in ("outcome", "words", "never") if key in expected}
-    return HostileProgram(edit.name, tries, above + edit.applied_to(HONEST), **expected, **lists)
+    expected |= {key: tuple(expected[key]) for key in ("outcome", "words", "never") if key in expected}
+    return HostileProgram(edit.name, tries, above + edit.applied_to(HONEST), **expected)
 
 
 SUBMISSIONS = {edit.name: _program(edit) for edit in read_edits(FILE)}

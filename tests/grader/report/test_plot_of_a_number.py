@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import plain_grades as plain
 from small_class import EXERCISE, TEMPLATE
@@ -28,7 +29,7 @@ def recording(*answers: float) -> Recording:
         ReceivedMessage(at, i + 1, "/safe_speed", FLOAT, {"data": answer})
         for i, (at, answer) in enumerate(zip(times, answers, strict=True))
     )
-    return Recording("gentle", sent, received, (), (), "parameters", True, Ending("completed", ""))
+    return Recording("gentle", sent, received, (), (), True, Ending("completed", ""))
 
 
 def test_one_curve_and_where_it_first_goes_wrong() -> None:
@@ -64,7 +65,7 @@ def test_the_topic_that_the_finding_names_is_drawn_at_the_times_of_its_messages(
     exercise = load(TEMPLATE / "exercises" / EXERCISE)
     exercise = replace(exercise, topics=(*exercise.topics, replace(exercise.outputs[0], name="/count")))
     failed = plain.failed(plain.PUBLIC, Finding("expected 1 on /count, got 0.", "gentle", at=0.05))
-    runs = {"recordings": {"gentle": counted(0, 0, 0)}, "references": {"gentle": counted(0, 1, 2)}}
+    runs: dict[str, Any] = {"recordings": {"gentle": counted(0, 0, 0)}, "references": {"gentle": counted(0, 1, 2)}}
     grade = replace(plain.grade(failed), **runs)
     quantity = drawn_quantity(exercise, grade, "gentle")
     assert quantity
@@ -85,7 +86,7 @@ def test_the_feedback_of_an_action_is_drawn_and_what_is_missing_is_marked() -> N
     action = ServiceOrAction("/move", "a/action/Move", "action", {"position": "rad"})
     exercise = replace(load(TEMPLATE / "exercises" / EXERCISE), topics=(), endpoints=(action,))
     failed = plain.failed(plain.PUBLIC, Finding("expected 3 feedback messages, got 2.", "gentle", at=0.0))
-    runs = {"recordings": {"gentle": moved(0.1, 0.2)}, "references": {"gentle": moved(0.1, 0.2, 0.3)}}
+    runs: dict[str, Any] = {"recordings": {"gentle": moved(0.1, 0.2)}, "references": {"gentle": moved(0.1, 0.2, 0.3)}}
     grade = replace(plain.grade(failed), **runs)
     quantity = drawn_quantity(exercise, grade, "gentle")
     assert quantity

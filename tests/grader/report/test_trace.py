@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -109,15 +110,15 @@ def test_wrong_names_and_an_exercise_at_fault_are_said(exercise: Path) -> None:
 
 
 def test_a_saved_file_is_noticed(exercise: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    looks = iter([lambda: None, (exercise / "scenarios.py").touch, lambda: 1 / 0])
+    looks = iter([lambda: None, (exercise / "scenarios.py").touch])
 
     def look(seconds: float) -> None:
         try:
             next(looks)()
-        except ZeroDivisionError:
+        except StopIteration:
             raise KeyboardInterrupt from None
 
-    monkeypatch.setattr(trace_module.time, "sleep", look)
+    monkeypatch.setattr(time, "sleep", look)
     monkeypatch.setattr(trace_module, "_traced", lambda asked, workers: 0)
     result = run(exercise, "--watch")
     assert result.output.count("scenarios.py was saved: again") == 1

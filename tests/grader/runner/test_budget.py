@@ -41,7 +41,7 @@ ctypes.CDLL(None).pause()
 def budget_of(pid: int) -> Budget:
     """Return the budget of a process, looked at once, so that every further look counts."""
     student = SimpleNamespace(pid=pid, poll=lambda: None, cpu_seconds=lambda: 0.0, at_limit=lambda: False)
-    budget = Budget(student, lambda: {pid}, Allowance("busy", "blocked", blocked_s=1000.0))  # type: ignore[arg-type]
+    budget = Budget(student, lambda: {pid}, Allowance("busy", "blocked", blocked_s=1000.0))
     budget.look()
     return budget
 

@@ -118,7 +118,7 @@ def test_a_machine_that_was_frozen_is_found_to_have_been(monkeypatch: pytest.Mon
     now = [100.0]
     monkeypatch.setattr(time, "monotonic", lambda: now[0])
     student = SimpleNamespace(pid=0, poll=lambda: None, cpu_seconds=lambda: 0.0, at_limit=lambda: False)
-    budget = Budget(student, tuple, Allowance("busy", "blocked"))  # type: ignore[arg-type]
+    budget = Budget(student, tuple, Allowance("busy", "blocked"))
     for _ in range(50):
         now[0] += 0.02
         budget.look()

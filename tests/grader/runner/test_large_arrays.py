@@ -70,7 +70,7 @@ def images(*data: Any) -> Scenario:
 class Camera:
     """A world that publishes an image in each step."""
 
-    reads: ClassVar = {}
+    reads: ClassVar[dict[str, str]] = {}
     publishes: ClassVar = {"/image": IMAGE}
 
     def hear(self, topic: str, message: Any) -> None:
@@ -139,8 +139,9 @@ def test_a_bag_has_the_images(recording: Recording, tmp_path: Path) -> None:
     grade = SimpleNamespace(recordings={"images": recording}, references={"images": recording})
     [bag] = write_bags(grade, tmp_path)  # type: ignore[arg-type]
     with AnyReader([bag]) as reader:
-        seen = [reader.deserialize(raw, c.msgtype) for c, _, raw in reader.messages() if c.topic == "/mirrored"]
-    assert seen[0].data.tobytes() == bytes(reversed(PICTURE))
+        raw = [(raw, c.msgtype) for c, _, raw in reader.messages() if c.topic == "/mirrored"]
+        image: Any = reader.deserialize(*raw[0])
+    assert image.data.tobytes() == bytes(reversed(PICTURE))
 
 
 @pytest.mark.parametrize(

@@ -12,13 +12,13 @@ import pytest
 from scripted_programs import EXERCISE, program
 
 from grader.exercise.exercise import ExerciseError, ProgramFile
-from grader.grading.scenario_runner import arguments
 from grader.recording import Recording
 from grader.runner.program import Task
 from grader.runner.run import run
 from grader.sandbox import ForkServer, Limits, SandboxedProgram, choose
 from grader.sandbox import ProgramSpec as Sandboxed
 from grader.scenario import Companion, Program, Scenario, at
+from grader.scenario.command_line import arguments
 from grader.scenario.resolver import resolved
 from grader.workers.pool import STUDENT_ENVIRONMENT
 from interface_compiler.near import use_near

@@ -21,12 +21,12 @@ from scripted_programs import (
     ready,
 )
 
-from grader.grading.scenario_runner import arguments
 from grader.recording import Recording
 from grader.runner.program import Task
 from grader.runner.run import run
 from grader.sandbox import ForkServer, Limits, ProgramSpec, SandboxedProgram, choose
 from grader.scenario import ActionServer, Scenario, Server, Turtle, World, at, no_reply, reply, succeeds
+from grader.scenario.command_line import arguments
 from grader.workers.pool import STUDENT_ENVIRONMENT
 from interface_compiler.near import use_near
 

@@ -25,7 +25,6 @@ from scripted_programs import (
 )
 
 from grader.exercise import ExerciseError
-from grader.grading.scenario_runner import arguments
 from grader.recording import Call, Recording
 from grader.runner.program import Task
 from grader.runner.run import run
@@ -47,6 +46,7 @@ from grader.scenario import (
     reply,
     succeeds,
 )
+from grader.scenario.command_line import arguments
 from grader.workers.pool import STUDENT_ENVIRONMENT
 from interface_compiler.near import use_near
 

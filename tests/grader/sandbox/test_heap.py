@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import subprocess
 import sys
 
@@ -45,6 +46,6 @@ def test_another_c_library_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> Non
     class Other:
         """A C library without mallinfo2, such as musl."""
 
-    monkeypatch.setattr(heap.ctypes, "CDLL", lambda name: Other())
+    monkeypatch.setattr(ctypes, "CDLL", lambda name: Other())
 
     heap.fill_gaps()

@@ -145,8 +145,8 @@ def test_a_level_that_has_worked_is_not_tried_again_until_something_changes(
     [
         lambda patch: patch.setattr(os, "geteuid", lambda: 4711),
         lambda patch: patch.setattr(os, "uname", lambda: ("Linux", "node", "99.0", "#1", "x86_64")),
-        lambda patch: patch.setattr(isolation.sys, "executable", "/bin/sh"),
-        lambda patch: patch.setattr(isolation.resource, "getrlimit", lambda which: (7, 7)),
+        lambda patch: patch.setattr(sys, "executable", "/bin/sh"),
+        lambda patch: patch.setattr(resource, "getrlimit", lambda which: (7, 7)),
     ],
     ids=["user", "kernel", "program", "limits"],
 )

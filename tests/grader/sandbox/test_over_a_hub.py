@@ -160,16 +160,11 @@ def test_fast_dds_never_takes_its_place_unnoticed(either_runner: Runner) -> None
 
 def start_with_the_wrong_middleware(rig_fork_server: ForkServer, level: Isolation) -> str:
     """Return the runner's answer when the library that should be first is not found."""
-    found = zygote_start.variables
-    zygote_start.variables = lambda of: {"RMW_IMPLEMENTATION": "rmw_lockstep_cpp"}  # type: ignore[assignment]
-    try:
-        with ForkServer() as wrong:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(zygote_start, "variables", lambda of: {"RMW_IMPLEMENTATION": "rmw_lockstep_cpp"})
+        with pytest.raises(SandboxError) as caught, ForkServer() as wrong:
             wrong.start(ProgramSpec("student.py", {"student.py": b""}, hub=0), level)
-    except SandboxError as fault:
-        return str(fault)
-    finally:
-        zygote_start.variables = found
-    return "it was started"
+    return str(caught.value)
 
 
 def test_the_rest_of_the_machine_is_as_closed_as_without_a_hub(confined_runner: Runner) -> None:

@@ -282,7 +282,7 @@ def test_an_error_in_a_world_or_a_module_names_its_line_there(tmp_path: Path) ->
 
 def test_numbers_of_numpy_are_numbers(tmp_path: Path) -> None:
     step = 'at(0.5).publish("/in", data=numpy.float32(0.5)), at(0.6).send_goal("/count", order=numpy.int64(3))'
-    assert [one.fields for one in scenario_of(tmp_path, step).content[:2]] == [{"data": 0.5}, {"order": 3}]
+    assert [vars(one)["fields"] for one in scenario_of(tmp_path, step).content[:2]] == [{"data": 0.5}, {"order": 3}]
 
 
 @pytest.mark.parametrize(

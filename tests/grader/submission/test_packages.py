@@ -57,7 +57,7 @@ def inside(folder: str, files: dict[str, str] | None = None) -> dict[str, str | 
 
 
 #: What colcon, git, Python, editors and operating systems leave beside it.
-LEFT_BEHIND = {
+LEFT_BEHIND: dict[str, str | bytes] = {
     "ws/build/my_robot/build/lib/my_robot/beat_node.py": OLD,
     "ws/install/my_robot/lib/python3.12/site-packages/my_robot/beat_node.py": OLD,
     "ws/install/my_robot/lib/my_robot/beat": "#!/usr/bin/python3\n",
@@ -370,7 +370,7 @@ def test_the_whole_handout_in_a_zip_is_read_by_the_notebook_in_it(exercise: Exer
 
     assert exercise.solution_file
     begin = starter(exercise.solution_file.read_text())
-    files = {
+    files: dict[str, str | bytes] = {
         "course/03.ipynb": notebook(NODE),
         "course/exercises/heartbeat/heartbeat.py": begin,
         "course/exercises/heartbeat/checks.py": "def check(): pass\n",
@@ -408,7 +408,7 @@ def test_a_file_that_starts_the_node_of_another_is_the_program(name: str, exerci
 
 
 def test_a_notebooks_program_brings_the_modules_beside_it(exercise: Exercise) -> None:
-    files = {"w/week3.ipynb": notebook(f"%%node heartbeat\n{IN_PACKAGE}"), "w/other.py": "x = 1\n"}
+    files = {"w/week3.ipynb": notebook(f"%%node heartbeat\n{IN_PACKAGE}"), "w/other.py": b"x = 1\n"}
     files |= {f"w/my_robot/{name}.py": PACKAGE[f"my_robot/{name}.py"].encode() for name in ("__init__", "rates")}
     submission = of_content("w.zip", zipped(files), exercise)
     assert submission.program

@@ -12,6 +12,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import nbformat
 import pytest
@@ -133,7 +134,8 @@ def test_a_notebook_runs_where_jupyter_can_not_note_that_it_is_trusted(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setenv("JUPYTER_DATA_DIR", str(tmp_path))
-    with NotebookNotary() as notary:
+    notary: Any = NotebookNotary()
+    with notary:
         notary.store.db.execute(
             "CREATE TRIGGER full BEFORE INSERT ON nbsignatures BEGIN SELECT RAISE(ABORT, 'readonly'); END"
         )

@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import Any
 
 
-def doctor(*arguments: str, folder: Path | None = None, **settings: str | None) -> subprocess.CompletedProcess[str]:
+def doctor(
+    *arguments: str, folder: str | Path | None = None, **settings: str | None
+) -> subprocess.CompletedProcess[str]:
     """Run the command in `folder`, with these variables set, or removed if None."""
     environment = {name: value for name, value in {**os.environ, **settings}.items() if value is not None}
     return subprocess.run(
@@ -24,7 +26,7 @@ def doctor(*arguments: str, folder: Path | None = None, **settings: str | None) 
     )
 
 
-def finding_of(word: str, folder: Path | None = None, **settings: str | None) -> dict[str, Any]:
+def finding_of(word: str, folder: str | Path | None = None, **settings: str | None) -> dict[str, Any]:
     """Return what one check finds with these variables: its name, state, found and fix."""
     (finding,) = json.loads(doctor("--json", word, folder=folder, **settings).stdout)["findings"]
     assert isinstance(finding, dict)

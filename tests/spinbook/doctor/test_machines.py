@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from running import doctor, finding_of
 
-from grader.sandbox import isolation
+from grader.sandbox import Isolation, isolation
 from ros_in_python.ros2.executables import GUARD
 from spinbook.doctor import machine, middleware, python_build, ros, sandbox
 from spinbook.doctor.diagnosis import State
@@ -178,7 +178,7 @@ def test_a_browser_is_one_that_shows_a_page(tmp_path: Path, monkeypatch: pytest.
 def test_the_strongest_sandbox_that_works_decides(
     monkeypatch: pytest.MonkeyPatch, working: tuple[str, ...], state: str
 ) -> None:
-    levels = {level: None if level.value in working else "not allowed" for level in isolation.Isolation}
+    levels = {level: None if level.value in working else "not allowed" for level in Isolation}
     monkeypatch.setattr(isolation, "available", lambda: levels)
     finding = sandbox.examine_sandbox()
     assert finding.state.value == state

@@ -41,7 +41,7 @@ class Kernel:
     """One running kernel, in a folder of its own, with Spinbook's commands loaded."""
 
     def __init__(self, folder: Path, **environment: str) -> None:
-        self._manager = KernelManager(kernel_spec_manager=ThisPython())
+        self._manager: Any = KernelManager(kernel_spec_manager=ThisPython())
         self._manager.transport = "ipc"
         self._sockets = tempfile.TemporaryDirectory(prefix="sb-", ignore_cleanup_errors=True)
         self._manager.ip = os.fspath(Path(self._sockets.name) / "k")

@@ -71,7 +71,8 @@ def test_the_starter_has_each_declared_end_with_its_type_and_quality_of_service(
         for parameter in exercise.parameters:
             assert node.get_parameter(parameter.name).value == parameter.default
     finally:
-        for end in [end for end in node.waitables if isinstance(end, (ActionClient, ActionServer))]:
+        ends: list[Any] = [end for end in node.waitables if isinstance(end, (ActionClient, ActionServer))]
+        for end in ends:
             end.destroy()  # destroy_node leaves them, and with them the node in its ROS domain
         node.destroy_node()
 

@@ -37,8 +37,9 @@ def in_both_colours(page: Page) -> Iterator[str]:
 
 def picture(page: Page, name: str) -> None:
     if folder := os.environ.get("SPINBOOK_SCREENSHOTS"):
+        assert page.viewport_size
         for colours in in_both_colours(page):
-            page.screenshot(path=Path(folder, f"{name}-{(page.viewport_size or {})['width']}-{colours}.png"))
+            page.screenshot(path=Path(folder, f"{name}-{page.viewport_size['width']}-{colours}.png"))
 
 
 def press(page: Page, name: str) -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import partial
+from typing import Any
+
 import pytest
 import rclpy
 from message_filters import ApproximateTimeSynchronizer, Cache, SimpleFilter, Subscriber, TimeSynchronizer
@@ -25,7 +28,7 @@ def seconds_of(message: Imu) -> float:
 class Pairs:
     """Two filters in a synchronizer, and the times of the sets that came out."""
 
-    def __init__(self, kind: type[TimeSynchronizer], *arguments: object) -> None:
+    def __init__(self, kind: type[TimeSynchronizer], *arguments: Any) -> None:
         self.left, self.right = SimpleFilter(), SimpleFilter()
         self.out: list[tuple[float, float]] = []
         kind([self.left, self.right], *arguments).registerCallback(
@@ -64,7 +67,8 @@ def test_nearly_the_same_time_is_enough_and_the_nearest_is_taken() -> None:
 
 def test_without_a_header_the_time_of_arrival_counts_only_if_that_is_allowed() -> None:
     for allowed in (False, True):
-        source, out = SimpleFilter(), []
+        out: list[Any] = []
+        source = SimpleFilter()
         ApproximateTimeSynchronizer([source], 5, 1.0, allow_headerless=allowed).registerCallback(out.append)
         if allowed:
             source.signalMessage(Float64(data=1.0))
@@ -93,11 +97,13 @@ def test_a_cache_answers_by_time() -> None:
 
 def test_topics_of_real_nodes_come_together(ros_domain: int) -> None:
     rclpy.init()
-    node, out = Node("both"), []
+    out: list[float] = []
+    node = Node("both")
     subscribers = [Subscriber(node, Imu, "left"), Subscriber(node, Imu, "right", qos_profile=QoSProfile(depth=5))]
     TimeSynchronizer(subscribers, 10).registerCallback(lambda one, other: out.append(seconds_of(one)))
     left, right = node.create_publisher(Imu, "left", 10), node.create_publisher(Imu, "right", 10)
-    node.create_timer(0.02, lambda: (left.publish(at(1.0)), right.publish(at(1.0))))
+    for publisher in (left, right):
+        node.create_timer(0.02, partial(publisher.publish, at(1.0)))
     while not out:
         rclpy.spin_once(node)
     assert out[0] == 1.0

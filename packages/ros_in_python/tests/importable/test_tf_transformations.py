@@ -16,7 +16,7 @@ def turned(angle: float, name: str) -> np.ndarray:
     """Rodrigues' formula about one of the axes."""
     x, y, z = np.identity(3)["xyz".index(name)]
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.identity(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return np.array(np.identity(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross)
 
 
 @pytest.mark.parametrize("kind", ["s", "r"])

@@ -116,7 +116,7 @@ def test_values_of_parameters_are_read_as_yaml_where_a_substitution_makes_them()
         'empty': LaunchConfiguration('b', default=''), 'mixed': [1, 2.5], 'a': {'b': {'c': a}},
         'typed': ParameterValue(a, value_type=str)}])"""
     values = {"number": 1, "text": "1", "joined": 10, "row": [1, 11], "empty": "", "mixed": [1.0, 2.5]}
-    values |= {"a": {"b": {"c": 1}}, "typed": "1"}  # type: ignore[dict-item]
+    values |= {"a": {"b": {"c": 1}}, "typed": "1"}
     assert parameters(launched(entities)) == [{"/**": values}]
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import tf2_geometry_msgs  # registers its types
@@ -39,7 +41,7 @@ def seconds(value: float) -> Time:
     return Time(nanoseconds=round(value * 1e9))
 
 
-def buffer_of(*transforms: TransformStamped, **options: object) -> Buffer:
+def buffer_of(*transforms: TransformStamped, **options: Any) -> Buffer:
     buffer = Buffer(**options)
     for transform in transforms:
         assert buffer.set_transform(transform, "test")

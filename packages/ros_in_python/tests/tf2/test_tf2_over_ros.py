@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 import rclpy
+from geometry_msgs.msg import TransformStamped
 from rclpy.duration import Duration
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
@@ -60,7 +61,8 @@ def test_static_transforms_reach_a_listener_that_comes_later_with_all_that_were_
 def test_a_callback_may_wait_for_a_transform_where_another_thread_spins(node: Node) -> None:
     buffer = Buffer(node=node)
     listener = TransformListener(buffer, node)
-    asked, answer = threading.Event(), []
+    asked = threading.Event()
+    answer: list[TransformStamped] = []
 
     def ask() -> None:
         timer.cancel()
@@ -70,7 +72,7 @@ def test_a_callback_may_wait_for_a_transform_where_another_thread_spins(node: No
     timer = node.create_timer(0.01, ask)
     broadcaster = TransformBroadcaster(node)
     other = Node("other")
-    other.create_timer(0.05, lambda: asked.is_set() and broadcaster.sendTransform(stamped("w", "a")))
+    other.create_timer(0.05, lambda: broadcaster.sendTransform(stamped("w", "a")) if asked.is_set() else None)
     executor = MultiThreadedExecutor(num_threads=3)
     executor.add_node(node)
     executor.add_node(other)

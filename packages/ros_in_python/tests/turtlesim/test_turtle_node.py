@@ -85,7 +85,7 @@ class Outside:
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._publishers: dict[str, Any] = {}
-        self._clients: list[ActionClient[Any, Any, Any]] = []
+        self._clients: list[ActionClient] = []
 
     def close(self) -> None:
         self._executor.shutdown()
@@ -111,7 +111,7 @@ class Outside:
         self.node.create_subscription(kind, topic, heard.append, 100)
         return heard
 
-    def action_client(self, kind: Any, name: str) -> ActionClient[Any, Any, Any]:
+    def action_client(self, kind: Any, name: str) -> ActionClient:
         """Return a client for an action, which ends with this node."""
         self._clients.append(ActionClient(self.node, kind, name))
         return self._clients[-1]

@@ -37,8 +37,8 @@ class Subscriber(SimpleFilter):
         super().__init__()
         self.node = node
         self.topic = args[1] if len(args) > 1 else kwargs.get("topic")
-        kwargs.setdefault("qos_profile", 10)
-        self.sub = node.create_subscription(*args, callback=self.callback, **kwargs)
+        options = {"qos_profile": 10, **kwargs, "callback": self.callback}
+        self.sub = node.create_subscription(*args, **options)
 
     def callback(self, msg: Any) -> None:
         """Give a message on."""
@@ -51,9 +51,9 @@ class Subscriber(SimpleFilter):
 
 def time_of(message: Any, allow_headerless: bool) -> Time:
     """Return a message's time stamp; without a header, the current time, if that is allowed."""
-    header = getattr(message, "header", None)
-    if hasattr(header, "stamp"):
-        return Time.from_msg(header.stamp)
+    stamp = getattr(getattr(message, "header", None), "stamp", None)
+    if stamp is not None:
+        return Time.from_msg(stamp)
     if not allow_headerless:
         raise TypeError(
             f"{type(message).__name__} has no header with a time stamp. Give allow_headerless=True to take the time at "

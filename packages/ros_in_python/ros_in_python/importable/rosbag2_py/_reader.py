@@ -33,6 +33,7 @@ class SequentialReader:
         self._reader: Any = None
         self._filter, self._order = StorageFilter(), ReadOrder()
         self._from: int | None = None
+        self._next: Any = None
 
     def open(self, storage_options: StorageOptions, converter_options: ConverterOptions | None = None) -> None:
         """Open a bag, in whichever storage it is."""

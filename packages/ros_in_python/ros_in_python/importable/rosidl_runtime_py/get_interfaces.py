@@ -11,7 +11,8 @@ from ros_in_python.ros2.interfaces import folder_of, installed_interfaces
 
 def get_interface_packages() -> dict[str, str]:
     """Return the packages that have types, each with the folder in which it is installed."""
-    return {package: os.fspath(prefixes.prefix_of(package, prefixes.installed())) for package in installed_interfaces()}
+    found = {package: prefixes.prefix_of(package, prefixes.installed()) for package in installed_interfaces()}
+    return {package: os.fspath(prefix) for package, prefix in found.items() if prefix}
 
 
 def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:

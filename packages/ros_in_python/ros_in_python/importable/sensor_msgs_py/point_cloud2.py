@@ -45,7 +45,7 @@ def read_points(
     # A row may be longer than its points.
     packed = np.ascontiguousarray(rows[:, : cloud.width * cloud.point_step]).view(type_).reshape(-1)
     points = packed.byteswap() if bool(cloud.is_bigendian) != (sys.byteorder == "big") else packed
-    points = points[_known(points, field_names)] if field_names is not None else points[list(points.dtype.names)]
+    points = points[_names(points) if field_names is None else _known(points, field_names)]
     if skip_nans and not cloud.is_dense:
         points = points[_without_nan(points)]
     if uvs is not None:
@@ -55,16 +55,20 @@ def read_points(
     return points
 
 
+def _names(points: NDArray[Any]) -> list[str]:
+    return list(points.dtype.names or ())
+
+
 def _known(points: NDArray[Any], names: Sequence[str]) -> list[str]:
     for name in names:
-        if name not in points.dtype.names:
-            raise ValueError(f"The cloud has no field {name!r}. Its fields: {', '.join(points.dtype.names)}")
+        if name not in _names(points):
+            raise ValueError(f"The cloud has no field {name!r}. Its fields: {', '.join(_names(points))}")
     return list(names)
 
 
 def _without_nan(points: NDArray[Any]) -> NDArray[np.bool_]:
     kept = np.ones(len(points), dtype=bool)
-    for name in points.dtype.names:
+    for name in _names(points):
         nan = np.isnan(points[name])
         kept &= ~(nan if nan.ndim == 1 else nan.any(axis=-1))
     return kept
@@ -84,9 +88,9 @@ def read_points_numpy(
 ) -> NDArray[Any]:
     """Return a cloud's points as a plain array, a column per field, which must all be of the same type."""
     points = read_points(cloud, field_names, skip_nans, uvs, reshape_organized_cloud)
-    types = {points.dtype[name].base for name in points.dtype.names}
+    types = {points.dtype[name].base for name in _names(points)}
     if len(types) > 1:
-        names = ", ".join(f"{name} ({points.dtype[name]})" for name in points.dtype.names)
+        names = ", ".join(f"{name} ({points.dtype[name]})" for name in _names(points))
         raise ValueError(
             f"The fields are of different types: {names}. Choose some with field_names, or use read_points"
         )
@@ -111,8 +115,11 @@ def dtype_from_fields(fields: Iterable[PointField], point_step: int | None = Non
         names.append(one.name or f"{DUMMY_FIELD_PREFIX}_{number}")
         formats.append(kind if one.count == 1 else (kind, (one.count,)))
         offsets.append(one.offset)
-    size = {} if point_step is None else {"itemsize": point_step}
-    return np.dtype({"names": names, "formats": formats, "offsets": offsets, **size})
+    layout: Any = {"names": names, "formats": formats, "offsets": offsets}
+    if point_step is not None:
+        layout["itemsize"] = point_step
+    made: np.dtype[Any] = np.dtype(layout)
+    return made
 
 
 def create_cloud(

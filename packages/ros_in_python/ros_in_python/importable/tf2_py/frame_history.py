@@ -41,7 +41,7 @@ class FrameHistory:
     def _forget(self) -> None:
         expired = bisect_left(self.times, self.times[-1] - self.keep)
         for values in (self.times, self.parents, self.motions):
-            del values[:expired]  # type: ignore[attr-defined]
+            del values[:expired]
 
     @property
     def newest(self) -> int:

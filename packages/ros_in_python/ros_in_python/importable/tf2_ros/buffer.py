@@ -21,7 +21,7 @@ from tf2_ros.buffer_interface import BufferInterface
 _LOOK = 0.02
 
 
-class Buffer(BufferCore, BufferInterface):  # type: ignore[misc]
+class Buffer(BufferCore, BufferInterface):
     """Keeps transforms, usually those that a `TransformListener` puts into it.
 
     With a `node`, its clock decides how long a lookup waits, and the service `tf2_frames` tells all frames.
