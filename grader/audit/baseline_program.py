@@ -114,9 +114,7 @@ class Baseline(Node):
 def qos(reliability: str, durability: str, depth: int) -> QoSProfile:
     """Return the quality of service of an end."""
     return QoSProfile(
-        depth=depth,
-        reliability=ReliabilityPolicy[reliability.upper()],
-        durability=DurabilityPolicy[durability.upper()],
+        depth=depth, reliability=ReliabilityPolicy[reliability.upper()], durability=DurabilityPolicy[durability.upper()]
     )
 
 

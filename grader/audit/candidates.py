@@ -213,9 +213,7 @@ def _nothing(candidate: Candidate, trial: Trial, checks: tuple[ListedCheck, ...]
     fix = "Let it depend on the check that requires any message at all."
     return [
         problem_of(
-            check,
-            f"{candidate.name} passes {check.name} and gets {check.points:g} points, but must get none",
-            fix,
+            check, f"{candidate.name} passes {check.name} and gets {check.points:g} points, but must get none", fix
         )
         for check in checks
         if trial.statuses.get(check.name) == "passed" and check.points

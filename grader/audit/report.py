@@ -182,22 +182,14 @@ class ProgressBar:
 @contextmanager
 def on(console: Console) -> Iterator[ProgressBar]:
     """Show a bar on this console, and remove it afterwards."""
-    columns = (
-        TextColumn("{task.description:<40.40}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeRemainingColumn(),
-    )
+    columns = (TextColumn("{task.description:<40.40}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         yield ProgressBar(console, bar)
 
 
 def write_json(audits: list[Audit], faults: list[AuditProblem], file: Path) -> None:
     """Write everything that the audits found, and the `faults` because of which exercises could not be audited."""
-    entries = {
-        "audits": [_entries(audit) for audit in audits],
-        "faults": [_problem_entries(fault) for fault in faults],
-    }
+    entries = {"audits": [_entries(audit) for audit in audits], "faults": [_problem_entries(fault) for fault in faults]}
     write_if_changed(file, json.dumps(entries, indent=2, ensure_ascii=False) + "\n")
 
 

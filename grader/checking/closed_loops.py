@@ -234,14 +234,7 @@ def _never_there(
     run.wrong_at(at, text, "", expected, _measure(distance, unit), _of_way(way, goal))
 
 
-def _beyond(
-    run: RecordedRun,
-    way: Way,
-    goal: tuple[float, ...],
-    words: str,
-    overshoot: float,
-    unit: str,
-) -> None:
+def _beyond(run: RecordedRun, way: Way, goal: tuple[float, ...], words: str, overshoot: float, unit: str) -> None:
     begin = way[0][1]
     length = math.dist(begin, goal)
     if not length:

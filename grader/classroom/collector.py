@@ -97,11 +97,7 @@ def _found(source: Path, exercise: Exercise, unpack_into: Path, options: Collect
     why = f"its name is not one of {recognition.form.title}"
     others += [SkippedFile(file.name, why) for _, file in recognition.misfits if not can_be_graded(file.name)]
     return ClassFiles(
-        recognition.form.title + folder,
-        uploads,
-        [*left_out, *others],
-        _odd(recognition, why),
-        recognition.form.dates,
+        recognition.form.title + folder, uploads, [*left_out, *others], _odd(recognition, why), recognition.form.dates
     )
 
 

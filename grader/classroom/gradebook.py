@@ -62,10 +62,7 @@ def _suite(exercise: Exercise, entry: Entry) -> ET.Element:
     if grade.outcome != "graded":
         case = ET.SubElement(suite, "testcase", classname=exercise.name, name="outcome")
         ET.SubElement(
-            case,
-            "failure" if grade.has_score else "error",
-            type=grade.outcome,
-            message=_xml_text(grade.message),
+            case, "failure" if grade.has_score else "error", type=grade.outcome, message=_xml_text(grade.message)
         )
     if grade.has_score:
         for verdict in grade.verdicts:

@@ -7,9 +7,7 @@ import sys
 
 _ENVIRONMENT = re.compile(rf"{re.escape(sys.prefix)}(?![\w.-])/?")
 #: Files of an installed Python, and of a page's; Python's own code is in `lib/python3.12` or `python312.zip`.
-_LIBRARY = re.compile(
-    r".*/(?:(?:site|dist)-packages|lib\d*/python3[^/]*)/|/(?:ros|check|share)\.zip/|/lib/|<frozen ",
-)
+_LIBRARY = re.compile(r".*/(?:(?:site|dist)-packages|lib\d*/python3[^/]*)/|/(?:ros|check|share)\.zip/|/lib/|<frozen ")
 #: A frame with its code; a launched program's has the program's name before it. Which files are libraries' is asked
 #: afterwards: a pattern of both would take quadratic time for a long line.
 _FRAME = re.compile(

@@ -29,10 +29,7 @@ class Advice:
 
 HEADLINES: dict[Outcome, tuple[str, str]] = {
     "graded": ("", ""),
-    "did-not-start": (
-        "Your program did not start",
-        "It ended before it created a node, so no check could be passed.",
-    ),
+    "did-not-start": ("Your program did not start", "It ended before it created a node, so no check could be passed."),
     "crashed": (
         "Your program crashed",
         "It started well and ended by itself in the very first scenario, so no check could be passed.",
@@ -69,10 +66,7 @@ def advice(grade: Grade, exercise: Exercise) -> Advice | None:
     fed = ", with a publisher in another terminal" if exercise.inputs else ""
     steps: dict[Outcome, tuple[str, ...]] = {
         "did-not-start": (f"Read the message above.{line}{printed}", f"{again}. It must start without an error."),
-        "crashed": (
-            f"Read the message above.{line}{printed}",
-            f"{again}{fed}.",
-        ),
+        "crashed": (f"Read the message above.{line}{printed}", f"{again}{fed}."),
         "timed-out": (
             "Look for an endless loop, for a sleep in a callback, and for a missing rclpy.spin(node).",
             f"{again}{fed}. It must answer each message at once." if fed else f"{again}.",

@@ -110,10 +110,7 @@ def path_plot(path: PlanePath) -> str:
     x0, y0 = (left + right - span) / 2, (low + high - span) / 2
 
     def at(place: Place) -> Place:
-        return (
-            round(LEFT + SIDE * (place[0] - x0) / span, 1),
-            round(TOP + SIDE * (1 - (place[1] - y0) / span), 1),
-        )
+        return (round(LEFT + SIDE * (place[0] - x0) / span, 1), round(TOP + SIDE * (1 - (place[1] - y0) / span), 1))
 
     return template("report/path_plot.svg.j2").render(
         path=path,

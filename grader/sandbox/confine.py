@@ -61,12 +61,7 @@ class PassedDescriptors:
 
 
 def confine(
-    start: StartRequest,
-    paths: Paths,
-    other_processes: int,
-    passed: PassedDescriptors,
-    *,
-    keep_open: int,
+    start: StartRequest, paths: Paths, other_processes: int, passed: PassedDescriptors, *, keep_open: int
 ) -> None:
     """Confine the calling process for good.
 

@@ -10,14 +10,7 @@ from grader.exercise.exercise import Exercise, ProgramFile
 from grader.submission import packages, python_code
 from grader.submission.archive import Contents
 from grader.submission.entry_points import EntryPoint, entry_points
-from grader.submission.file_kinds import (
-    NOT_UNPACKED,
-    OTHER_ARCHIVES,
-    kind_of,
-    language_of,
-    not_graded,
-    original_name,
-)
+from grader.submission.file_kinds import NOT_UNPACKED, OTHER_ARCHIVES, kind_of, language_of, not_graded, original_name
 from grader.submission.launch_files import launch_settings, launched
 from grader.submission.notebook import Notebook, read_notebook
 from grader.submission.problems import AmbiguousProgram, Unreadable

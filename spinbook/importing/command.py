@@ -44,12 +44,7 @@ def report_page(course: Course, rows: Sequence[dict[str, Any]], problems: Sequen
         for item in obstacles(problems)
     ]
     return environment.get_template("report.html.j2").render(
-        title=course.title,
-        rows=rows,
-        causes=causes,
-        single=list(by_itself(problems)),
-        places=_PLACES,
-        **counts,
+        title=course.title, rows=rows, causes=causes, single=list(by_itself(problems)), places=_PLACES, **counts
     )
 
 

@@ -160,11 +160,7 @@ def never_appeared(bound: DisplayLimit) -> str:
 
 
 def show_for(
-    process: KeptProcess,
-    bound: DisplayLimit,
-    rest_is: str,
-    has_joined: Callable[[], bool],
-    short: Callable[[str], str],
+    process: KeptProcess, bound: DisplayLimit, rest_is: str, has_joined: Callable[[], bool], short: Callable[[str], str]
 ) -> None:
     """Show what a process prints until it ends, or until its time is up; then say what is missing.
 

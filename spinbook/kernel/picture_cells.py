@@ -121,10 +121,7 @@ def record(
 
 
 def _follow(
-    process: KeptProcess,
-    recording: _Recording,
-    recording_time: RecordingTime,
-    show: Callable[[_Recording, Any], Any],
+    process: KeptProcess, recording: _Recording, recording_time: RecordingTime, show: Callable[[_Recording, Any], Any]
 ) -> Any:
     watched = EXECUTING not in os.environ
     handle: Any = None

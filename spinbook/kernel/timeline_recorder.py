@@ -27,12 +27,7 @@ import rclpy
 from action_msgs.msg import GoalStatus
 from rclpy.action import get_action_names_and_types
 from rclpy.node import Node
-from rclpy.qos import (
-    DurabilityPolicy,
-    QoSProfile,
-    ReliabilityPolicy,
-    qos_profile_services_default,
-)
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_services_default
 from rclpy.signals import SignalHandlerOptions
 
 from ros_in_python.ros2.interfaces import action_class, message_class, service_class

@@ -8,15 +8,7 @@ import libcst as cst
 
 from grader.audit.mutants.program import Change, ParsedProgram, called, expression, only_assignment, with_body
 
-ARITHMETIC = {
-    "+": ("-",),
-    "-": ("+",),
-    "*": ("/", "+"),
-    "/": ("*", "//"),
-    "//": ("/",),
-    "%": ("*",),
-    "**": ("*",),
-}
+ARITHMETIC = {"+": ("-",), "-": ("+",), "*": ("/", "+"), "/": ("*", "//"), "//": ("/",), "%": ("*",), "**": ("*",)}
 
 #: The nanoseconds of a second, and the numbers that they are mistaken for.
 NANOSECONDS, MISTAKEN = 10**9, (10**6, 10**3)

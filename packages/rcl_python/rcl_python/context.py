@@ -13,13 +13,7 @@ from typing import Any
 from rcl_python import logs, participant
 from rcl_python.arguments import Arguments, parse
 from rcl_python.handle import Destroyable
-from rcl_python.values import (
-    RCL_DEFAULT_DOMAIN_ID,
-    RCLError,
-    RCLInvalidROSArgsError,
-    SignalHandlerOptions,
-    at,
-)
+from rcl_python.values import RCL_DEFAULT_DOMAIN_ID, RCLError, RCLInvalidROSArgsError, SignalHandlerOptions, at
 
 _contexts: weakref.WeakSet[Context] = weakref.WeakSet()
 

@@ -29,10 +29,7 @@ def plot(paths: Sequence[str], seconds: float, title: str) -> dict[str, str]:
 
 
 def record(
-    recording: PlotRecording,
-    new_recorder: Callable[[Context], Node],
-    seconds: float,
-    appear_s: float = APPEAR_S,
+    recording: PlotRecording, new_recorder: Callable[[Context], Node], seconds: float, appear_s: float = APPEAR_S
 ) -> None:
     """Record for this many seconds from the first sample on, which may take `appear_s` seconds, or until Ctrl-C."""
     context = rclpy.Context()

@@ -227,13 +227,7 @@ def _key(number: int) -> str:
 
 
 #: What a profile means that does not say it.
-_UNSAID = {
-    "history": KEEP_LAST,
-    "liveliness": AUTOMATIC,
-    "deadline": INFINITE,
-    "lifespan": INFINITE,
-    "lease": INFINITE,
-}
+_UNSAID = {"history": KEEP_LAST, "liveliness": AUTOMATIC, "deadline": INFINITE, "lifespan": INFINITE, "lease": INFINITE}
 
 
 def _endpoint(frame: Frame) -> frames.EndpointFrame:

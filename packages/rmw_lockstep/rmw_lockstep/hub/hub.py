@@ -54,10 +54,7 @@ class Hub:
     """
 
     def __init__(
-        self,
-        folder: Path | None = None,
-        limits: HubLimits | None = None,
-        on_tick: Callable[[], None] = _do_nothing,
+        self, folder: Path | None = None, limits: HubLimits | None = None, on_tick: Callable[[], None] = _do_nothing
     ) -> None:
         """Listen in `folder`, which other users of this machine may enter but not list; without one, nowhere yet.
 

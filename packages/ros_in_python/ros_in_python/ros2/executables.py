@@ -169,10 +169,7 @@ BUILT_IN = {
 
 
 #: The interfaces that our executables of a package need.
-_INTERFACES = {
-    **dict.fromkeys(("robot_state_publisher", "tf2_ros", "tf2_tools"), "tf2_msgs"),
-    "turtlesim": "turtlesim",
-}
+_INTERFACES = {**dict.fromkeys(("robot_state_publisher", "tf2_ros", "tf2_tools"), "tf2_msgs"), "turtlesim": "turtlesim"}
 
 
 def interfaces_used(package: str, executable: str) -> str:
@@ -213,9 +210,7 @@ def find(package: str, executable: str, cwd: Path) -> Invocation:
     modules = BUILT_IN.get(package)
     if modules is None:
         raise CommandError(
-            f"Package '{package}' not found",
-            _where(cwd),
-            f"Packages to run from here: {', '.join(runnable(cwd))}.",
+            f"Package '{package}' not found", _where(cwd), f"Packages to run from here: {', '.join(runnable(cwd))}."
         )
     if executable not in modules:
         raise CommandError("No executable found", f"Executables of {package}: {', '.join(sorted(modules))}.")

@@ -207,10 +207,7 @@ class GraphView:
         ends = [
             end
             for name, _ in self.node.get_topic_names_and_types()
-            for end in (
-                *self.node.get_publishers_info_by_topic(name),
-                *self.node.get_subscriptions_info_by_topic(name),
-            )
+            for end in (*self.node.get_publishers_info_by_topic(name), *self.node.get_subscriptions_info_by_topic(name))
         ]
         with_node = {bytes(end.endpoint_gid[:_GID_PREFIX]) for end in ends if end.node_name != _NAMELESS}
         return heard <= with_node and all(end.node_name != _NAMELESS for end in ends)

@@ -25,10 +25,7 @@ _BAYER = re.compile(r"bayer_(?:rggb|bggr|gbrg|grbg)(8|16)")
 _PLAIN = re.compile(r"(8U|8S|16U|16S|32S|32F|64F)C?(\d*)")
 #: OpenCV names a pattern by its second row, and ROS by its first.
 _PATTERNS = {"rggb": "BG", "bggr": "RG", "gbrg": "GR", "grbg": "GB"}
-_YUV = {
-    **dict.fromkeys(("yuv422", "uyvy"), "YUV2BGR_UYVY"),
-    **dict.fromkeys(("yuv422_yuy2", "yuyv"), "YUV2BGR_YUY2"),
-}
+_YUV = {**dict.fromkeys(("yuv422", "uyvy"), "YUV2BGR_UYVY"), **dict.fromkeys(("yuv422_yuy2", "yuyv"), "YUV2BGR_YUY2")}
 #: Weights of red, green and blue in grey: ITU-R BT.601.
 _GREY = (0.299, 0.587, 0.114)
 
