@@ -86,10 +86,9 @@ def code_in(place: Locator) -> str:
 
 def open_editor(place: Locator) -> Locator:
     """Click into the code of a block or of an exercise's starter; return its editor."""
-    editor = place.locator(".cm-content")
-    if editor.count() == 0:
-        place.locator("pre").first.click(position={"x": 40, "y": 20})
-    return editor
+    # A draft may open its editor, and hide the <pre>, at any moment.
+    place.locator("pre:visible, .cm-content").first.click(position={"x": 40, "y": 20})
+    return place.locator(".cm-content")
 
 
 def write_code(place: Locator, text: str) -> None:

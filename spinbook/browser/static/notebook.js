@@ -206,6 +206,7 @@ async function bounded(cell, process, line) {
   cell.say("Running …", "running");
   try {
     const status = await result(cell, process, "cells.run_command", { line, files: files() });
+    if (process.interrupted) why ||= "Ended by Ctrl-C.";
     if (!why || status === null) return;
     cell.failed = false;
     cell.say(why, "ended");

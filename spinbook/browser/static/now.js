@@ -42,6 +42,10 @@ export class Now {
     if (phase) this.phase(phase);
   }
 
+  get starts() {
+    return this.place.dataset.phase === "starting";
+  }
+
   // Show how much of a download is there, from 0 to 1.
   progress(part) {
     this.part.hidden = part >= 1;

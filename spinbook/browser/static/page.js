@@ -46,18 +46,20 @@ function offer(key, { text }) {
 
 const runs = { shell: runTerminal, snippet: runPlain, interface: runInterface, package_file: runFile };
 
-// Cells whose code was changed and run again while they started.
+// Cells that are to run again once they have ended: Run was pressed while they were busy.
 const again = new WeakSet();
 
 // Run one cell. Resolves when a plain cell or a command has ended, or when a node has started.
 export async function run(node) {
   open();
   const cell = cellAt(node);
+  const busy = () => node.hasAttribute("aria-busy");
+  // What is starting need not start twice.
+  if (busy() && cell.source === cell.begun && (cell.kind === "node" || cell.now.starts)) return;
+  if (busy()) again.add(node);
+  const begun = cell.turn;
   if (cell.kind !== "node") await cell.now.stop?.();
-  if (node.hasAttribute("aria-busy")) {
-    if (cell.source !== cell.begun) again.add(node);
-    return;
-  }
+  if (busy() || cell.turn !== begun) return;
   node.setAttribute("aria-busy", "true");
   cell.begun = cell.source;
   cell.clear();

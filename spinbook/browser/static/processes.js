@@ -142,6 +142,7 @@ export class Process {
   // Interrupt it as Ctrl-C does, and kill it if it does not end, or has not begun.
   async stop() {
     if (!this.isReady) return this.end();
+    this.interrupted = true;
     this.signal("SIGINT");
     const ended = this.ended ?? this.idle;
     if ((await Promise.race([ended, after(STOP_MS, "late")])) !== "late") return;
@@ -164,6 +165,7 @@ export class Process {
   // Note which cell it works for from now on; "" for none.
   work(task) {
     this.task = task;
+    this.interrupted = false;
     if (task) this.idle = new Promise((resolve) => (this.rest = resolve));
     else this.rest();
     changed();

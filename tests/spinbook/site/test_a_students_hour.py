@@ -85,9 +85,9 @@ def the_chapter(shown: Opened) -> None:
     picture(page, "1-two-nodes")
     press(page, "Node graph")
 
-    change(page, "left_toe.py", "self.force += 1.0", "self.force += 10.0")
+    change(page, "left_toe.py", "self.force += 1.0", "self.force += 10.5")
     press(page, "Run left_toe.py")
-    says(page, "left_toe", "I publish 120.0 N")
+    says(page, "left_toe", "I publish 110.5 N")
     change(page, "left_toe.py", "self.create_timer(", "self.creat_timer(")
     press(page, "Run left_toe.py")
     says(page, "left_toe", "AttributeError")

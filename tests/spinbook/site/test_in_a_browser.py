@@ -134,7 +134,7 @@ def test_the_keyboard_reaches_the_text_first(visit: Visit) -> None:
     shown = visit("chapters/01-talk.html")
     shown.page.keyboard.press("Tab")
     shown.page.keyboard.press("Enter")
-    assert shown.page.evaluate("document.activeElement.id") == "content"
+    expect(shown.page.locator("#content")).to_be_focused()
 
 
 def test_the_menu_of_a_phone_opens_and_closes_by_keyboard(visit: Visit) -> None:
@@ -258,11 +258,11 @@ def test_a_head_is_one_row_and_housekeeping_one_line(longer: Opened, width: int)
     longer.page.set_viewport_size({"width": width, "height": 900})
     longer.page.reload()
     height = "all => all.map(one => one.getBoundingClientRect().height)"
+    expect(longer.page.get_by_role("button", name=re.compile("^Run "))).to_have_count(4)
     heads = longer.page.locator(".cell-head").evaluate_all(height)
     assert len(heads) == 4
     assert max(heads) <= 46
     assert longer.page.locator(".cell-strip").evaluate_all(height) == [pytest.approx(43, abs=4)]
-    assert longer.page.get_by_role("button", name=re.compile("^Run ")).count() == 4
     expect(longer.page.get_by_text("Run starts a program here, in your browser.")).to_have_count(1)
     choose(longer.page.locator(".cell-node").first, "Download speaker.py")
     expect(longer.page.locator(".more[open]")).to_have_count(0)
@@ -313,7 +313,8 @@ def test_what_moves_stands_still_on_paper_and_for_those_who_prefer_no_motion(vis
     shown.page.emulate_media(media="print", reduced_motion="no-preference")
     expect(moving).to_be_hidden()
     expect(still).to_be_visible()
-    assert still.evaluate("image => image.complete && image.naturalWidth == 300 && image.loading") == "lazy"
+    expect(still).to_have_js_property("naturalWidth", 300)
+    expect(still).to_have_js_property("loading", "lazy")
     address = still.evaluate("image => image.src")
     assert "animation" not in shown.page.request.get(address).text()
     assert shown.faults == []

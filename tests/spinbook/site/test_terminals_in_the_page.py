@@ -14,6 +14,10 @@ pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Py
 
 #: Pyodide starts in a few seconds; on a busy machine, in many.
 DEADLINE_MS = 120_000
+_COVERS = """([head, wanted]) => {
+  const [end, top] = [head.getBoundingClientRect().bottom, document.querySelector('.running').getBoundingClientRect().top];
+  return (end > top) === wanted;
+}"""
 
 
 @pytest.fixture(scope="module")
@@ -51,12 +55,9 @@ def at_the_end(shown: Opened, number: int) -> Locator:
     return head
 
 
-def is_covered(shown: Opened, head: Locator) -> bool:
-    bar = shown.page.get_by_role("region", name="Running nodes").bounding_box()
-    box = head.bounding_box()
-    assert bar
-    assert box
-    return box["y"] + box["height"] > bar["y"]
+def waits_until(shown: Opened, head: Locator, is_covered: bool) -> None:
+    """Wait until the bar covers a part of a block's head, or none of it: while the page grows, that changes."""
+    shown.page.wait_for_function(_COVERS, arg=[head.element_handle(), is_covered])
 
 
 def test_ros2_run_starts_the_newest_version_above(shown: Opened) -> None:
@@ -88,17 +89,18 @@ def test_two_terminals_at_once_have_their_own_output_and_stop(shown: Opened) -> 
     assert "does not appear to be published" not in echoing.inner_text()
     publishing.press("Control+c")
     expect(bar).to_have_count(0, timeout=DEADLINE_MS)
+    expect(cell(shown, 4).get_by_role("status")).to_have_text("Ended by Ctrl-C.")
     assert shown.faults == []
 
 
 def test_a_launch_is_one_entry_and_bad_words_leave_it_alone(shown: Opened) -> None:
     bar = shown.page.get_by_role("region", name="Running nodes").get_by_role("listitem")
     expect(run(shown, 7)).to_contain_text("Run talkers.launch.py above first.", timeout=DEADLINE_MS)
-    run(shown, 6)
+    expect(run(shown, 6)).to_contain_text("Wrote", timeout=DEADLINE_MS)
     launched = run(shown, 7)
     for name in ("[a]", "[b]"):
         expect(launched).to_contain_text(f"{name}: version two", timeout=DEADLINE_MS)
-    assert "a has started" in launched.inner_text()
+    expect(launched).to_contain_text("a has started")
     expect(bar).to_have_text(["talkersStop"])
 
     expect(run(shown, 8)).to_contain_text("sideways", timeout=DEADLINE_MS)
@@ -111,6 +113,17 @@ def test_a_launch_is_one_entry_and_bad_words_leave_it_alone(shown: Opened) -> No
     assert shown.faults == []
 
 
+@pytest.mark.parametrize(("number", "line"), [(4, "publishing #1"), (7, "[b]: version two")])
+def test_run_pressed_again_begins_anew_unless_it_is_starting(shown: Opened, number: int, line: str) -> None:
+    expect(run(shown, 6)).to_contain_text("Wrote", timeout=DEADLINE_MS)
+    pressed = cell(shown, number).locator(".run-button", has_text="Run").filter(has_not_text="all")
+    pressed.dblclick()
+    expect(cell(shown, number).get_by_role("log")).to_contain_text(line, timeout=DEADLINE_MS)
+    for _ in ("while it shows its output", "right after that"):
+        expect(run(shown, number)).to_contain_text(line, timeout=DEADLINE_MS)
+    stop_all(shown)
+
+
 def test_run_answers_in_the_head_of_its_block_and_the_bar_does_not_cover_it(shown: Opened) -> None:
     for number, version, width in ((1, "one", 1280), (2, "two", 390)):  # the bar is there only when the second is run
         shown.page.set_viewport_size({"width": width, "height": 844})
@@ -119,7 +132,7 @@ def test_run_answers_in_the_head_of_its_block_and_the_bar_does_not_cover_it(show
         expect(head.get_by_role("status")).not_to_be_empty()
         expect(head.locator(".run-last")).to_have_text(f"[INFO] [talker]: version {version}", timeout=DEADLINE_MS)
         expect(head.get_by_role("status")).to_have_text("talker runs.")
-        assert not is_covered(shown, head)
+        waits_until(shown, head, is_covered=False)
         assert not shown.scrolls_sideways()
     head.get_by_role("button", name="Ctrl-C").click()
     expect(head.get_by_role("status")).to_have_text("talker ended with 0.", timeout=DEADLINE_MS)
@@ -134,10 +147,11 @@ def test_output_above_moves_no_head_behind_the_bar_unless_the_reader_scrolls(sho
     head = at_the_end(shown, 5)
     expect(run(shown, 5)).to_contain_text("data: 5", timeout=DEADLINE_MS)
     waits_for_another_line()
-    assert not is_covered(shown, head)
+    waits_until(shown, head, is_covered=False)
 
     shown.page.mouse.wheel(0, -100)
-    while not is_covered(shown, head):
-        shown.page.evaluate("() => new Promise(requestAnimationFrame)")
+    waits_until(shown, head, is_covered=True)
     waits_for_another_line()
-    assert is_covered(shown, head)
+    # The page is laid out with that line, and has looked at it.
+    shown.page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    waits_until(shown, head, is_covered=True)
