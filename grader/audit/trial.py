@@ -11,7 +11,7 @@ from typing import Any
 
 from grader.audit.result import RecordingDifference, Trial, Until
 from grader.audit.store import RecordedRuns
-from grader.checking.verdict import Finding, ListedCheck, Status, Verdict
+from grader.checking.verdict import Finding, ListedCheck, Status, Verdict, with_dependencies
 from grader.grading.grading import Grading
 from grader.recording.recording import Ending, ReceivedMessage, Recording, not_run
 from grader.scenario.scenario import Scenario
@@ -121,7 +121,7 @@ class Trials:
         recordings = {first.name: run(first)}
         if recordings[first.name].ending.outcome != "completed":
             return self._broke_off(recordings)
-        wanted_checks = self._with_what_they_depend_on(only)
+        wanted_checks = with_dependencies(only or (check.name for check in self.checks), self.checks)
         while True:
             verdicts = self._judged_where_different(recordings)
             decided = tuple(check for check in self.checks if set(check.scenarios) <= set(recordings))
@@ -190,18 +190,6 @@ class Trials:
             for scenario in check.scenarios
         }
         return [scenario for scenario in self._shorter_first() if scenario.name in asked - done]
-
-    def _with_what_they_depend_on(self, only: tuple[str, ...]) -> set[str]:
-        if not only:
-            return {check.name for check in self.checks}
-        by_name = {check.name: check for check in self.checks}
-        names, waiting = set(), list(only)
-        while waiting:
-            name = waiting.pop()
-            if name in by_name and name not in names:
-                names.add(name)
-                waiting += by_name[name].depends
-        return names
 
     def _trial(
         self,

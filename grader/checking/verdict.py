@@ -161,6 +161,19 @@ class ListedCheck(CheckOptions):
     seconds: float = 0.0
 
 
+def with_dependencies(names: Iterable[str], checks: Iterable[ListedCheck]) -> set[str]:
+    """Return these names of `checks`, and those of all the checks on which they depend."""
+    depends = {check.name: check.depends for check in checks}
+    found: set[str] = set()
+    waiting = list(names)
+    while waiting:
+        name = waiting.pop()
+        if name in depends and name not in found:
+            found.add(name)
+            waiting += depends[name]
+    return found
+
+
 def check(
     *,
     points: float,

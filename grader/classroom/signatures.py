@@ -1,4 +1,7 @@
-"""The signatures of an exercise's usual mistakes, as `solutions/` lists them: each is graded once, and stored."""
+"""The signatures of an exercise's usual mistakes, as `solutions/` lists them: each is graded once, and stored.
+
+It is graded by the checks that it names, as an audit reports a mistake that fails others.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +10,16 @@ import hashlib
 import json
 from collections.abc import Sequence, Set
 from concurrent.futures import ThreadPoolExecutor
+from functools import cached_property
 
+from grader.checking.verdict import ListedCheck, with_dependencies
 from grader.classroom.misconceptions import Failure, Signature, blocked_in, failures_of, may_explain
 from grader.exercise.mistakes import Mistake, mistakes_of
 from grader.grading.grade import Grade
 from grader.grading.grading import Grading
 from grader.grading.reference import cache_folder, reference_key
 from grader.submission.reader import of_mistake
+from grader.workers.jobs import ListJob
 from groundwork.files import keep, read_kept
 
 #: How many mistakes are graded at once. Each grading already runs several scenarios at once.
@@ -28,8 +34,9 @@ def signatures(grading: Grading, grades: Sequence[Grade]) -> tuple[Signature, ..
     """
     students = [(failures_of(grade).keys(), blocked_in(grade)) for grade in grades]
     mistakes = [mistake for mistake in mistakes_of(grading.runner.exercise) if _may_explain(mistake, students)]
+    known = _Mistakes(grading)
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        failures = list(pool.map(lambda mistake: _failures(mistake, grading), mistakes))
+        failures = list(pool.map(known.failures, mistakes))
     alike: dict[tuple[tuple[str, Failure], ...], list[Mistake]] = {}
     for mistake, failed in zip(mistakes, failures, strict=True):
         if failed:
@@ -46,18 +53,39 @@ def _may_explain(mistake: Mistake, students: Sequence[tuple[Set[str], Set[str]]]
     return not named or any(may_explain(named, failed, blocked) for failed, blocked in students)
 
 
-def _failures(mistake: Mistake, grading: Grading) -> dict[str, Failure]:
-    exercise = grading.runner.exercise
-    digest = hashlib.sha256(f"{reference_key(grading.runner)}{mistake.source}".encode()).hexdigest()
-    kept = cache_folder().parent / "mistakes" / f"{exercise.name}-{mistake.name}-{digest[:24]}.json"
-    stored = read_kept(
-        kept, lambda content: {name: Failure(**failure) for name, failure in json.loads(content).items()}
-    )
-    if stored is not None:
-        return stored
-    grade = grading.grade(of_mistake(mistake, exercise))
-    failures = failures_of(grade)
-    if grade.has_score:
-        entries = {name: dataclasses.asdict(failure) for name, failure in failures.items()}
-        keep(kept, json.dumps(entries), durable=True)
-    return failures
+class _Mistakes:
+    def __init__(self, grading: Grading) -> None:
+        self._grading, self._runner = grading, grading.runner
+        self._key = reference_key(grading.runner)
+
+    def failures(self, mistake: Mistake) -> dict[str, Failure]:
+        """Return how a mistake fails, stored or found out now."""
+        digest = hashlib.sha256(f"{self._key}{mistake.caught_by}{mistake.source}".encode()).hexdigest()
+        file = f"{self._runner.exercise.name}-{mistake.name}-{digest[:24]}.json"
+        kept = cache_folder().parent / "mistakes" / file
+        stored = read_kept(
+            kept, lambda content: {name: Failure(**failure) for name, failure in json.loads(content).items()}
+        )
+        if stored is not None:
+            return stored
+        grade = self._grade(mistake)
+        failures = failures_of(grade)
+        if grade.has_score:
+            entries = {name: dataclasses.asdict(failure) for name, failure in failures.items()}
+            keep(kept, json.dumps(entries), durable=True)
+        return failures
+
+    def _grade(self, mistake: Mistake) -> Grade:
+        runner = dataclasses.replace(self._runner, needed=self._needed(mistake), partly=True)
+        return dataclasses.replace(self._grading, runner=runner).grade(of_mistake(mistake, runner.exercise))
+
+    def _needed(self, mistake: Mistake) -> frozenset[str]:
+        """Return the scenarios of the checks that a mistake names; none, for all, if it names none or others."""
+        names = with_dependencies(mistake.caught_by, self._checks)
+        known = names.issuperset(mistake.caught_by)
+        return frozenset(name for check in self._checks if known and check.name in names for name in check.scenarios)
+
+    @cached_property
+    def _checks(self) -> tuple[ListedCheck, ...]:
+        checks: tuple[ListedCheck, ...] = self._runner.workers.do(ListJob(self._runner.exercise))
+        return checks

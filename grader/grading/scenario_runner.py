@@ -137,15 +137,21 @@ class ScenarioRunner:
     work_stealing: WorkStealing = field(default_factory=WorkStealing, compare=False)
     """Lets idle workers help the `options.parallel` workers of each submission."""
     partly: bool = False
-    """Whether only the checks judge that need no other scenarios than these."""
+    """Whether only the checks judge that need no other scenarios than those that were run."""
+    needed: frozenset[str] = frozenset()
+    """The scenarios to run after the first; if empty, all are run. A program's limits are the same."""
 
     def run(self, submission: Submission) -> dict[str, Recording]:
-        """Return the recording of each scenario. Raises `HostFault` when there is none.
+        """Return the recording of each scenario that is run. Raises `HostFault` when there is none.
 
         The first scenario decides whether the program works at all; if it does not, no other is run, and every
         recording ends as that one does.
         """
-        jobs = [self.job(submission, scenario, i) for i, scenario in enumerate(self.scenarios)]
+        jobs = [
+            self.job(submission, scenario, i)
+            for i, scenario in enumerate(self.scenarios)
+            if i == 0 or not self.needed or scenario.name in self.needed
+        ]
         # The first scenario is needed at once. Then the longest ones start first, so that none is left over at the end.
         queue = TaskQueue((jobs[0], *sorted(jobs[1:], key=lambda job: -job.scenario.size)), self.workers)
         with ThreadPoolExecutor(self.options.parallel) as pool, self.work_stealing.wanted(queue):
@@ -156,7 +162,7 @@ class ScenarioRunner:
                 if first.ending.outcome != "completed":
                     return {scenario.name: not_run_because(first, scenario.name) for scenario in self.scenarios}
                 self.workers.prepare_to_judge()
-                return {scenario.name: queue.recording(scenario.name) for scenario in self.scenarios}
+                return {job.scenario.name: queue.recording(job.scenario.name) for job in jobs}
             finally:
                 queue.give_up()
 

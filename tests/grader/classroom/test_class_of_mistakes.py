@@ -16,6 +16,7 @@ import pytest
 from unlisted_mistakes import UNLISTED
 
 from grader.classroom.misconceptions import Signature, failures_of, mistakes_in
+from grader.classroom.signatures import signatures as signatures_for
 from grader.exercise import load
 from grader.exercise.mistakes import mistakes_of
 from grader.grading import Grade, Options, grading_of
@@ -96,6 +97,16 @@ def named(grade: Grade, signatures: list[Signature]) -> list[set[str]]:
     """Return the names of each signature that a submission matches."""
     blocked = {verdict.name for verdict in grade.verdicts if verdict.status == "blocked"}
     return [set(signatures[i].names) for i in mistakes_in(failures_of(grade), blocked, signatures)]
+
+
+@pytest.mark.parametrize("exercise", EXERCISES)
+def test_a_signature_from_few_scenarios_is_that_of_a_whole_grade(
+    exercise: str, mistakes: Callable[[str], Mistakes], workers_with_interfaces: WorkerPool
+) -> None:
+    grades = mistakes(exercise).listed
+    grading = grading_of(load(ROOT / "exercises" / exercise), Options(), workers_with_interfaces)
+    found = {name: one.failures for one in signatures_for(grading, list(grades.values())) for name in one.names}
+    assert found == {name: failures_of(grade) for name, grade in grades.items()}
 
 
 @pytest.mark.parametrize("exercise", EXERCISES)

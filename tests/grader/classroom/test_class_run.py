@@ -16,6 +16,8 @@ from prepared_python import run_prepared
 from small_class import POINTS, ROOT, SmallClass
 
 from grader.classroom.formats.registry import TABLES
+from grader.exercise import load
+from grader.exercise.mistakes import mistakes_of
 
 SCHEMA = json.loads((ROOT / "docs" / "grade.schema.json").read_text(encoding="utf-8"))
 
@@ -89,8 +91,12 @@ def test_students_stand_under_the_mistakes_that_they_make(graded: tuple[SmallCla
 def test_for_the_overview_only_mistakes_are_graded_that_may_explain_a_failure(
     graded: tuple[SmallClass, str], cache: Path
 ) -> None:
-    stored = {file.name.split("-")[1] for file in (cache / "mistakes").iterdir()}
-    assert stored == {"only_forwards", "trusts_every_number", "full_speed_for_no_number"}
+    kept = {file.name.split("-")[1]: json.loads(file.read_text()) for file in (cache / "mistakes").iterdir()}
+    mistakes = {mistake.name: mistake for mistake in mistakes_of(load(graded[0].exercise))}
+    assert kept.keys() == {"only_forwards", "trusts_every_number", "full_speed_for_no_number"}
+    assert {name: set(failures) for name, failures in kept.items()} == {
+        name: set(mistakes[name].caught_by) for name in kept
+    }
 
 
 def test_what_is_unchanged_is_not_graded_again(done: SmallClass) -> None:
