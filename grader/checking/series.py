@@ -13,7 +13,7 @@ from grader.checking.hint_texts import hints
 from grader.checking.partial import each
 from grader.checking.patterns import COMPUTER_CLOCK, shift
 from grader.checking.recorded_run import RecordedRun
-from grader.recording.recording import Endpoint, ReceivedMessage
+from grader.recording.recording import ReceivedMessage
 from grader.scenario.scenario import RATE
 from grader.scenario.times import SECOND, START
 from ros_in_python.field_path import field_of
@@ -174,13 +174,10 @@ def _never(run: RecordedRun, topic: str, expected: str, subscriber: str = "") ->
         run.wrong_at(None, text, "", expected, "none", _IN_INIT if names == "none" else lacking("publisher"))
     if subscriber and run.published_on(topic):
         text = f"the subscriber “{subscriber}” got nothing on {topic}."
-        run.wrong_at(None, text, "", expected, "none", _VOLATILE if any(map(_is_volatile, mine)) else UNKNOWN)
+        cause = _VOLATILE if any(end.durability == "volatile" for end in mine) else UNKNOWN
+        run.wrong_at(None, text, "", expected, "none", cause)
     text = f"your node has a publisher on {topic}, but never published anything."
     run.wrong_at(None, text, "", expected, "none", run.waits() or _NOT_CALLED)
-
-
-def _is_volatile(end: Endpoint) -> bool:
-    return end.durability == "volatile"
 
 
 _IN_INIT = Cause("Does __init__ come to its end?", *hints("in_init"))

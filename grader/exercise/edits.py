@@ -111,17 +111,14 @@ def read_edits(file: Path) -> tuple[Edit, ...]:
     lines = text.splitlines()
     tokens = MarkdownIt().parse(text)
     headings = [token.map[0] for token in tokens if token.type == "heading_open" and token.tag == "h2" and token.map]
-    fences = [(token.map[0], token.map[1]) for token in tokens if _is_diff(token.type, token.info) and token.map]
+    blocks = [token for token in tokens if token.type == "fence" and token.info.split()[:1] in (["diff"], ["patch"])]
+    fences = [(token.map[0], token.map[1]) for token in blocks if token.map]
     edits = []
     for start, end in itertools.pairwise([*headings, len(lines)]):
         inside = [fence for fence in fences if start < fence[0] < end]
         edits.append(_edit(file, lines, start, end, inside))
     _refuse_odd_names(edits)
     return tuple(edits)
-
-
-def _is_diff(kind: str, info: str) -> bool:
-    return kind == "fence" and info.split()[:1] in (["diff"], ["patch"])
 
 
 def _edit(file: Path, lines: Sequence[str], start: int, end: int, fences: Sequence[tuple[int, int]]) -> Edit:

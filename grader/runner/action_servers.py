@@ -32,10 +32,6 @@ MOST_GOALS = 300
 _HEADER_AND_ID = 4 + 16
 
 
-def _without_id(cdr: bytes) -> bytes:
-    return cdr[_HEADER_AND_ID:]
-
-
 @dataclass
 class RunningGoal:
     """One goal that arrived, as it is recorded so far. `waiting` are the requests for its result."""
@@ -93,7 +89,7 @@ class ScriptedActionServer:
             return False
         found = False
         for server, take in zip(self._servers, (self._goal, self._cancel, self._result), strict=True):
-            requests, server.asked[:] = requests_in_order(server.asked, _without_id), []
+            requests, server.asked[:] = requests_in_order(server.asked, lambda cdr: cdr[_HEADER_AND_ID:]), []
             for one in requests:
                 take(one, now)
                 found = True

@@ -45,7 +45,8 @@ class MuJoCo:
         self.reads = {topic: _type(names) for topic, names in self._commands.items()}
         self.publishes = {topic: _type(names) for topic, names in self._sensors.items()}
         self.publishes |= {joint_states: JOINT_STATE} if joint_states else {}
-        self._joints = [joint for joint in map(self._model.joint, range(self._model.njnt)) if _has_one_position(joint)]
+        joints = map(self._model.joint, range(self._model.njnt))
+        self._joints = [joint for joint in joints if joint.name and len(joint.qpos0) == 1]
         self._pushes: list[tuple[float, int, list[float]]] = []
         for name, position in (start or {}).items():
             self._data.joint(name).qpos[0] = position
@@ -115,7 +116,3 @@ def _list(names: Names) -> list[str]:
 
 def _type(names: Names) -> str:
     return FLOAT if isinstance(names, str) else FLOATS
-
-
-def _has_one_position(joint: Any) -> bool:
-    return bool(joint.name) and len(joint.qpos0) == 1

@@ -114,16 +114,12 @@ def _fits(package: str, files: Mapping[str, bytes], code: bytes) -> bool:
 def _other_packages(chosen: Mapping[str, bytes], files: Mapping[str, bytes], root: str) -> Iterator[tuple[str, bytes]]:
     """Yield the files of the workspace's other packages."""
     for other in roots(files):
-        if other == root or not _has_package(other, files):
+        if other == root or not any(is_below(name, other) and name.endswith("/__init__.py") for name in files):
             continue
         for name, data in files.items():
             inside = posixpath.relpath(name, other) if other else name
             if is_below(name, other) and "/" in inside and inside not in chosen:
                 yield inside, data
-
-
-def _has_package(root: str, files: Mapping[str, bytes]) -> bool:
-    return any(is_below(name, root) and name.endswith("/__init__.py") for name in files)
 
 
 def packages_of_messages(source: str, files: Mapping[str, bytes]) -> set[str]:

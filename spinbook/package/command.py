@@ -149,7 +149,7 @@ def _of_course(course: Course) -> PackageSources:
     return PackageSources(
         course.root,
         course.package,
-        course_modules(course),
+        [Module(name, code) for name, code in _texts(course, "node", lambda chapter: chapter.nodes).items()],
         tuple(interfaces.definitions),
         tuple(interfaces.packages),
         course_files(course),
@@ -162,11 +162,6 @@ def _of_notebooks(folder: Path) -> PackageSources:
     modules = [read.modules[name] for name in sorted(read.modules)]
     definitions = tuple(read.definitions.values())
     return PackageSources(folder, read.package, modules, definitions, sorted({item.package for item in definitions}))
-
-
-def course_modules(course: Course) -> list[Module]:
-    """Return every node cell of the course as a module. Raises SpinbookError if two chapters' modules clash."""
-    return [Module(name, code) for name, code in _texts(course, "node", lambda chapter: chapter.nodes).items()]
 
 
 def course_files(course: Course) -> dict[str, str]:

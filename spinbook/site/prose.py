@@ -122,7 +122,7 @@ _SHORT = re.compile(r"^(.*?)\s*\(([^)]+)\)$")
 
 @dataclass(frozen=True)
 class Term:
-    """A term, its spellings, and its anchor on the glossary's page."""
+    """A term, its spellings, and its anchor on the glossary's page, as Sphinx makes it."""
 
     title: str
     forms: tuple[str, ...]
@@ -140,9 +140,4 @@ def _term(heading: str) -> Term:
     short = _SHORT.match(title)
     names = [short.group(1), short.group(2)] if short else [title]
     forms = [form for name in names for form in (name, f"{name[:-1]}ies" if name.endswith("y") else f"{name}s")]
-    return Term(title, tuple(dict.fromkeys(forms)), anchor_of(title))
-
-
-def anchor_of(title: str) -> str:
-    """Return the id that Sphinx gives a heading."""
-    return str(make_id(title))
+    return Term(title, tuple(dict.fromkeys(forms)), str(make_id(title)))

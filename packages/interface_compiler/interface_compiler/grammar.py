@@ -206,7 +206,7 @@ class _LineReader:
         try:
             parsed = parse_value_string(Type(written), value)
         except Exception as error:  # the parser lets all kinds of exceptions through
-            reason = str(error).partition(": ")[2] or _expectation(written)
+            reason = str(error).partition(": ")[2] or f"expected a {written}"
             found = f"the {what} of `{name}` is `{value}`, which is not a valid {written}."
             self._fault(found, f"{reason[:1].upper()}{reason[1:]}." if reason else "Write another one.")
             return
@@ -257,10 +257,6 @@ def usual_name(written: str) -> str | None:
 
 def _base(written: str) -> str:
     return re.split(r"[\[<]", written, maxsplit=1)[0]
-
-
-def _expectation(written: str) -> str:
-    return f"expected a {written}"
 
 
 def _elements(value: object) -> list[object]:

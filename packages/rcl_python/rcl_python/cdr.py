@@ -132,7 +132,7 @@ def _message_writer(slot: Any) -> Writer:
 def _basic_writer(name: str) -> Writer:
     form = _BASIC[name]
     size, pack = struct.calcsize(form), struct.Struct("<" + form).pack
-    convert: Callable[[Any], Any] | None = {"octet": _octet, "boolean": _is_true}.get(name)
+    convert: Callable[[Any], Any] | None = {"octet": _octet, "boolean": lambda flag: flag is True}.get(name)
     if form in "fd":
         convert = _as_double
 
@@ -141,10 +141,6 @@ def _basic_writer(name: str) -> Writer:
         out += pack(value if convert is None else convert(value))
 
     return write
-
-
-def _is_true(value: Any) -> bool:
-    return value is True
 
 
 def _octet(value: Any) -> int:

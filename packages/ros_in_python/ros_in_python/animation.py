@@ -30,15 +30,12 @@ class Cycle:
 
         Between two of them CSS moves steadily; before the first and after the last it pauses.
         """
-        at = {self._percent(seconds): declaration for seconds, declaration in frames}
+        at = {coord(100 * (BEFORE_S + seconds) / self.whole_s, 2): declaration for seconds, declaration in frames}
         first, last = next(iter(at.values())), list(at.values())[-1]
         at = {"0": first, **at, "100": last}
         steps = "".join(f"{percent}%{{{declaration}}}" for percent, declaration in at.items())
         name = f"{self.key}{name}"
         return f"@keyframes {name}{{{steps}}}.{name}{{animation:{name} {self.whole_s:.2f}s linear infinite}}"
-
-    def _percent(self, seconds: float) -> str:
-        return coord(100 * (BEFORE_S + seconds) / self.whole_s, 2)
 
     def style(self, *rules: str) -> str:
         """Return a style element whose rules apply only on a screen, and not for readers who prefer no motion."""

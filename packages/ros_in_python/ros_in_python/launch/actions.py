@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -135,7 +134,6 @@ class OpaqueFunction(Action):
         self.function, self.args, self.kwargs = function, tuple(args), dict(kwargs or {})
 
     def execute(self, context: Context) -> Any:
-        """Return what the function returns."""
         return self.function(context, *self.args, **self.kwargs)
 
 
@@ -278,14 +276,3 @@ def as_actions(value: Any) -> list[Any]:
     if value is None:
         return []
     return list(value) if isinstance(value, list | tuple) else [value]
-
-
-def path_of_source(source: Any) -> Text:
-    """Return the path in a source, however it was given."""
-    return (
-        source.path
-        if isinstance(source, LaunchDescriptionSource)
-        else Path(source)
-        if isinstance(source, Path)
-        else source
-    )

@@ -32,7 +32,6 @@ class SetLaunchConfiguration(ContextChange):
     value: Text
 
     def change(self, context: Context) -> None:
-        """Set the value."""
         context.values[text_of(self.name, context)] = text_of(self.value, context)
 
 
@@ -43,7 +42,6 @@ class UnsetLaunchConfiguration(ContextChange):
     name: Text
 
     def change(self, context: Context) -> None:
-        """Remove it, if there is one."""
         context.values.pop(text_of(self.name, context), None)
 
 
@@ -54,7 +52,6 @@ class ResetLaunchConfigurations(ContextChange):
     launch_configurations: Mapping[Text, Text] | None = None
 
     def change(self, context: Context) -> None:
-        """Work out the values, and forget all others."""
         context.reset_configurations(texts_of(self.launch_configurations or {}, context))
 
 
@@ -63,7 +60,6 @@ class PushLaunchConfigurations(ContextChange):
     """Keeps the arguments until `PopLaunchConfigurations`."""
 
     def change(self, context: Context) -> None:
-        """Keep a copy."""
         context.push("configurations")
 
 
@@ -72,7 +68,6 @@ class PopLaunchConfigurations(ContextChange):
     """Brings back the arguments that were kept last."""
 
     def change(self, context: Context) -> None:
-        """Bring them back."""
         context.pop("configurations")
 
 
@@ -95,7 +90,6 @@ class ParameterForAll(ContextChange):
     value: Any
 
     def change(self, context: Context) -> None:
-        """Add it."""
         context.parameters.append({text_of(self.name, context): parameter_of(self.value, context)})
 
 
@@ -106,7 +100,6 @@ class SetParametersFromFile(ContextChange):
     filename: Text
 
     def change(self, context: Context) -> None:
-        """Add the file."""
         context.parameters.append(text_of(self.filename, context))
 
 
@@ -117,7 +110,6 @@ class SetUseSimTime(ContextChange):
     value: Any = True
 
     def change(self, context: Context) -> None:
-        """Add the parameter."""
         context.parameters.append({"use_sim_time": parameter_of(self.value, context)})
 
 
@@ -129,7 +121,6 @@ class SetRemap(ContextChange):
     dst: Text
 
     def change(self, context: Context) -> None:
-        """Add the pair."""
         context.remappings.append((text_of(self.src, context), text_of(self.dst, context)))
 
 
@@ -141,7 +132,6 @@ class SetEnvironmentVariable(ContextChange):
     value: Text
 
     def change(self, context: Context) -> None:
-        """Set it."""
         context.variables[text_of(self.name, context)] = text_of(self.value, context)
 
 
@@ -152,7 +142,6 @@ class SetROSLogDir(ContextChange):
     new_log_dir: Text
 
     def change(self, context: Context) -> None:
-        """Set its environment variable."""
         context.variables["ROS_LOG_DIR"] = text_of(self.new_log_dir, context)
 
 
@@ -166,7 +155,6 @@ class AppendEnvironmentVariable(ContextChange):
     separator: Text = os.pathsep
 
     def change(self, context: Context) -> None:
-        """Append, or put first."""
         name, value = text_of(self.name, context), text_of(self.value, context)
         present = context.environment.get(name)
         parts = [value, present] if truth_of(str(self.prepend), context) else [present, value]
@@ -180,7 +168,6 @@ class UnsetEnvironmentVariable(ContextChange):
     name: Text
 
     def change(self, context: Context) -> None:
-        """Remove it."""
         context.variables[text_of(self.name, context)] = None
 
 
@@ -189,7 +176,6 @@ class ResetEnvironment(ContextChange):
     """Takes back all changes of the environment."""
 
     def change(self, context: Context) -> None:
-        """Forget them."""
         context.variables.clear()
 
 
@@ -198,7 +184,6 @@ class PushEnvironment(ContextChange):
     """Keeps the environment until `PopEnvironment`."""
 
     def change(self, context: Context) -> None:
-        """Keep a copy."""
         context.push("environment")
 
 
@@ -207,7 +192,6 @@ class PopEnvironment(ContextChange):
     """Brings back the environment that was kept last."""
 
     def change(self, context: Context) -> None:
-        """Bring it back."""
         context.pop("environment")
 
 

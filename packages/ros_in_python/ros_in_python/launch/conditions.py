@@ -78,7 +78,6 @@ class EqualsSubstitution(Substitution):
         self.left, self.right = ("" if value is None else value for value in (left, right))
 
     def perform(self, context: Context) -> str:
-        """Return `true` or `false`."""
         left, right = text_of(self.left, context), text_of(self.right, context)
         truths = [_TRUTH.get(text.lower()) for text in (left, right)]
         if None not in truths:
@@ -93,7 +92,6 @@ class NotEqualsSubstitution(EqualsSubstitution):
     """`true` if two texts differ."""
 
     def perform(self, context: Context) -> str:
-        """Return `true` or `false`."""
         return _said(super().perform(context) == "false")
 
 
@@ -104,7 +102,6 @@ class NotSubstitution(Substitution):
         self.value = value
 
     def perform(self, context: Context) -> str:
-        """Return `true` or `false`."""
         return _said(not truth_of(self.value, context))
 
 
@@ -117,7 +114,6 @@ class AllSubstitution(Substitution):
         self.values = values
 
     def perform(self, context: Context) -> str:
-        """Return `true` or `false`."""
         return _said(type(self).test(truth_of(value, context) for value in self.values))
 
 
@@ -148,5 +144,4 @@ class IfElseSubstitution(Substitution):
         self.condition, self.if_value, self.else_value = condition, if_value, else_value
 
     def perform(self, context: Context) -> str:
-        """Return the text for which the condition decides."""
         return text_of(self.if_value if truth_of(self.condition, context) else self.else_value, context)

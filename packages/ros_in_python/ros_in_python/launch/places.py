@@ -19,7 +19,6 @@ class PathJoinSubstitution(Substitution):
         self.parts = list(substitutions)
 
     def perform(self, context: Context) -> str:
-        """Return the path."""
         return os.fspath(Path(*(text_of(part, context) for part in self.parts)))
 
     def __truediv__(self, part: Text) -> PathJoinSubstitution:
@@ -99,7 +98,6 @@ class ThisLaunchFile(Substitution):
     """The path of the launch file that is read."""
 
     def perform(self, context: Context) -> str:
-        """Return the path."""
         return os.fspath(context.file)
 
 
@@ -107,7 +105,6 @@ class ThisLaunchFileDir(Substitution):
     """The folder of the launch file that is read."""
 
     def perform(self, context: Context) -> str:
-        """Return the folder's path."""
         return os.fspath(context.file.parent)
 
 

@@ -182,9 +182,6 @@ class LaunchPlan:
         numbers = [int(_seconds(number, "a transition_id", context)) for number in action.transition_ids]
         yield from self.steps(list(lifecycle.transitions(names, numbers)), context)
 
-    def _register(self, action: events.RegisterEventHandler, context: Context) -> Iterator[Step]:
-        yield from self._handler(action.event_handler, context)
-
     def _handler(self, handler: events.EventHandler, context: Context) -> Iterator[Step]:
         reaction, later = handler.reaction, context.copy(is_later=True)
         known_now = None if callable(reaction) else tuple(self.steps(known.as_actions(reaction), later))
@@ -236,7 +233,7 @@ class LaunchPlan:
         if isinstance(source, Path):
             yield from self._included(source, context)
         else:
-            yield from self._described(source, context)
+            yield from self.steps(source.entities, context)
 
     def _included(self, file: Path, context: Context) -> Iterator[Step]:
         outer, outer_depth = context.file, context.depth
@@ -247,9 +244,6 @@ class LaunchPlan:
             description = self.read(file)
         yield from self.steps(description.entities, context)
         context.file, context.depth = outer, outer_depth
-
-    def _described(self, description: known.LaunchDescription, context: Context) -> Iterator[Step]:
-        yield from self.steps(description.entities, context)
 
     def _opaque(self, action: known.Action, context: Context) -> Iterator[Step]:
         if context.is_later:
@@ -327,22 +321,6 @@ def _declare(plan: LaunchPlan, argument: known.DeclareLaunchArgument, context: C
     yield from ()
 
 
-def _log(plan: LaunchPlan, action: known.LogInfo, context: Context) -> Iterator[Step]:
-    yield text_of(action.msg, context)
-
-
-def _end(plan: LaunchPlan, action: known.Shutdown, context: Context) -> Iterator[Step]:
-    yield Emission(events.ShutdownRequested(text_of(action.reason, context)))
-
-
-def _emit(plan: LaunchPlan, action: events.EmitEvent, context: Context) -> Iterator[Step]:
-    yield Emission(action.event)
-
-
-def _unregister(plan: LaunchPlan, action: events.UnregisterEventHandler, context: Context) -> Iterator[Step]:
-    yield HandlerRemoval(action.event_handler)
-
-
 def _change(plan: LaunchPlan, action: ContextChange, context: Context) -> Iterator[Step]:
     action.change(context)
     yield from ()
@@ -360,15 +338,17 @@ _HOW: dict[type, Callable[[LaunchPlan, Any, Context], Iterator[Step]]] = {
     known.RosTimer: LaunchPlan._ros_timer,
     known.GroupAction: LaunchPlan._group,
     known.IncludeLaunchDescription: LaunchPlan._include,
-    known.LaunchDescription: LaunchPlan._described,
+    known.LaunchDescription: lambda plan, description, context: plan.steps(description.entities, context),
     known.OpaqueFunction: LaunchPlan._opaque,
     known.Action: LaunchPlan._opaque,
-    events.RegisterEventHandler: LaunchPlan._register,
-    events.UnregisterEventHandler: _unregister,
-    events.EmitEvent: _emit,
+    events.RegisterEventHandler: lambda plan, action, context: plan._handler(action.event_handler, context),
+    events.UnregisterEventHandler: lambda plan, action, context: iter([HandlerRemoval(action.event_handler)]),
+    events.EmitEvent: lambda plan, action, context: iter([Emission(action.event)]),
     known.DeclareLaunchArgument: _declare,
-    known.LogInfo: _log,
-    known.Shutdown: _end,
+    known.LogInfo: lambda plan, action, context: iter([text_of(action.msg, context)]),
+    known.Shutdown: lambda plan, action, context: iter(
+        [Emission(events.ShutdownRequested(text_of(action.reason, context)))]
+    ),
     ContextChange: _change,
 }
 
@@ -393,7 +373,8 @@ def _source_of(action: known.IncludeLaunchDescription, context: Context) -> know
     source = action.launch_description_source
     if isinstance(source, known.LaunchDescription):
         return source
-    file = Path(text_of(known.path_of_source(source), context)).absolute()
+    path = source.path if isinstance(source, known.LaunchDescriptionSource) else source
+    file = Path(text_of(path, context)).absolute()
     if not file.is_file():
         raise CommandError(f"the launch file {file} does not exist.")
     return file

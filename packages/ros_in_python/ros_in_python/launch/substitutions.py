@@ -152,7 +152,6 @@ class TextSubstitution(Substitution):
         self.text = text
 
     def perform(self, context: Context) -> str:
-        """Return the text itself."""
         return self.text
 
 
@@ -246,7 +245,6 @@ class AnonName(Substitution):
         self.name = name
 
     def perform(self, context: Context) -> str:
-        """Return the name with its number."""
         name = text_of(self.name, context)
         return context.values.setdefault(f"anon{name}", f"{name}_{os.getpid()}_{uuid.uuid4().hex[:8]}")
 

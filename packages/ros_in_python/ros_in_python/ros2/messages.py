@@ -214,7 +214,8 @@ class _MessageFiller:
                 self.message(present, value, path)
             return
         kind = message.get_fields_and_field_types()[name]
-        setattr(message, name, self.array(slot, value, path, kind) if _is_array(slot) else _scalar(slot, value, path))
+        is_array = isinstance(slot, definition.AbstractNestedType)
+        setattr(message, name, self.array(slot, value, path, kind) if is_array else _scalar(slot, value, path))
 
     def array(self, slot: Any, value: Any, path: str, kind: str) -> list[Any]:
         if isinstance(value, (bytes, bytearray)):
@@ -233,10 +234,6 @@ class _MessageFiller:
         message = getattr(importlib.import_module(".".join(packages)), name)()
         self.message(message, value, path)
         return message
-
-
-def _is_array(slot: Any) -> bool:
-    return isinstance(slot, definition.AbstractNestedType)
 
 
 def _check_length(slot: Any, value: list[Any], path: str) -> None:

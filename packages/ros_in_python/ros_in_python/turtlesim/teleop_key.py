@@ -49,7 +49,7 @@ class Teleop:
         if key in ARROWS:
             self._drive(*ARROWS[key])
         elif key.lower() in HEADINGS:
-            self._rotate(HEADINGS[key.lower()])
+            self._asked = self._rotation.send_goal_async(RotateAbsolute.Goal(theta=HEADINGS[key.lower()]))
         elif key.lower() == b"f" and self._asked is not None:
             # At once if the answer has arrived, otherwise as soon as it does.
             self._asked.add_done_callback(_cancel)
@@ -59,9 +59,6 @@ class Teleop:
         twist.linear.x = forward * float(self.node.get_parameter("scale_linear").value)
         twist.angular.z = turn * float(self.node.get_parameter("scale_angular").value)
         self._twists.publish(twist)
-
-    def _rotate(self, theta: float) -> None:
-        self._asked = self._rotation.send_goal_async(RotateAbsolute.Goal(theta=theta))
 
 
 def _cancel(asked: Any) -> None:
