@@ -15,8 +15,8 @@ pytestmark = pytest.mark.skipif(not can_run(), reason="set-up could not fetch Py
 #: Pyodide starts in a few seconds; on a busy machine, in many.
 DEADLINE_MS = 120_000
 _COVERS = """([head, wanted]) => {
-  const [end, top] = [head.getBoundingClientRect().bottom, document.querySelector('.running').getBoundingClientRect().top];
-  return (end > top) === wanted;
+  const bar = document.querySelector('.running');
+  return (head.getBoundingClientRect().bottom > bar.getBoundingClientRect().top) === wanted;
 }"""
 
 
