@@ -26,7 +26,7 @@ from grader.submission.program_choice import digest_of
 from grader.submission.python_code import definitions
 from groundwork.clean_environment import module_command
 from spinbook.kernel.cell_output import DisplayLimit
-from spinbook.kernel.process import KeptProcess
+from spinbook.kernel.process import KeptProcess, Status
 from spinbook.kernel.session import Session
 from spinbook.package.cell_line import CellFailed
 
@@ -42,7 +42,7 @@ class CheckedCode:
     warning: str = ""
 
     def note(self, what: str, command: str) -> str:
-        """Return the message for the student: `what` is "Checked" or "Handed in", `command` the command to run
+        """Return the message for the student: `what` is "Checked" or "Handing in", `command` the command to run
         again."""
         text = f"{what}: {self.origin}."
         return f"{text}\nWARNING: {self.warning.format(command=command)}" if self.warning else text
@@ -173,7 +173,7 @@ _GRACE = (0.5, 0.5)
 def checked(exercise: Path, code: Code, seconds: float) -> dict[str, Any]:
     """Return the result for `code`: by media type (text/html and text/plain) in `shown`, and further `hints`.
 
-    Raises CellFailed if there is none: after `seconds`, when interrupted, or because of a fault of ours.
+    Raises CellFailed if there is none: after `seconds`, or because of a fault of ours.
     """
     # A stopped check leaves temporary files there. A program that runs as another user must be able to enter it.
     with tempfile.TemporaryDirectory(prefix="spinbook-", ignore_cleanup_errors=True) as temporary:
@@ -191,8 +191,6 @@ def checked(exercise: Path, code: Code, seconds: float) -> dict[str, Any]:
                     f"allow more time, as in %check {exercise.name} --seconds {2 * seconds:g}"
                 )
             output = process.read_all()[0].decode(errors="replace")
-        except KeyboardInterrupt:
-            raise CellFailed("The check was interrupted, so there is no result.") from None
         finally:
             if process.status.running:
                 process.stop(_GRACE)
@@ -211,6 +209,16 @@ def _result(file: Path, output: str) -> dict[str, Any]:
     return result
 
 
+@contextlib.contextmanager
+def _when_stopped(text: str) -> Iterator[None]:
+    """Make a press of Stop, wherever it comes in, a CellFailed with this text."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise CellFailed(text) from None
+
+
+@_when_stopped("The check was interrupted, so there is no result.")
 def check_cell(session: Session, shell: Any, name: str, course: str, seconds: float) -> None:
     """Check the cell of the exercise `name` and show the result. Raises CellFailed if it can't be checked.
 
@@ -241,8 +249,6 @@ def _prepare() -> None:
         require_middleware(print)
     except MiddlewareUnavailable as error:
         raise CellFailed(f"This computer can't check programs, which is not your fault. {error}") from None
-    except KeyboardInterrupt:
-        raise CellFailed("The check was interrupted, so there is no result.") from None
 
 
 def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
@@ -267,15 +273,27 @@ def exercise_of(name: str, course: str, notebook: Path | None) -> Exercise:
 #: The time that the hand-in has to write its file after its self-check was stopped, and then after SIGTERM (s).
 _HAND_IN_GRACE = (60.0, 5.0)
 
-_NOT_HANDED_IN = "Nothing was handed in: it was stopped before the file was written. Run {command} again."
-
 
 def submit_cell(session: Session, shell: Any, name: str, course: str, student: str | None, seconds: float) -> None:
     """Write the upload for the exercise `name`. Raises CellFailed if there is nothing to hand in, or if it fails."""
+    shown_as = f"%submit {name}"
+    not_handed_in = f"Nothing was handed in: it was stopped before the file was written. Run {shown_as} again."
+    with _when_stopped(not_handed_in):
+        status = _hand_in(session, shell, name, course, student, seconds)
+    if status.ended_by and status.exit != 0:
+        raise CellFailed(not_handed_in)
+    if status.ended_by:
+        print(
+            f"The self-check was stopped, by you or because it took longer than {seconds:g} s; the file to upload has "
+            f"none. To wait longer: {shown_as} --seconds {2 * seconds:g}"
+        )
+
+
+def _hand_in(session: Session, shell: Any, name: str, course: str, student: str | None, seconds: float) -> Status:
     notebook = notebook_file(shell)
     exercise = exercise_of(name, course, notebook)
     result = code_of(exercise, session, shell, notebook)
-    print(result.note("Handed in", f"%submit {exercise.name}"))
+    print(result.note("Handing in", f"%submit {exercise.name}"))
     with contextlib.suppress(MiddlewareUnavailable):  # the upload is then written without a self-check
         require_middleware(print)
     with tempfile.TemporaryDirectory() as folder:
@@ -288,15 +306,4 @@ def submit_cell(session: Session, shell: Any, name: str, course: str, student: s
         command += [os.fspath(notebook)] if notebook else []
         command += ["--code", os.fspath(file if is_single else Path(folder, exercise.name))]
         command += ["--student", student] if student is not None else []
-        shown_as = f"%submit {name}"
-        try:
-            status = session.run_command(command, {}, Path.cwd(), DisplayLimit(seconds), shown_as, _HAND_IN_GRACE)
-        except KeyboardInterrupt:
-            raise CellFailed(_NOT_HANDED_IN.format(command=shown_as)) from None
-    if status.ended_by and status.exit != 0:
-        raise CellFailed(_NOT_HANDED_IN.format(command=shown_as))
-    if status.ended_by:
-        print(
-            f"The self-check was stopped, by you or because it took longer than {seconds:g} s; the file to upload has "
-            f"none. To wait longer: {shown_as} --seconds {2 * seconds:g}"
-        )
+        return session.run_command(command, {}, Path.cwd(), DisplayLimit(seconds), f"%submit {name}", _HAND_IN_GRACE)
