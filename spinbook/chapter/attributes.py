@@ -44,6 +44,8 @@ _BOXES = frozenset({"Admonition", "Aside", "Callout", "Alert", "Notice", "Messag
 _FOLDED = frozenset(
     {"details", "accordion", "accordionitem", "expandable", "collapsible", "dropdown", "toggle", "spoiler", "expand"}
 )
+#: The components of MDX that a misspelt one may mean.
+COMPONENTS = tuple(name for name in (*_TABS, *_HOLDING, *_BOXES, *map(str.capitalize, _STYLE)) if name[0].isupper())
 _PICTURE = r"[^\"'`{}]+\.(?:png|jpe?g|gif|svg|webp|avif)"
 _PICTURE_PATH = re.compile(rf"""["'`]({_PICTURE})["'`]""", re.IGNORECASE)
 _IMPORT = re.compile(r"""^import\s+(\w+)\s+from\s+["'](!!raw-loader!)?([^"']+)["'];?[ \t]*$""", re.MULTILINE)

@@ -181,6 +181,10 @@ class References:
         looks_so = _normal(unquote(target)) in self.known or (bool(self.known) and bool(_LABEL.fullmatch(target)))
         return looks_so and locate(self.root, folder, target) is None
 
+    def has(self, anchor: str) -> bool:
+        """Return whether an anchor is a label."""
+        return _normal(unquote(anchor)) in self.known
+
     def _problem(self, item: _LabelReference, unknown: str, line: int) -> Problem:
         if item.role.endswith("doc"):
             problem = f"a reference leads to the document `{unknown}`, and there is no such file."

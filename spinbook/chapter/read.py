@@ -9,23 +9,19 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pygments.lexers import find_lexer_class_by_name
-from pygments.util import ClassNotFound
-
 from groundwork.problem import Problem, Severity
-from groundwork.words import similar
-from spinbook.chapter.attributes import BLOCKS
 from spinbook.chapter.block import Block, BlockKind, SourceLine
 from spinbook.chapter.blocks import read_blocks
 from spinbook.chapter.chapter import Chapter, ChapterCell, StaticFence, make_cells
 from spinbook.chapter.classify import CellKind, ClassifiedFence, first_look, node_name, static, with_language
 from spinbook.chapter.excerpts import excerpts, is_excerpt
-from spinbook.chapter.fence import PYTHON, SHELL, Fence, interface_of, interface_package
-from spinbook.chapter.files import is_elsewhere, locate, read_included
+from spinbook.chapter.fence import Fence, interface_of, interface_package
+from spinbook.chapter.files import is_elsewhere, locate, read_included, split
 from spinbook.chapter.interface_fields import own_definitions
 from spinbook.chapter.labels import Heading, Label, References, headings, labels, words_of
 from spinbook.chapter.layout import ChapterLayout, Piece
 from spinbook.chapter.links import links_in, references_in
+from spinbook.chapter.oversights import Anchors, macros, misspelt
 from spinbook.chapter.own_packages import OwnPackages, named_files, own_packages
 from spinbook.chapter.programs import Programs
 from spinbook.chapter.shells import Shells
@@ -35,9 +31,6 @@ from spinbook.chapter.surroundings import Surroundings
 
 _OTHER_SYSTEM = re.compile(r"\b(windows|mac ?os|os ?x|powershell)\b", re.IGNORECASE)
 _LINUX = re.compile(r"linux|ubuntu|wsl", re.IGNORECASE)
-#: What opens a block, with its kind or its language; and those that a misspelt one may mean.
-_OPENING = re.compile(r"\s*(?::{3,}|`{3,}|~{3,}|!!!|\?\?\?\+?) *\{?([a-z][a-z-]+)")
-_KNOWN = (*BLOCKS, *PYTHON, *SHELL)
 #: The tag of cells that a notebook has but that a build does not run: nbclient's own.
 SKIPPED = "skip-execution"
 
@@ -284,26 +277,25 @@ def _references(
     assert parsed.source is not None
     folder = file.parent.as_posix()
     yield from references.problems(parsed.blocks)
-    yield from _misspelt(parsed.inner_blocks, file)
+    yield from misspelt(parsed.inner_blocks, file, parsed.source.text)
+    yield from macros(parsed.inner_blocks, file)
     for target, line in links_in(parsed.source.text):
-        if is_elsewhere(target) or "{" in target or references.is_label(target):
+        is_own = target.startswith("#")
+        if (is_elsewhere(target) and not is_own) or "{" in target or references.is_label(target):
             continue
-        if locate(root, folder, target) is None:
+        place = file if is_own else locate(root, folder, target)
+        if place is None:
             problem = f"a link leads to `{target}`, and there is no such file."
             fix = "Write the path relative to the chapter's folder."
             yield Problem(file, line, problem, fix, Severity.WARNING, group="files that are not there")
+        elif (anchor := split(target)[1][1:]) and place in surroundings.titles and not references.has(anchor):
+            fault = _anchors(_parse(root, place)).problem(anchor, target, place, file, line)
+            yield from [fault] if fault else []
 
 
-def _misspelt(blocks: Iterable[Block], file: Path) -> Iterator[Problem]:
-    """Yield kinds of blocks and languages that look like misspellings; any other may be a book tool's own."""
-    for block in blocks:
-        opening = _OPENING.match(block.lines[0].text) if block.lines else None
-        if opening and opening[1] not in _KNOWN and (near := similar(opening[1], _KNOWN, 0.8)):
-            with contextlib.suppress(ClassNotFound):
-                find_lexer_class_by_name(opening[1])  # a language that looks like another one
-                continue
-            problem = f"`{opening[1]}` is not a known kind of block or language."
-            yield Problem(file, block.line, problem, f"Did you mean `{near}`?", Severity.WARNING)
+@functools.lru_cache(maxsize=512)
+def _anchors(parsed: _ParsedChapter) -> Anchors:
+    return Anchors(parsed.blocks)
 
 
 def _uses(parsed: _ParsedChapter, root: Path, file: Path) -> set[Path]:

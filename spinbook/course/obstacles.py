@@ -20,6 +20,11 @@ _WORDS = {
     ),
     "a file name": ("chapter has nodes without a file name", "chapters have nodes without a file name"),
     "files that are not there": ("link leads to a file that is not there", "links lead to files that are not there"),
+    "headings that no chapter has": (
+        "link leads to a heading that is not there",
+        "links lead to headings that are not there",
+    ),
+    "macros": ("macro of a book's tool is shown as it is", "macros of a book's tool are shown as they are"),
     "files to include": ("file to include is not there", "files to include are not there"),
     "labels that no chapter has": (
         "reference leads to a label that no chapter has",

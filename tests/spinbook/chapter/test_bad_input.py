@@ -74,6 +74,19 @@ FAULTS: dict[str, tuple[bytes, int, list[str], str]] = {
         ["notebook command", "another fence"],
         NOT_RUN,
     ),
+    "misspelt component": (
+        b"# T\n\n<Asside>\n\nHot.\n\n</Asside>\n",
+        3,
+        ["`<Asside>`", "Did you mean `<Aside>`?"],
+        WARNING,
+    ),
+    "dead heading": (
+        b"# T\n\n## Two of it\n\n[there](#two-of-its)\n",
+        5,
+        ["no such heading", "Did you mean `#two-of-it`?"],
+        WARNING,
+    ),
+    "macro": (b"# T\n\nOn {{ distro }}.\n", 3, ["`{{ distro }}` is a macro", "Write what it stands for"], WARNING),
     "dead link": (b"# T\n\nsee [there](nowhere.md)\n", 3, ["nowhere.md", "no such file"], WARNING),
     "misspelt attribute": (b"# T\n\n```bash secnods=3\nros2 topic list\n```\n", 3, ["`secnods`", "Known are"], WARNING),
     "misspelt tag": (
@@ -188,6 +201,36 @@ def test_strict_makes_it_an_error_that_something_does_not_run(course: CourseFold
 
 def test_a_warning_stops_nothing(course: CourseFolder) -> None:
     assert course.write(linked=b"# T\n\nsee [there](nowhere.md)\n").spinbook("build").returncode == 0
+
+
+def test_what_a_books_tool_understands_is_no_oversight(course: CourseFolder) -> None:
+    course.write(
+        one="""# T
+
+import Asside from '@site/src/Asside';
+
+## 1. Ünder & Über {#own}
+
+<a id="raw"></a>
+
+(mine)=
+
+## Twice
+
+## Twice
+
+[a](#1-ünder--über) [b](#under-uber) [c](#own) [d](#raw) [e](#mine) [f](#twice-1) [g](#twice_1) [h](#top) [i](#Twice)
+
+`{{ code }}`, $x^{{2}}$ and <b style={{color: "red"}}>red</b>.
+
+<Asside>
+
+Mine.
+
+</Asside>
+"""
+    )
+    assert "0 errors, 0 warnings" in course.spinbook("lint").stdout
 
 
 def test_a_chapter_that_breaks_keeps_its_last_good_notebook(course: CourseFolder) -> None:
