@@ -45,7 +45,7 @@ def load(shell: Any) -> None:
     magics.register(shell, session)
     shell.events.register("pre_run_cell", lambda info: _begin_cell(session))
     shell.events.register("post_run_cell", lambda result: report_errors(session))
-    shell.set_custom_exc((Exception,), _show_own_frames)
+    shell.set_custom_exc((Exception, KeyboardInterrupt), _show_own_frames)
     session.silent.watch(shell)
     shell.events.register("pre_run_cell", SpinInCell(session.ran).before_cell)
     _find_scripts()
