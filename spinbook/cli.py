@@ -9,6 +9,7 @@ import importlib
 import importlib.util
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import click
@@ -189,6 +190,11 @@ def spinbook() -> None:
 def main() -> None:
     """Run `spinbook` as a program; invalid input prints a message and exits with 1, wrong usage with 2, a place
     that can't be written with 3."""
+    try:
+        Path.cwd()
+    except FileNotFoundError:
+        click.echo("The folder that this terminal is in has been removed. Go to another one with cd.", err=True)
+        sys.exit(2)
     atexit.register(gc.freeze)  # runs last: the system frees the memory anyway, so there is nothing to collect
     try:
         spinbook(prog_name="spinbook")

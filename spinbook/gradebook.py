@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from grader.classroom.course_gradebook import course_csv, course_page, course_rows, graded_exercises
+from grader.classroom.course_gradebook import course_csv, course_page, course_rows, graded_exercises, may_be_same
 from grader.classroom.tables import BYTE_ORDER_MARK
 from grader.exercise.exercise import ExerciseError
 from grader.exercise.loading import load
@@ -46,6 +46,11 @@ def gradebook(results: Path, start: Path) -> None:
         click.echo(f"{message} {results / 'EXERCISE'}", err=True)
         sys.exit(NOTHING_GRADED)
     rows = course_rows(exercises)
+    for unreadable in (folder for exercise in exercises for folder in exercise.unreadable):
+        click.echo(f"{unreadable}: this grade can't be read, and counts as not handed in. Grade it again.", err=True)
+    for names in may_be_same(rows):
+        advice = "If they are one student, grade each exercise with the same --roster."
+        click.echo(f"counted as two students: {', '.join(names)}. {advice}", err=True)
     write_if_changed(results / "index.html", course_page(course.title, exercises, rows), durable=True)
     write_if_changed(results / "gradebook.csv", BYTE_ORDER_MARK + course_csv(exercises, rows), durable=True)
     click.echo(f"{counted(len(rows), 'student')}, exercises: {', '.join(exercise.name for exercise in exercises)}.")

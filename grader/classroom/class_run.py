@@ -90,6 +90,11 @@ def _collect_options(class_request: ClassRequest, deadline: Deadline | None) -> 
 def _adjuster(class_request: ClassRequest, deadline: Deadline | None, students: set[str]) -> Adjuster:
     zone = deadline.zone if deadline else None
     overrides = overrides_in(class_request.overrides, students, zone) if class_request.overrides else {}
+    for student in () if deadline else (who for who, theirs in overrides.items() if any(one.due for one in theirs)):
+        raise SubmissionsError(
+            f"{class_request.overrides}: {student} has another due date, but exercise.toml has no [deadline]. Add one, "
+            "or remove the row."
+        )
     for student in class_request.regrade:
         if student not in (*students, "*"):
             raise SubmissionsError(f'--regrade {student}: no submission from a student called "{student}".')

@@ -58,8 +58,8 @@ def collect(source: Path, exercise: Exercise, unpack_into: Path, options: Collec
     else:
         found = _found(source, exercise, unpack_into, options)
     if not any(can_be_read(file.name) or _has_work(file.path) for file, _ in found.uploads):
-        text = "".join(f"\n  {skip.file}: {skip.why}" for skip in found.skipped[:10])
-        raise SubmissionsError(f"There is no submission in it.{text}")
+        left_out = [*(str(one) for one in found.odd), *(f"{skip.file}: {skip.why}" for skip in found.skipped)]
+        raise SubmissionsError("\n  ".join(["There is no submission in it.", *left_out[:10]]))
     return Collector(unpack_into, options, found.together).submissions(found)
 
 
@@ -95,6 +95,8 @@ def _found(source: Path, exercise: Exercise, unpack_into: Path, options: Collect
     ]
     others += [SkippedFile(file.name, f"not in {'/'.join(recognition.inside)}/") for file in recognition.others]
     why = f"its name is not one of {recognition.form.title}"
+    if recognition.form is PLAIN:
+        why = "it is named after the exercise, not after a student"
     others += [SkippedFile(file.name, why) for _, file in recognition.misfits if not can_be_graded(file.name)]
     return ClassFiles(
         recognition.form.title + folder, uploads, [*left_out, *others], _odd(recognition, why), recognition.form.dates

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from pathlib import Path
 from urllib.parse import quote
 
+from grader.classroom.names import may_be_one, without_numbers
 from grader.classroom.overview import OUTCOMES, Distribution, Tally, distribution, tallies
 from grader.classroom.tables import Cell, csv_text
 from grader.grading.grade import Entry, Student
@@ -16,12 +18,16 @@ from grader.report.pages import render
 
 @dataclass(frozen=True)
 class GradedExercise:
-    """One graded exercise: `entries` by the student's id, and the `points` for full marks."""
+    """One graded exercise: `entries` by the student's id, and the `points` for full marks.
+
+    `unreadable` are folders of students whose grade can't be read.
+    """
 
     name: str
     title: str
     points: float
     entries: Mapping[str, Entry]
+    unreadable: tuple[Path, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -58,10 +64,10 @@ def graded_exercises(
 
 
 def _graded_exercise(folder: Path, title: str) -> GradedExercise:
-    stored = filter(None, map(read_grade, sorted(folder.glob(f"{STUDENTS}/*/grade.json"))))
-    entries = {entry.student.id: entry for entry, _ in stored}
+    read = {file.parent: read_grade(file) for file in sorted(folder.glob(f"{STUDENTS}/*/grade.json"))}
+    entries = {stored[0].student.id: stored[0] for stored in read.values() if stored}
     points = max((entry.grade.points for entry in entries.values()), default=0.0)
-    return GradedExercise(folder.name, title, points, entries)
+    return GradedExercise(folder.name, title, points, entries, tuple(who for who, stored in read.items() if not stored))
 
 
 def course_rows(exercises: Sequence[GradedExercise]) -> tuple[CourseRow, ...]:
@@ -83,6 +89,15 @@ def _row(student: Student, exercises: Sequence[GradedExercise]) -> CourseRow:
         if entry is None or entry.final is not None
     ]
     return CourseRow(student, entries, sum(got for got, _ in counted), sum(most for _, most in counted))
+
+
+def may_be_same(rows: Sequence[CourseRow]) -> Iterator[list[str]]:
+    """Yield the ids of rows that may be one student's: with similar names, and no exercise in common."""
+    for one, other in combinations(rows, 2):
+        apart = not any(mine and its for mine, its in zip(one.entries, other.entries, strict=True))
+        mine, theirs = one.student.id, other.student.id
+        if apart and (may_be_one(mine, theirs) or without_numbers(mine) == without_numbers(theirs) != frozenset()):
+            yield [mine, theirs]
 
 
 def course_csv(exercises: Sequence[GradedExercise], rows: Sequence[CourseRow]) -> str:

@@ -16,7 +16,7 @@ from grader.classroom.times import later, localized, moment, units_begun, zone_n
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.exercise_toml import read_toml
 from grader.grading.grade import Adjustment, Entry
-from groundwork.words import counted
+from groundwork.words import counted, did_you_mean
 
 UNITS = {unit: timedelta(**{f"{unit}s": 1}) for unit in ("minute", "hour", "day", "week")}
 LENGTH = re.compile(r"(\d+) *(minute|hour|day|week)s?")
@@ -156,7 +156,8 @@ def overrides_in(file: Path, students: set[str], zone: tzinfo | None = None) -> 
 def _override(row: dict[str, str], place: str, students: set[str], zone: tzinfo | None) -> Override:
     student, points, due = normal(row["student"]), row.get("points", ""), row.get("due", "")
     if student not in students:
-        raise SubmissionsError(f"{place}: no student is called {student!r}. Write the name of a folder in the results.")
+        advice = did_you_mean(student, students, "Write the name of a folder in the results.")
+        raise SubmissionsError(f"{place}: no student is called {student!r}. {advice}")
     if not row["reason"]:
         raise SubmissionsError(f"{place}: the reason is missing. Write one: the student will read it.")
     if bool(points) == bool(due):

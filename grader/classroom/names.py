@@ -82,6 +82,11 @@ def _numbers(of: frozenset[str]) -> set[str]:
     return {number for word in of for number in re.findall(r"\d+", word)}
 
 
+def without_numbers(name: str) -> frozenset[str]:
+    """Return the words of a name without short numbers, dates and the like: those of week1-anna are those of anna."""
+    return frozenset(word for word in words(name) if not re.fullmatch(r"[^\W\d]{0,8}\d{1,4}", word))
+
+
 def same_but_for_numbers(names: Iterable[str]) -> Iterator[list[str]]:
     """Yield names that differ only in short numbers or in capitals, such as week1-anna and week2-anna.
 
@@ -89,6 +94,6 @@ def same_but_for_numbers(names: Iterable[str]) -> Iterator[list[str]]:
     """
     alike: dict[frozenset[str], list[str]] = defaultdict(list)
     for name in names:
-        alike[frozenset(word for word in words(name) if not re.fullmatch(r"[^\W\d]{0,8}\d{1,4}", word))].append(name)
+        alike[without_numbers(name)].append(name)
     if len(alike.keys() - {frozenset()}) > 1:
         yield from (same for rest, same in alike.items() if rest and len(same) > 1)

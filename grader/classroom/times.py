@@ -74,6 +74,8 @@ def read_time(text: str, source: str, zone: tzinfo | None, near: tzinfo | None =
             return Time(written.replace(tzinfo=timezone.utc), source)
         match = next(filter(None, (pattern.fullmatch(line) for pattern in _WRITTEN)))
         at, note = _in_zone(_as_written(match), (match["zone"] or "").strip("() "), zone, near)
+        if at.utcoffset() != at.replace(fold=1).utcoffset():
+            note = f"{at:%Y-%m-%d %H:%M}, when clocks change, was read as UTC{at:%z}"
         at.astimezone(timezone.utc)  # times in the years 1 and 9999 can overflow in other zones
     except (StopIteration, ValueError, OverflowError, OSError) as error:
         why = f": {error}" if "zone" in str(error) else ""

@@ -31,6 +31,16 @@ def test_help_imports_no_verb() -> None:
     assert done.stdout == "[]\n"
 
 
+def test_a_folder_that_was_removed_is_a_sentence(tmp_path: Path) -> None:
+    program = (
+        "import os, sys; os.rmdir(os.getcwd()); from spinbook.cli import main; sys.argv = ['spinbook', 'lint']; main()"
+    )
+    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("The folder that this terminal is in has been removed. Go to another one")
+
+
 def test_help_names_every_verb_once() -> None:
     shown = CliRunner().invoke(cli.spinbook, ["--help"]).output
 

@@ -6,11 +6,11 @@ import re
 from collections.abc import Callable
 
 from grader.classroom.formats.format import Export, Format, Interpretation, Parts, UploadedFile, person
-from grader.classroom.names import normal, student_id
+from grader.classroom.names import comparable, normal, student_id
 from grader.classroom.times import UNKNOWN
 from grader.submission.file_kinds import kind_of, kind_of_content, original_name
 
-SUFFIX = re.compile(r"(\.py\.txt|\.launch\.\w+|\.ipynb\.(json|txt)|\.tar\.\w+|\.[^.]+)$", re.IGNORECASE)
+SUFFIX = re.compile(r"(\.(py|ipynb|launch|tar)\.\w+|\.[^.]+)$", re.IGNORECASE)
 
 #: Instructors' own tables and notes, next to the submissions. Any other page or note may be what a student handed in.
 NOT_WORK = re.compile(r".*\.(?:csv|tsv|xlsx?|ods|ya?ml|toml)|(?:readme|licen[sc]e|index)(?:\.\w+)?", re.IGNORECASE)
@@ -23,6 +23,8 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
     """
     names = {_name(parts): _name((original_name(parts[0]), *parts[1:])) for parts in export.files}
     originals = list(names.values())
+    exercise = export.exercise
+    of_exercise = {comparable(exercise.name), comparable(without_suffix(exercise.file_name))}
 
     def understand(parts: Parts) -> Interpretation:
         is_work = len(parts) > 1 or kind_of(parts[0]) == "launch file"
@@ -35,6 +37,8 @@ def read(export: Export) -> Callable[[Parts], Interpretation]:
         name = _name(parts)
         while names.get(name, name) != name and (names[name] in names or originals.count(names[name]) == 1):
             name = names[name]  # a copy may be one of a copy
+        if len(parts) == 1 and comparable(name) in of_exercise:
+            return None
         file = export.files.get(parts)
         student = person(name, name if name != student_id(name) else "")
         return UploadedFile((student,), parts[1:] or parts, time=file.time if file else UNKNOWN)

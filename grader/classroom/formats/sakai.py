@@ -32,6 +32,7 @@ def read(export: Export) -> Callable[[Parts], Interpretation] | None:
     if not any(FOLDER.fullmatch(folder) or export.text(folder, MEMBERS) for folder in folders):
         return None
     students = {folder: _students(export, folder) for folder in folders}
+    handed_in = {parts[0] for parts in map(_with_folders, export.files) if len(parts) > 1 and not _is_sakais(parts)}
     listed = dict(_listed_times(export))
     times = {
         folder: read_time(export.text(folder, TIMESTAMP), TIMESTAMP, timezone.utc)
@@ -46,12 +47,16 @@ def read(export: Export) -> Callable[[Parts], Interpretation] | None:
             return OWN if OF_ALL.fullmatch(parts[0]) else None
         if not students[parts[0]]:
             return None
-        if parts[1] in SAKAIS or parts[1].startswith("Feedback Attachment"):
-            return OWN
+        if _is_sakais(parts):
+            return OWN if parts[0] in handed_in else "nothing but Sakai's own files: no submission"
         aside = len(parts) == 2 and (parts[1] == TIMESTAMP or parts[1].endswith("_submissionText.html"))
         return UploadedFile(students[parts[0]], parts[2:] or parts[1:], time=times[parts[0]], aside=aside)
 
     return understand
+
+
+def _is_sakais(parts: Parts) -> bool:
+    return parts[1] in SAKAIS or parts[1].startswith("Feedback Attachment")
 
 
 def _with_folders(parts: Parts) -> Parts:

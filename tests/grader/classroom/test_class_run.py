@@ -212,6 +212,8 @@ def test_a_mistake_in_the_overrides_is_reported_with_its_line(done: SmallClass) 
     assert code == 2
     assert "overrides.csv:2: the reason is missing." in printed
     assert "Traceback" not in printed
+    wishes.write_text("student,due,reason\nana,2026-11-24,ill\n")
+    assert "ana has another due date, but exercise.toml has no [deadline]." in done.grade("--overrides", str(wishes))[1]
 
 
 def test_two_gradings_never_write_into_one_folder(done: SmallClass) -> None:

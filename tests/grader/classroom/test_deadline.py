@@ -148,7 +148,8 @@ def test_nobody_gets_less_than_nothing(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("row", "message"),
     [
-        ("eve,5,,why", "no student is called 'eve'"),
+        ("eve,5,,why", "no student is called 'eve'. Write the name of a folder"),
+        ("Ada,5,,why", "no student is called 'Ada'. Did you mean ada?"),
         ("ada,5,,", "the reason is missing"),
         ("ada,,,why", "Give one of the two"),
         ("ada,5,2026-11-24,why", "Give one of the two"),

@@ -281,6 +281,8 @@ def test_sakai_and_gradescope_say_who_is_in_a_group(tmp_path: Path) -> None:
     found = collected(archive(tmp_path / "class.zip", made))
     assert list(files(found)) == ["ann1", "bo2", "cy3"]
     assert found.handed_in[0].file == found.handed_in[1].file
+    nothing = {"Lab/Ott, Di(di4)/comments.txt": "", **made}
+    assert [skip.file for skip in collected(archive(tmp_path / "b.zip", nothing)).skipped] == [*nothing][:1]
 
 
 MOODLES = "Identifier,Full name,Email address,Status,Last modified (submission)\n"

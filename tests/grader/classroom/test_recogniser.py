@@ -122,6 +122,15 @@ def test_a_class_that_handed_in_another_language_has_its_rows(tmp_path: Path) ->
     assert found.notes == ("handed in, but not one of .py, .ipynb, .zip: anna.cpp, bert.rs, dora.html, emil.md",)
 
 
+def test_a_file_named_after_the_exercise_is_nobodys(tmp_path: Path) -> None:
+    why = "it is named after the exercise, not after a student"
+    found = collected(folder(tmp_path / "class", ["anna.py", "Joint Velocity (1).ipynb"]))
+    assert list(files(found)) == ["anna"]
+    assert [str(question) for question in found.questions] == [f"Joint Velocity (1).ipynb: {why}"]
+    with pytest.raises(SubmissionsError, match=rf"no submission in it\.\n  joint_velocity\.py: {why}"):
+        collected(archive(tmp_path / "one.zip", ["joint_velocity.py"]))
+
+
 def test_a_students_folder_without_a_file_is_named(tmp_path: Path) -> None:
     source = folder(tmp_path / "class", ["anna/node.py", "bert/.git/HEAD"])
     (source / "carl").mkdir()

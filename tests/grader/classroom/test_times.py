@@ -77,6 +77,12 @@ def test_an_abbreviation_of_several_zones_is_read_by_the_deadlines_and_reported(
     assert "read as UTC" in read_time("2026-11-22 10:00:00", "timestamp.txt", UTC, BERLIN).note
 
 
+@pytest.mark.parametrize(("written", "read"), [("2026-10-25 02:30", "+0200"), ("2026-03-29 02:30", "+0100")])
+def test_a_time_that_clocks_have_twice_or_not_at_all_is_said(written: str, read: str) -> None:
+    time = read_time(written, "the roster", ZoneInfo("Europe/Berlin"))
+    assert time.note == f"{written}, when clocks change, was read as UTC{read}"
+
+
 def test_a_timestamp_that_can_not_be_read_belongs_to_its_student_alone(tmp_path: Path) -> None:
     made = {f"submitted/s{n}/joint_velocity/node.py": "" for n in range(3)}
     made |= {f"submitted/s{n}/joint_velocity/timestamp.txt": "2026-11-22 10:00 UTC" for n in range(2)}
