@@ -155,14 +155,14 @@ def notebook_file(shell: Any) -> Path | None:
 
 
 def _renamed(folder: Path, shell: Any) -> Path | None:
-    """Return the notebook that was saved last with the cell that runs now. JupyterLab does not tell a kernel that its
-    notebook was renamed, but the cell's id."""
+    """Return the only notebook that has the cell that runs now; None if a copy has it, too. JupyterLab does not tell a
+    kernel that its notebook was renamed, but the cell's id."""
     request: dict[str, Any] = getattr(shell, "get_parent", dict)()
     cell = request.get("metadata", {}).get("cellId")
     with contextlib.suppress(OSError):
         readable = (file for file in folder.glob("*.ipynb") if cell and file.is_file() and os.access(file, os.R_OK))
         holding = [file for file in readable if json.dumps(cell) in file.read_text("utf-8", "replace")]
-        return max(holding, key=lambda file: file.stat().st_mtime, default=None)
+        return holding[0] if len(holding) == 1 else None
     return None
 
 

@@ -96,6 +96,9 @@ def test_a_cell_that_was_changed_since_it_was_run_is_reported_and_one_that_was_n
     elsewhere.from_cell("checked")
     assert "WARNING: You have changed the cell" in elsewhere.run(f"{BEGUN} --course {place}").text
 
+    (place / "a copy.ipynb").write_bytes((place / "mine.ipynb").read_bytes())
+    assert "WARNING" not in elsewhere.run(f"{BEGUN} --course {place}").text, "which of the two runs is not known"
+
 
 def test_a_restarted_kernel_needs_only_the_first_cell_and_then_any_cell_may_come_first(place: Path) -> None:
     kernel = Kernel(place, **{JUPYTER: ""})
