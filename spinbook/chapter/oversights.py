@@ -23,8 +23,11 @@ from spinbook.chapter.labels import headings
 _OPENING = re.compile(r"\s*(?::{3,}|`{3,}|~{3,}|!!!|\?\?\?\+?) *\{?([a-z][a-z-]+)")
 _KNOWN = (*BLOCKS, *PYTHON, *SHELL)
 _TAG = re.compile(r"\s*<([A-Z][A-Za-z]+)\b")
-#: `{{ name }}` and `{% tag %}` of Jinja and Liquid, but no braces of JSX or of a formula; code, so that it is skipped.
-_MACRO = re.compile(r"`+[^`]*`+|(?<![\w=^$\\{}])(\{\{[^{}]{1,200}\}\}|\{%-?[^{}%]{1,200}%\})")
+#: `{{ name }}` and `{% tag %}` of Jinja and Liquid, and `@fig-name` of Quarto, but no braces of JSX or of a formula.
+#: Code matches as well, so that it is skipped.
+_MACRO = re.compile(
+    r"`+[^`]*`+|(?<![\w=^$\\{}])(\{\{[^{}]{1,200}\}\}|\{%-?[^{}%]{1,200}%\}|(?<!@)@(?:sec|fig|tbl|eq|lst)-[\w-]+)"
+)
 #: How authors name a place themselves: in HTML, in an attribute list, as MyST's label, and as a directive's option.
 _NAMED = re.compile(
     r"""\b(?:id|name)\s*=\s*\{?["']?([^"'\s<>{}]+)|\{[^{}\n]*#([^\s{}]+)|^\s*\(([^()\n]+)\)=|^\s*:(?:name|label):\s*(\S+)"""

@@ -91,6 +91,9 @@ def _book(root: Path, pages: Pages, contents: Path | None, title: str, folder: P
         found = [item] if isinstance(item, Path) else pages.find_all(folder, item)
         left_out += [] if found else [str(item)]
         chapters |= {file.relative_to(root): None for file in found}
+    if not chapters and left_out and contents:
+        why = f"none of the pages that it lists is there: {', '.join(left_out)}."
+        raise SpinbookError(Problem(contents, None, why, f"Their paths are relative to {folder}."))
     if not chapters:
         raise SpinbookError(_nothing_in(root))
     title = title or _title_of(root) or pages.title_of(root / next(iter(chapters)))

@@ -152,7 +152,7 @@ def _report(course: Course, built: Sequence[BuildResult]) -> None:
     made = sum(not item.failed for item in built)
     click.echo(f"{made} of {len(built)} chapters built: {cells} cells, {nodes} of them nodes")
     click.echo(f"shown and not run: {counted(static, 'piece')} of code")
-    for line in ranked(problems)[: _SHOWN + 1]:
+    for line in [*(str(problem) for problem in problems if problem.is_error), *ranked(problems)][: _SHOWN + 1]:
         click.echo(line)
     folder = os.path.relpath(course.root)
     go = f"  cd {folder}\n" if folder != "." else ""

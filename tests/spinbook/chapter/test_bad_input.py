@@ -87,6 +87,7 @@ FAULTS: dict[str, tuple[bytes, int, list[str], str]] = {
         WARNING,
     ),
     "macro": (b"# T\n\nOn {{ distro }}.\n", 3, ["`{{ distro }}` is a macro", "Write what it stands for"], WARNING),
+    "reference of Quarto": (b"# T\n\nSee @fig-arm.\n", 3, ["`@fig-arm` is a macro"], WARNING),
     "dead link": (b"# T\n\nsee [there](nowhere.md)\n", 3, ["nowhere.md", "no such file"], WARNING),
     "misspelt attribute": (b"# T\n\n```bash secnods=3\nros2 topic list\n```\n", 3, ["`secnods`", "Known are"], WARNING),
     "misspelt tag": (

@@ -217,10 +217,13 @@ def test_a_pattern_stands_for_its_pages_and_those_that_are_not_listed_are_named(
 
 def test_links_of_a_sidebar_are_percent_decoded(tmp_path: Path) -> None:
     root = book(tmp_path / "b", "docs/two words.md", "docs/日本.md")
+    (root / "docs/日本.md").write_bytes(b"# \xfcber\n")
     (root / "docs/_sidebar.md").write_text("- [Two](two%20words.md)\n- [J](%E6%97%A5%E6%9C%AC.md)\n")
 
-    assert spinbook_import(root).returncode == 0
+    said = spinbook_import(root)
+    assert said.returncode == 0
     assert order(root) == ["docs/two words.md", "docs/日本.md"]
+    assert "docs/日本.md:1: error: byte 0xfc is not UTF-8." in said.stdout
 
 
 def test_the_first_build_and_a_page_say_what_runs_and_what_to_do_first(tmp_path: Path) -> None:
@@ -273,7 +276,7 @@ def test_a_course_is_not_overwritten(tmp_path: Path) -> None:
     assert (root / "course.toml").read_text() == "mine"
 
 
-@pytest.mark.parametrize("text", ["nav: [", "const x = {", ""])
+@pytest.mark.parametrize("text", ["nav: [", "const x = {", "", "nav: [gone.md]"])
 def test_a_broken_or_empty_table_of_contents_is_reported(tmp_path: Path, text: str) -> None:
     root = tmp_path / "robots"
     root.mkdir()
@@ -284,3 +287,4 @@ def test_a_broken_or_empty_table_of_contents_is_reported(tmp_path: Path, text: s
     assert said.returncode == 1
     assert "Traceback" not in said.stderr
     assert "error:" in said.stderr
+    assert ("none of the pages that it lists is there: gone.md." in said.stderr) == ("gone" in text)
