@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import itertools
 from functools import reduce
+from typing import Any
 
 import numpy as np
 import pytest
 import tf_transformations as tf
+from numpy.typing import NDArray
 
 ORDERS = ["".join(axes) for axes in itertools.product("xyz", repeat=3) if axes[0] != axes[1] != axes[2]]
 
 
-def turned(angle: float, name: str) -> np.ndarray:
+def turned(angle: float, name: str) -> NDArray[Any]:
     """Rodrigues' formula about one of the axes."""
     x, y, z = np.identity(3)["xyz".index(name)]
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])

@@ -6,6 +6,7 @@ import sys
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from sensor_msgs.msg import CompressedImage, Image
 
 from cv_bridge.encodings import DEPTHS, converted, cv_type, type_of
@@ -47,7 +48,7 @@ class CvBridge:
         """
         name, channels = self.encoding_to_dtype_with_channels(img_msg.encoding)
         dtype = np.dtype(name).newbyteorder(">" if img_msg.is_bigendian else "<")
-        rows = np.frombuffer(bytes(img_msg.data), np.uint8)
+        rows: NDArray[np.uint8] = np.frombuffer(bytes(img_msg.data), np.uint8)
         if img_msg.step < img_msg.width * channels * dtype.itemsize or rows.size < img_msg.height * img_msg.step:
             raise CvBridgeError(
                 f"{rows.size} bytes in rows of {img_msg.step} are too few for {img_msg.width}×{img_msg.height} pixels"

@@ -44,7 +44,7 @@ def read_points(
     rows = np.frombuffer(cloud.data, np.uint8)[: cloud.height * cloud.row_step].reshape(cloud.height, -1)
     # A row may be longer than its points.
     packed = np.ascontiguousarray(rows[:, : cloud.width * cloud.point_step]).view(type_).reshape(-1)
-    points = packed.byteswap() if bool(cloud.is_bigendian) != (sys.byteorder == "big") else packed
+    points: NDArray[Any] = packed.byteswap() if bool(cloud.is_bigendian) != (sys.byteorder == "big") else packed
     points = points[_names(points) if field_names is None else _known(points, field_names)]
     if skip_nans and not cloud.is_dense:
         points = points[_without_nan(points)]
