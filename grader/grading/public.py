@@ -93,12 +93,13 @@ def _timeless(recording: Recording) -> Recording:
     return replace(recording, log="", seconds=0.0, lockstep_seconds=0.0)
 
 
-def playable(exercise: Exercise, seed: int) -> tuple[Scenario, ...]:
-    """Return the scenarios that may be played here: in a student's copy the public ones, for the author all of them.
+def playable(exercise: Exercise) -> dict[str, Scenario]:
+    """Return the scenarios that may be played here, by name: in a student's copy the public ones, for the author all.
 
     Raises `ExerciseError`.
     """
-    return declared(exercise, seed) if exercise.solution_folder else read_public(exercise).scenarios
+    scenarios = declared(exercise, seed=1) if exercise.solution_folder else read_public(exercise).scenarios
+    return {scenario.name: scenario for scenario in scenarios}
 
 
 def read_public(exercise: Exercise) -> PublicPart:

@@ -46,7 +46,7 @@ def try_out(exercise: str, scenario: str, record: Path | None) -> None:
 
 def scenario_named(exercise: Exercise, name: str) -> Scenario:
     """Return this scenario, or the first one. Raises `UsageError` and `ExerciseError`."""
-    scenarios = {scenario.name: scenario for scenario in playable(exercise, seed=1)}
+    scenarios = playable(exercise)
     chosen = scenarios.get(name) if name else next(iter(scenarios.values()))
     if chosen is None:
         raise click.UsageError(f"{exercise.name} has no scenario {name!r}. There are: {', '.join(scenarios)}.")
