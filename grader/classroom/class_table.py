@@ -8,6 +8,7 @@ from pathlib import Path
 
 from grader.classroom.archive import date_of
 from grader.classroom.formats.format import UploadedFile, person
+from grader.classroom.names import normal
 from grader.classroom.submissions import File, Question, SubmissionsError
 from grader.classroom.tables import table_rows
 from grader.classroom.times import UNKNOWN, Time, read_time
@@ -37,6 +38,8 @@ def by_row(
         path = table.parent / row["file"]
         if not path.exists():
             path = table.parent / row["file"].replace("\\", "/")
+        if not path.exists() and path.parent.is_dir():  # a Mac writes ü as two characters
+            path = next((one for one in path.parent.iterdir() if normal(one.name) == normal(path.name)), path)
         lms = {column: value for column, value in row.items() if column not in KNOWN}
         student = person(row["student"], row.get("name", ""), row.get("email", ""), **lms)
         if not path.exists() and not path.is_symlink():

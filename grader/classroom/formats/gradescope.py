@@ -30,10 +30,11 @@ def read(export: Export) -> Callable[[Parts], Interpretation] | None:
     if not isinstance(listed, dict) or not any(FOLDER.fullmatch(str(name)) for name in listed):
         return None
     uploads = {name: _upload(one) for name, one in listed.items() if isinstance(one, dict)}
+    absent = uploads.keys() - {parts[0] for parts in export.files}
 
     def understand(parts: Parts) -> Interpretation:
         if parts == (METADATA,):
-            return OWN
+            return f"it names folders that are not there: {', '.join(sorted(absent))}" if absent else OWN
         upload = uploads.get(parts[0]) if len(parts) > 1 else None
         return UploadedFile(upload.students, parts[1:], upload.attempt, upload.time) if upload else None
 

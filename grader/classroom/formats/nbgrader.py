@@ -47,21 +47,21 @@ def read(export: Export) -> Callable[[Parts], Interpretation] | None:
     if export.root != SUBMITTED and not own:
         return None
     # A course may use any name for the assignment, as long as there is only one.
-    assignment = next(iter(own or sorted(assignments)), "")
+    chosen = own or sorted(assignments)[:1]
     if len(assignments) > 1 and not own and all(len(parts) > 2 for parts in export.files):
         raise SubmissionsError(
             f"{SUBMITTED}/ has the assignments {', '.join(sorted(assignments))}, and none is called "
             f"{export.exercise.name}. Rename the folders of the right one, or, if these are not assignments, "
             "say --format folder."
         )
-    times = {student: _time(export, student, assignment) for student in {parts[0] for parts in export.files}}
+    times = {folder: _time(export, *folder) for folder in {parts[:2] for parts in export.files if len(parts) > 2}}
 
     def understand(parts: Parts) -> Interpretation:
         if len(parts) < 3:
             return None
-        if parts[1] != assignment:
+        if parts[1] not in chosen:
             return f"another assignment, {parts[1]}"
-        return UploadedFile((person(parts[0]),), parts[2:], time=times[parts[0]], aside=parts[2:] == (TIMESTAMP,))
+        return UploadedFile((person(parts[0]),), parts[2:], time=times[parts[:2]], aside=parts[2:] == (TIMESTAMP,))
 
     return understand
 

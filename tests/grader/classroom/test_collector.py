@@ -129,6 +129,8 @@ def test_nbgraders_folder_of_submissions(tmp_path: Path) -> None:
 def test_nbgraders_folder_itself(tmp_path: Path) -> None:
     root = written(tmp_path / "submitted", f"anna/{EXERCISE}/a.ipynb", "bert/other/b.ipynb")
     assert files(taken(root, tmp_path)) == {"anna": f"anna/{EXERCISE}/a.ipynb"}
+    written(root, f"cleo/{EXERCISE.title()}/c.ipynb")
+    assert list(files(taken(root, tmp_path))) == ["anna", "cleo"], "in a file system that knows capitals"
 
 
 MOODLE = (
@@ -182,6 +184,9 @@ def test_a_table_that_names_files(tmp_path: Path) -> None:
         datetime(2026, 11, 22, 22, tzinfo=timezone.utc),
         "the CSV file",
     )
+    (root / "1.py").rename(root / "ü.py")
+    table.write_text("file,student\nu\u0308.py,anna\n", encoding="utf-8")
+    assert len(taken(table, tmp_path).handed_in) == 1, "a Mac and Windows write ü in two ways"
     [cleo] = collected.questions
     assert str(cleo) == "cleo handed in 3.py: line 5 names it, but there is no such file"
 

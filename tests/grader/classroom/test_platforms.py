@@ -281,6 +281,17 @@ def test_sakai_and_gradescope_say_who_is_in_a_group(tmp_path: Path) -> None:
     found = collected(archive(tmp_path / "class.zip", made))
     assert list(files(found)) == ["ann1", "bo2", "cy3"]
     assert found.handed_in[0].file == found.handed_in[1].file
+
+
+def test_a_folder_that_gradescope_lists_and_that_is_missing_is_named(tmp_path: Path) -> None:
+    made = {name: text for name, text in gradescope().files.items() if "submission_901/" not in name}
+    found = collected(archive(tmp_path / "class.zip", made))
+    why = "it names folders that are not there: submission_901"
+    assert [(one.file, one.why) for one in found.skipped] == [([*made][-1], why)]
+
+
+def test_who_handed_in_nothing_in_sakai_is_named(tmp_path: Path) -> None:
+    made = {"Lab/Lee, Ann(ann1)/Submission attachment(s)/node.py": ""}
     nothing = {"Lab/Ott, Di(di4)/comments.txt": "", **made}
     assert [skip.file for skip in collected(archive(tmp_path / "b.zip", nothing)).skipped] == [*nothing][:1]
 
