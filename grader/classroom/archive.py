@@ -30,6 +30,9 @@ ENCRYPTED = "it is encrypted. Unpack the zip file with its password, and give th
 #: A zip's earliest date, which programs write that leave out dates.
 NO_DATE = (1980, 1, 1, 0, 0, 0)
 
+#: The sources of dates that copying changes.
+OF_FILES = ("the file's date", "the zip file", "the tar file")
+
 #: Enough for a thousand students with 20 files each.
 MOST_FILES = 20_000
 MOST_BYTES_IN_ALL = 2_000_000_000
@@ -74,7 +77,7 @@ def _refuse(error: OSError) -> NoReturn:
 def date_of(path: Path) -> Time:
     """Return the file's date, if any; an archive can give a file a date that does not exist."""
     try:
-        return _time(path.lstat().st_mtime, "the file's date")
+        return _time(path.lstat().st_mtime, OF_FILES[0])
     except OSError:
         return UNKNOWN
 
@@ -193,7 +196,7 @@ def _of_tar(archive: Path, start: bytes) -> Iterator[_Entry]:
                     continue
                 is_file = entry.isfile()
                 fault = "" if is_file or entry.issym() else "it is a hard link or a device in the archive, not a file"
-                time = _time(entry.mtime, "the tar file") if is_file else UNKNOWN
+                time = _time(entry.mtime, OF_FILES[2]) if is_file else UNKNOWN
                 yield _Entry(_path(entry.name), partial(_of_tar_entry, tar, entry), time, entry.issym(), fault)
 
 
@@ -247,6 +250,6 @@ def _decoded(entry: zipfile.ZipInfo) -> str:
 def _entry_date(entry: zipfile.ZipInfo) -> Time:
     """Return an entry's date. A zip has the local time of its creator, without a zone: taken as this machine's."""
     try:
-        return UNKNOWN if entry.date_time <= NO_DATE else Time(datetime(*entry.date_time).astimezone(), "the zip file")
+        return UNKNOWN if entry.date_time <= NO_DATE else Time(datetime(*entry.date_time).astimezone(), OF_FILES[1])
     except (ValueError, OverflowError, OSError):
         return Time()

@@ -54,6 +54,7 @@ def grade_class(exercise: Exercise, class_request: ClassRequest, console: Consol
         collected = collect(class_request.source, exercise, Path(unpacked), _collect_options(class_request, deadline))
         show_submissions(console, collected)
         adjuster = _adjuster(class_request, deadline, {student.id for student in collected.students})
+        collected = adjuster.without_dates_of_a_copy(collected)
         if deadline:
             say(console, f"Deadline: {deadline}.")
         submissions, unreadable = _read(collected, exercise)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import date, datetime, timedelta, timezone, tzinfo
 from pathlib import Path
 from typing import Any
 
+from grader.classroom.archive import OF_FILES
 from grader.classroom.names import normal
-from grader.classroom.submissions import StudentSubmission, SubmissionsError
+from grader.classroom.submissions import StudentSubmission, Submissions, SubmissionsError
 from grader.classroom.tables import table_rows
-from grader.classroom.times import later, localized, moment, units_begun, zone_named
+from grader.classroom.times import UNKNOWN, later, localized, moment, units_begun, zone_named
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.exercise_toml import read_toml
 from grader.grading.grade import Adjustment, Entry
@@ -203,6 +204,18 @@ class Adjuster:
             made.append(late)
         made += [Adjustment("override", one.added, one.reason) for one in theirs if one.added is not None]
         return tuple(made)
+
+    def without_dates_of_a_copy(self, collected: Submissions) -> Submissions:
+        """Return the submissions without their dates, if copying gave all files one, for which they would be late."""
+        dates = [one.file.submitted for one in collected.handed_in if one.file.submitted_from in OF_FILES]
+        known = [date for date in dates if date]
+        if len(known) < max(3, len(collected.handed_in)) or max(known) - min(known) > UNITS["minute"]:
+            return collected
+        if not self.deadline or not self.deadline.lost(max(known)):
+            return collected
+        handed_in = (replace(one, file=replace(one.file, time=UNKNOWN)) for one in collected.handed_in)
+        why = f"All files have one date, {date_shown(max(known))}: that of a copy, not of a submission."
+        return replace(collected, handed_in=tuple(handed_in), dates=why)
 
     def undated(self, handed_in: Sequence[StudentSubmission]) -> list[StudentSubmission]:
         """Return the submissions of unknown date for which lateness would cost points."""

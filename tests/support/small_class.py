@@ -51,10 +51,10 @@ class SmallClass:
         self.hand_in("fay", "import rclpy\n\nrclpy.spin(\n")
 
     def hand_in(self, student: str, source: str) -> None:
-        """Write one student's file, with a fixed date."""
+        """Write one student's file, with a fixed date, which differs by minutes from the others'."""
         file = self.submissions / f"{student}.py"
         file.write_text(source, encoding="utf-8")
-        os.utime(file, (1_795_000_000, 1_795_000_000))
+        os.utime(file, (1_794_990_300 + 100 * ord(student[0]),) * 2)
 
     def start(self, *arguments: str, out: str = "results") -> subprocess.Popen[str]:
         """Start the command, in a process group of its own."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import fcntl
 import json
+import os
 import re
 import shutil
 import zipfile
@@ -186,7 +187,7 @@ def test_two_programs_of_one_student_are_a_question(done: SmallClass) -> None:
 
 def test_late_work_loses_and_a_changed_due_date_needs_no_grading(done: SmallClass, cache: Path) -> None:
     stored = set(cache.rglob("*"))
-    # All were submitted at 2026-11-18 11:06:40 UTC.
+    # They were submitted from 2026-11-18 11:06:40 UTC on.
     settings = done.exercise / "exercise.toml"
     rule = '\n[deadline]\ndue = 2026-11-17T12:00:00Z\npenalty = "10 % a day up to 50 %"\n'
     settings.write_text(settings.read_text(encoding="utf-8") + rule, encoding="utf-8")
@@ -200,9 +201,14 @@ def test_late_work_loses_and_a_changed_due_date_needs_no_grading(done: SmallClas
     assert done.finals() == {"ana": 20, "bert": 18, "carl": 16.5, "dora": 15.3, "emil": 10.8, "fay": 0}
     assert set(cache.rglob("*")) == stored, "nor was the solution or a mistake run again"
     reasons = [adjustment["reason"] for adjustment in done.entry("carl")["adjustments"]]
-    assert reasons[0].startswith("handed in 23 h 7 min late, by the file's date: 10 % of 15 points")
+    assert reasons[0].startswith("handed in 23 h 10 min late, by the file's date: 10 % of 15 points")
     assert reasons[1] == "found a mistake in the task"
     assert "was ill" in (done.folder / "results" / "students" / "ana" / "feedback.html").read_text(encoding="utf-8")
+    for file in done.submissions.iterdir():
+        os.utime(file, (1_795_000_000,) * 2)
+    code, printed = done.grade()
+    assert code == 1
+    assert "All files have one date, 2026-11-18 11:06 +0000: that of a copy, not of a submission." in printed
 
 
 def test_a_mistake_in_the_overrides_is_reported_with_its_line(done: SmallClass) -> None:
