@@ -27,7 +27,7 @@ from spinbook import __version__
 from spinbook.build.notebooks import build_notebooks
 from spinbook.course.course import Course, find_course
 from spinbook.handout.leaks import Secret, authors_code, located, secrets_of_all
-from spinbook.handout.pins import declared_pins, imports_matplotlib, jupyterlab_pins, students_pins
+from spinbook.handout.pins import declared_pins, imported_packages, jupyterlab_pins, students_pins
 from spinbook.handout.student_copy import exercise_files, for_students
 from spinbook.handout.wheels import interface_wheels, package_of, requirement, spinbook_wheel
 from spinbook.interfaces.definitions import compile_course
@@ -68,12 +68,11 @@ def guide_files(
     compiled: list[str],
     packages: list[str],
     texts: bytes,
-    plots: bool,
 ) -> dict[str, bytes]:
     """Return README.md and the files that install, by name.
 
-    `compiled` are names of wheels of compiled code, `packages` what exercises let programs use. `texts`
-    are what students get to read. With `plots` matplotlib is installed, too.
+    `compiled` are names of wheels of compiled code, `packages` what cells and programs import and exercises let
+    programs use. `texts` are what students get to read.
     """
     # Plain text and JSON, not HTML.
     environment = Environment(
@@ -91,8 +90,7 @@ def guide_files(
         "wheel": wheel,
         "notebooks": notebooks,
         "exercises": exercises,
-        "pinned": (pinned := students_pins(texts, plots=plots)),
-        "plots": ",plots" if plots else "",
+        "pinned": (pinned := students_pins(texts, packages)),
         # Every package is in the list: pip need not look for more.
         "options": " --no-deps --no-compile" if pinned else "",
         "pins": [*(pinned or _pins(distro)), *declared_pins(packages, pinned)],
@@ -152,7 +150,10 @@ def handout(course: Course) -> Handout:
     files |= {f"wheels/{file}": data for file, data in compiled.items()}
     solutions = (exercise.solution_file.read_text(encoding="utf-8") for exercise in exercises if exercise.solution_file)
     slug = re.sub(r"[^a-z0-9]+", "-", course.title.lower()).strip("-") or "course"
-    packages = sorted({package for exercise in exercises for package in exercise.packages})
+    declared = {package for exercise in exercises for package in exercise.packages}
+    named = {package.partition("==")[0] for package in declared}
+    also = imported_packages([*(cell["source"] for cell in cells), own, *solutions])
+    packages = sorted({*declared, *(package for package in also if package.partition("==")[0] not in named)})
     files |= guide_files(
         course.title,
         slug,
@@ -163,7 +164,6 @@ def handout(course: Course) -> Handout:
         sorted(compiled),
         packages,
         texts,
-        imports_matplotlib([*(cell["source"] for cell in cells), own, *solutions]),
     )
     files |= base_files(files)
     _prove(files, known)

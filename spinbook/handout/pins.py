@@ -4,40 +4,54 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from importlib.metadata import distributions
+from importlib.metadata import distribution, distributions, packages_distributions
 from pathlib import Path
 
 from packaging.utils import canonicalize_name
 
 import spinbook
 from grader.gradescope.pins import LOCKS, needed
-from grader.submission.python_code import MATPLOTLIB
+from grader.submission.python_code import MATPLOTLIB, imported
+from spinbook.chapter.imports import ros_packages
+from spinbook.chapter.python_code import blank_magics
 
 #: Required by IPython and ipykernel, which do without: guesses at code that has not run, and a debugger (55 MB).
 _LEFT_OUT = {"jedi", "parso", "debugpy"}
 
-_IMPORTS_MATPLOTLIB = re.compile(rf"^\s*(import\b|from\b|%)[^\n#]*\b({'|'.join(MATPLOTLIB)})\b", re.MULTILINE)
+#: The extras that students install.
+_STUDENTS = ("student", "colcon")
+
+#: A magic that imports matplotlib.
+_DRAWS = re.compile(rf"^\s*%({'|'.join(MATPLOTLIB)})\b", re.MULTILINE)
 
 
-def imports_matplotlib(sources: Iterable[str]) -> bool:
-    """Return whether any of these cells and programs does: matplotlib takes 75 MB, and nothing else needs it."""
-    return any(map(_IMPORTS_MATPLOTLIB.search, sources))
+def imported_packages(sources: Iterable[str]) -> list[str]:
+    """Return the packages, with their versions here, that cells and programs import and that nothing else needs.
+
+    None is of ROS 2 or installed from a folder: PyPI has them all.
+    """
+    found = (name for source in sources for name in [*imported(blank_magics(source)), *_DRAWS.findall(source)])
+    modules = {name.partition(".")[0] for name in found}
+    known = packages_distributions()
+    names = {canonicalize_name(name) for module in modules - ros_packages() for name in known.get(module, ())}
+    others = [distribution(name) for name in sorted(names - _needed(_STUDENTS))]
+    return [f"{canonicalize_name(one.name)}=={one.version}" for one in others if not one.read_text("direct_url.json")]
 
 
-def students_pins(texts: bytes, *, plots: bool = False) -> list[str]:
+def students_pins(texts: bytes, packages: Sequence[str] = ()) -> list[str]:
     """Return the lines for what notebooks and checks need; none if Spinbook is not installed from a checkout.
 
-    `texts` are what students get to read: test_msgs, which is large, is left out unless they name it. With `plots`
-    matplotlib is among them.
+    `texts` are what students get to read: test_msgs, which is large, is left out unless they name it. So is matplotlib
+    (75 MB), unless one of `packages` needs it.
     """
-    names = _needed(("student", "colcon", "plots") if plots else ("student", "colcon"))
+    names = _needed((*_STUDENTS, "plots") if "matplotlib" in _needed_by(packages) else _STUDENTS)
     unused = set() if b"test_msgs" in texts else {"ros-test-msgs", "ros-jazzy-test-msgs"}
     return list(_pins(names - unused))
 
 
 def jupyterlab_pins() -> list[str]:
     """Return the lines for what JupyterLab needs besides; without pins, its name."""
-    known = _needed(("student", "colcon"))
+    known = _needed(_STUDENTS)
     return list(_pins(needed("jupyterlab", "") - known)) or ["jupyterlab>=4.2"]
 
 
@@ -49,9 +63,13 @@ def declared_pins(packages: Sequence[str], pinned: Sequence[str]) -> list[str]:
     if not pinned:
         return list(packages)
     known = {canonicalize_name(re.split("[=; ]", line, maxsplit=1)[0]) for line in pinned}
-    names = {name for package in packages for name in needed(canonicalize_name(package.partition("==")[0]), "")}
+    names = _needed_by(packages)
     versions: dict[str, str] = {canonicalize_name(wheel.metadata["Name"]): wheel.version for wheel in distributions()}
     return [f"{name}=={versions[name]}" for name in sorted(names - known) if name in versions]
+
+
+def _needed_by(packages: Sequence[str]) -> set[str]:
+    return {name for package in packages for name in needed(canonicalize_name(package.partition("==")[0]), "")}
 
 
 def _needed(extras: Sequence[str]) -> set[str]:

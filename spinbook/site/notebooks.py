@@ -16,7 +16,7 @@ from rich.console import Console
 from spinbook.build.execution import NotebookJob, execute
 from spinbook.build.notebooks import BuildResult, build_notebooks, report
 from spinbook.course.course import FILE, Course
-from spinbook.handout.pins import imports_matplotlib
+from spinbook.handout.pins import imported_packages
 from spinbook.interfaces.definitions import compile_course
 from spinbook.problem import SpinbookError
 from spinbook.site.page import Repository
@@ -143,7 +143,7 @@ def requirement(repository: Repository, cells: Iterable[str] = ()) -> str:
     """Return pip's requirement to run notebooks with these cells: Spinbook with ROS 2 and colcon, from the course's own
     source.
     """
-    plots = ",plots" if imports_matplotlib(cells) else ""
+    plots = ",plots" if any(package.startswith("matplotlib==") for package in imported_packages(cells)) else ""
     return f"spinbook[ros,colcon,notebooks{plots}] @ {_origin(repository)}"
 
 

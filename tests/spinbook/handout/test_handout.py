@@ -11,6 +11,7 @@ import shutil
 import sys
 import zipfile
 from collections.abc import Iterator
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ from interface_compiler.wheel_file import zipped
 from spinbook.chapter.comments import without_comments
 from spinbook.handout.contents import guide_files
 from spinbook.handout.leaks import Secret, hidden_names, leaks, secrets
-from spinbook.handout.pins import declared_pins, imports_matplotlib, students_pins
+from spinbook.handout.pins import declared_pins, imported_packages, students_pins
 from spinbook.handout.student_copy import for_students
 from spinbook.handout.wheels import spinbook_wheel
 
@@ -181,13 +182,23 @@ def test_packages_that_exercises_declare_are_installed_with_what_they_need() -> 
     ],
 )
 def test_matplotlib_is_installed_only_if_the_course_imports_it(source: str, draws: bool) -> None:
-    assert imports_matplotlib(["import rclpy\n", source]) is draws
-    more = set(students_pins(b"", plots=draws)) - set(students_pins(b""))
+    packages = imported_packages(["import rclpy, std_msgs.msg, spinbook, grader, IPython\n", source])
+    assert packages == ([f"matplotlib=={version('matplotlib')}"] if draws else [])
+    more = set(students_pins(b"", packages)) - set(students_pins(b""))
     assert ({"matplotlib", "pillow", "fonttools"} <= {line.partition("==")[0] for line in more}) is draws
-    files = guide_files("Robots", "robots", "jazzy", "spinbook.whl", ["a.ipynb"], [], [], [], b"", draws)
-    assert (b"# matplotlib and what it needs, because" in files["requirements.txt"]) is draws
-    assert (b"spinbook.whl[notebooks,plots]" in files["environment.yml"]) is draws
-    assert (b"[colcon,notebooks,lab,plots]" in files[".devcontainer/devcontainer.json"]) is draws
+    files = guide_files("Robots", "robots", "jazzy", "spinbook.whl", ["a.ipynb"], [], [], packages, b"")
+    assert (b"of this course import: matplotlib==" in files["requirements.txt"]) is draws
+    assert (b"      - matplotlib==" in files["environment.yml"]) is draws
+    assert (b"[colcon,notebooks,lab]' 'matplotlib==" in files[".devcontainer/devcontainer.json"]) is draws
+
+
+def test_what_cells_import_is_installed_with_what_it_needs() -> None:
+    cell = "%%node recorder\nimport rclpy\nfrom rosbags import rosbag2\n"
+    packages = imported_packages([cell, "%cd data\nimport yaml, my_own_module\n"])
+    assert packages == [f"rosbags=={version('rosbags')}"]
+    files = guide_files("Robots", "robots", "jazzy", "spinbook.whl", ["a.ipynb"], [], [], packages, b"")
+    assert {b"rosbags", b"lz4"} <= {line.partition(b"==")[0] for line in files["requirements.txt"].splitlines()}
+    assert f'"{packages[0]}"'.encode() in files["README.md"]
 
 
 def test_messages_for_tests_are_installed_only_if_students_read_of_them() -> None:
