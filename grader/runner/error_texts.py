@@ -31,7 +31,20 @@ _BY_TEXT = (
         rf"No module named '(?:{'|'.join(MATPLOTLIB)})\b",
         "It is not installed here: pip install matplotlib, or in a notebook %pip install matplotlib.",
     ),
+    (
+        r"'(?:Time|Duration)' object has no attribute '(?:to_n?sec|n?secs)'",
+        "That is ROS 1's. In ROS 2 the seconds of a stamp are stamp.sec + stamp.nanosec * 1e-9.",
+    ),
     (r"'Time' object has no attribute '(?:nano)?sec'", "A Time is not yet a stamp: its to_msg() is one."),
+    (
+        r"'\w+' object has no attribute 'add_entity'",
+        "An argument of this line is taken for a callback group: is there one too many? A decimal number has a point: "
+        "0.25, not 0,25.",
+    ),
+    (
+        r"not tuple\b|'tuple' and|and 'tuple'",
+        "A comma makes a tuple, which is no number: a decimal number has a point, 0.5 and not 0,5.",
+    ),
     (
         r"must be real number, not (?!NoneType)|'(?!float|NoneType)\w+' object cannot be interpreted as an integer",
         "A number belongs here: float(text) and int(text) make one, and that of a message is in its field, as in "
@@ -54,7 +67,7 @@ _BY_TEXT = (
         "get_parameter() returns a Parameter, and its value is get_parameter(…).value.",
     ),
     (
-        r"operand type\(s\) for \S+ '(?:array\.array|list|tuple)'",
+        r"operand type\(s\) for \S+ '(?:array\.array|list)'",
         "A list of numbers is no number: calculate with one element of it at a time, in a loop.",
     ),
     (r"bad argument type for built-in", "A text field takes a str only: str(value), or get_parameter(…).value."),
@@ -97,7 +110,10 @@ _BY_TEXT = (
     ),
     (r"FileNotFoundError.*: '\s*<", "A file's name belongs here, and this is a text: fromstring(text) reads one."),
     (r"FileNotFoundError", "Your node runs on another computer, which has only the files that you hand in."),
-    (r"callback should be either be callable", "The callback takes the message: def on_message(self, message)."),
+    (
+        r"callback should be either be callable",
+        "The callback is the method itself, without quotes, and takes the message: def on_message(self, message).",
+    ),
     (
         r"'ServerGoalHandle' object has no attribute",
         "A goal handle has request, which is the goal, and is_cancel_requested, succeed(), canceled(), abort() and "

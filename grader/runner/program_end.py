@@ -89,9 +89,19 @@ def cut_short(student: RunningProgram, sources: Mapping[str, str], met: bool, wh
         return Ending("over-limit", f"Your program was ended: {why}", line)
     if not met:
         if exit_.code == 0 and not line:
-            why = "it came to its end and created no node that spins. Is main() called, and does it call rclpy.spin()?"
+            why = f"it came to its end and created no node that spins. {_not_called(sources)}"
         return Ending("did-not-start", f"Your program did not start: {why}", line)
     return Ending("crashed", f"Your program ended {when}: {why}", line)
+
+
+#: A guard of main() that is never true.
+_GUARD = re.compile(r"""^if[ (]+__name__ *==(?![( ]*(["'])__main__\1).*""", re.MULTILINE)
+
+
+def _not_called(sources: Mapping[str, str]) -> str:
+    if guard := next(filter(None, map(_GUARD.search, sources.values())), None):
+        return f"`{guard[0].strip()[:80]}` is never true: write if __name__ == '__main__':"
+    return "Is main() called, and does it call rclpy.spin()?"
 
 
 #: rclpy's log line for an exception in an execute callback.

@@ -49,6 +49,7 @@ def grade_of(grading: Grading, source: str) -> Grade:
         ("import rclpy\ndef main(:\n", "did-not-start", ["SyntaxError", "line 2"]),
         ("import rclpy\nimport tensorflow\n", "did-not-start", ["tensorflow", "line 2", "numpy"]),
         ("from sensor_msgs.msg import JointStates\n", "did-not-start", ["JointStates", "sensor_msgs.msg"]),
+        ("if __name__ == 'main':\n    main()\n", "did-not-start", ["`if __name__ == 'main':` is never true"]),
         ("x = 1\n", "did-not-start", ["created no node", "main()"]),
         ("", "did-not-start", ["empty"]),
         ("import time\ntime.sleep(3600)\n", "timed-out", ["waits", "creates no node"]),

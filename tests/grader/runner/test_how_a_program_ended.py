@@ -507,7 +507,15 @@ def test_an_attribute_that_another_class_lacks_is_not_taken_for_a_node_without_i
             "SUPPORT' in line",
         ),
         ("AttributeError: type object 'str' has no attribute '_TYPE_SUPPORT'", "comes before the name"),
-        ("RuntimeError: Subscription.__init__(): callback should be either be callable with", "takes the message"),
+        (
+            "RuntimeError: Subscription.__init__(): callback should be either be callable with",
+            "without quotes, and",
+        ),
+        ("AttributeError: 'function' object has no attribute 'add_entity'", "0.25, not 0,25"),
+        ("TypeError: must be real number, not tuple", "0.5 and not 0,5"),
+        ("TypeError: unsupported operand type(s) for -: 'tuple' and 'float'", "0.5 and not 0,5"),
+        ("AttributeError: 'Time' object has no attribute 'to_sec'. Did you mean: '_sec'?", "'to_sec' in line 12"),
+        ("AttributeError: 'Time' object has no attribute 'to_sec'", "stamp.sec + stamp.nanosec * 1e-9"),
         ("AttributeError: 'Push_Result' object has no attribute 'status'", "has two fields: status, and result"),
     ],
 )

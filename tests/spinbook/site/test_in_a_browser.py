@@ -297,7 +297,9 @@ def test_a_main_as_before_opens_and_is_whole_in_print_and_without_scripts(longer
 
 def test_what_moves_stands_still_on_paper_and_for_those_who_prefer_no_motion(visit: Visit) -> None:
     shown = visit("chapters/01-talk.html")
-    expect(shown.page.locator(".opening img.moving")).to_be_visible()
+    opening = shown.page.locator(".opening img.moving")
+    expect(opening).to_be_visible()
+    assert opening.evaluate("image => image.clientWidth") >= 380, "the letters of what is wide can be read"
     output = shown.page.locator(".cell_output")
     moving, still = output.locator("img.moving"), output.locator("img.still")
     expect(moving).to_be_visible()

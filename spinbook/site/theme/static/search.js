@@ -86,8 +86,8 @@ function items({ words, sections }, most, withText) {
     link.textContent = heading || page;
     const where = document.createElement("span");
     where.className = "search-page";
-    where.textContent = heading === page ? "" : page;
-    item.append(link, where);
+    where.textContent = page;
+    item.append(link, ...(heading === page ? [] : [where]));
     if (withText) item.append(excerpt(text, words));
     return item;
   });
