@@ -177,18 +177,22 @@ def _class(exercise: Exercise, submissions: Path, out: Path, options: dict[str, 
 
     from grader.classroom.class_run import grade_class
     from grader.classroom.formats.registry import FORMATS
-    from grader.classroom.request import ClassRequest, NoCluster
+    from grader.classroom.request import ClassRequest, ClusterLost, NoCluster
     from grader.classroom.results import FolderInUse, NotWritable
     from grader.classroom.submissions import SubmissionsError
     from grader.grading.grade import Options
 
     if of_class["format"] not in ("", *FORMATS):
         raise click.UsageError(f"--format {of_class['format']}: there are {', '.join(FORMATS)}.")
+    if of_class["jobs"] and of_class["scheduler"]:
+        raise click.UsageError("--jobs: with --scheduler, each worker grades as many at once as its --nthreads says.")
     class_request = ClassRequest(submissions, out, Options(**options), **of_class)
     try:
         return grade_class(exercise, class_request, Console(soft_wrap=False, highlight=False))
     except NotWritable as error:
         _stop(f"{error} Give another folder with --out.")
+    except ClusterLost as error:
+        _stop(f"{error} Run the same command to continue.")
     except (SubmissionsError, FolderInUse, NoCluster) as error:
         raise click.UsageError(str(error)) from None
 

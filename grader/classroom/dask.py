@@ -5,12 +5,14 @@ from __future__ import annotations
 import contextlib
 import logging
 import queue
-import time
-from collections.abc import Callable, Iterator, Mapping, Set
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
 from typing import Any
 
 from distributed import Client, Future, Scheduler, TimeoutError  # before Python 3.11 not the built-in one
+from distributed.versions import VersionMismatchWarning
 
 from grader.classroom.dask_worker import LEFT, describe_worker, differences, grade_on_worker, pack_exercise
 from grader.classroom.request import ClusterLost, GradedSubmission, NoCluster, host_error
@@ -24,14 +26,16 @@ from groundwork.words import counted
 # `dask.distributed` handles the tasks of a worker that died, see
 # https://distributed.dask.org/en/stable/resilience.html.
 
-#: How long to wait for the scheduler's answer, and then for its first worker (s).
-SCHEDULER_S, WORKER_S = 10.0, 60.0
+#: How long to wait for the scheduler's answer (s).
+SCHEDULER_S = 10.0
 
-#: Without a result for this time, the command looks at the cluster and says what it waits for (s).
+#: Without news for this time, the command looks at the cluster and says what it waits for (s).
 LOOK_S = 10.0
 
-#: After this many looks without a sign of life, a worker or the scheduler is given up.
+#: After this many looks without a first worker, or without a sign of life, the cluster or the worker is given up.
 SILENT_LOOKS = 6
+
+LOST = "The connection to the scheduler is lost."
 
 
 @dataclass
@@ -123,9 +127,7 @@ class DaskBackend:
             self.client.submit(grade_on_worker, *task, who, submission, pure=False): who
             for who, submission in submissions.items()
         }
-        done: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
-        for future in asked:
-            future.add_done_callback(done.put)
+        done = _as_they_end(asked)
         try:
             while asked:
                 future = self._next(done, len(asked))
@@ -145,13 +147,20 @@ class DaskBackend:
 
     def _result(self, future: Future[Any], who: str, submission: Submission) -> GradedSubmission:
         if future.cancelled():
-            raise ClusterLost("The connection to the scheduler is lost.")
+            raise ClusterLost(LOST)
         error = future.exception()
         if error is None:
             graded: GradedSubmission = future.result()
             return graded
         text = f"the cluster could not grade it: {type(error).__name__}: {error}"
         return GradedSubmission(who, host_error(self.grading.runner, submission, text), None)
+
+
+def _as_they_end(futures: Iterable[Future[Any]]) -> queue.SimpleQueue[Future[Any]]:
+    done: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
+    for future in futures:
+        future.add_done_callback(done.put)
+    return done
 
 
 def _of_this_machine(grading: Grading) -> dict[str, str]:
@@ -163,44 +172,59 @@ def dask_backend(grading: Grading, address: str, say: Callable[[str], None]) -> 
     """Yield the cluster whose scheduler is at `address`, such as tcp://10.0.0.5:8786. It has at least one worker.
 
     `say` tells the instructor about the cluster. Raises `NoCluster` if there is none, or if a worker's versions or
-    sandbox differ from this machine's.
+    sandbox differ from this machine's, and `ClusterLost` when the scheduler is gone.
     """
     for name in ("distributed", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # what it logs, with tracebacks, is said here
     try:
-        client = Client(address, timeout=SCHEDULER_S, set_as_default=False)
+        with warnings.catch_warnings(record=True) as caught:
+            client = Client(address, timeout=SCHEDULER_S, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         text = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise NoCluster(f"--scheduler {address}: no Dask scheduler answers there: {text}") from None
+    if any(issubclass(warning.category, VersionMismatchWarning) for warning in caught):
+        say("Versions of Dask or Python differ in the cluster. If grading fails, install the same everywhere.")
     with client:
         try:
-            client.wait_for_workers(1, timeout=WORKER_S)
-        except TimeoutError:
-            raise NoCluster(f"--scheduler {address}: it has no worker. Start some: dask worker {address}") from None
-        _check_workers(client, grading, say)
-        client.subscribe_topic(LEFT, lambda event: say(event[1]))
+            _wait_for_a_worker(client, address, say)
+            _check_workers(client, grading, say)
+            client.subscribe_topic(LEFT, lambda event: say(event[1]))
+        except (OSError, CancelledError):
+            raise ClusterLost(LOST) from None
         yield DaskBackend(grading, client, say)
 
 
-def _check_workers(client: Client, grading: Grading, say: Callable[[str], None]) -> None:
-    """Compare each worker with this machine, and remove those that do not answer. Raises `NoCluster`."""
-    asked = {
-        worker: client.submit(describe_worker, grading.runner.options, workers=[worker], pure=False)
-        for worker in sorted(client.scheduler_info()["workers"])
-    }
-    ours, silent, deadline = _of_this_machine(grading), [], time.monotonic() + WORKER_S
-    for worker, future in asked.items():
+def _wait_for_a_worker(client: Client, address: str, say: Callable[[str], None]) -> None:
+    for _ in range(SILENT_LOOKS):
         try:
-            _refuse_other(worker, future, ours, max(0.1, deadline - time.monotonic()))
+            return client.wait_for_workers(1, timeout=LOOK_S)
         except TimeoutError:
-            silent.append(worker)
-    if silent:
-        remove_workers(client, silent)
-        say(f"No answer within {WORKER_S:g} s, so not used: {', '.join(silent)}.")
+            say(f"Waiting for a worker to join. To start one: dask worker {address}")
+    raise NoCluster(f"--scheduler {address}: it has no worker.")
 
 
-def _refuse_other(worker: str, future: Future[Any], ours: Mapping[str, str], timeout_s: float) -> None:
-    if error := future.exception(timeout=timeout_s):
+def _check_workers(client: Client, grading: Grading, say: Callable[[str], None]) -> None:
+    """Compare each worker with this machine; one without an answer, when it gets a submission. Raises `NoCluster`."""
+    ours, options = _of_this_machine(grading), grading.runner.options
+    asked = {  # before the submissions of other commands, which may take long
+        client.submit(describe_worker, options, workers=[worker], priority=1, pure=False): worker
+        for worker in client.nthreads()
+    }
+    done = _as_they_end(asked)
+    for _ in range(SILENT_LOOKS):
+        with contextlib.suppress(queue.Empty):
+            while asked:
+                future = done.get(timeout=LOOK_S)
+                _refuse_other(asked.pop(future, ""), future, ours)
+        joined = client.nthreads()
+        asked = {future: worker for future, worker in asked.items() if worker in joined}
+        if not asked:
+            return
+        say(f"Waiting for {', '.join(sorted(asked.values()))} to describe itself.")
+
+
+def _refuse_other(worker: str, future: Future[Any], ours: Mapping[str, str]) -> None:
+    if error := future.exception():
         raise NoCluster(f"The worker {worker} can't grade: {type(error).__name__}: {error}")
     if differs := differences(ours, future.result()):
         raise NoCluster(

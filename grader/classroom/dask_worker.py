@@ -140,7 +140,12 @@ def grade_on_worker(
             _leave(f"it differs: {differs}")
     except (MiddlewareUnavailable, SandboxUnavailable) as error:
         _leave(f"it can't grade: {str(error).rstrip('.')}")
-    with _prepared(packed, options) as bench, own_core() as core:
+    with contextlib.ExitStack() as prepared:
+        try:
+            bench = prepared.enter_context(_prepared(packed, options))
+        except Exception as error:  # it would take all submissions, and grade none: its disk is full, for example
+            _leave(f"it can't grade: {type(error).__name__}: {error}")
+        core = prepared.enter_context(own_core())
         runner = bench.grading.runner
         if bench.key != key:
             text = "a worker of the cluster has read the exercise differently: its files or limits are not the same"

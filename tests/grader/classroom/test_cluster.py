@@ -5,14 +5,17 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
+import threading
 from collections.abc import Callable, Coroutine, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import psutil
@@ -21,7 +24,7 @@ from small_class import POINTS, ROOT, SmallClass, wait_until, without_timings
 
 from grader.classroom import dask_worker
 from grader.classroom.dask_worker import ExerciseFiles, differences, pack_exercise
-from grader.classroom.request import ClusterLost
+from grader.classroom.request import ClusterLost, NoCluster
 from grader.exercise import load
 from grader.grading.grade import Options
 from grader.sandbox.middleware import MiddlewareUnavailable
@@ -155,25 +158,87 @@ def test_a_worker_differs_by_its_versions_or_its_sandbox() -> None:
     assert differences(ours, {"python": "3.11.2", "sandbox": "landlock"}) == "sandbox landlock, here namespaces"
 
 
+@pytest.mark.parametrize(
+    ("why", "broken", "fault"),
+    [
+        ("The middleware is missing", "require_middleware", MiddlewareUnavailable("The middleware is missing.")),
+        ("OSError: [Errno 28] No space left on device", "_prepare", OSError(28, "No space left on device")),
+    ],
+)
 def test_a_worker_that_joined_later_and_can_not_grade_leaves_its_submissions_to_others(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, why: str, broken: str, fault: Exception
 ) -> None:
-    def unavailable() -> None:
-        raise MiddlewareUnavailable("The middleware is missing.")
+    def unavailable(*_: object) -> None:
+        raise fault
 
     def leave(why: str) -> None:
         raise EOFError(why)
 
-    monkeypatch.setattr(dask_worker, "require_middleware", unavailable)
+    monkeypatch.setattr(dask_worker, broken, unavailable)
     monkeypatch.setattr(dask_worker, "_leave", leave)
-    with pytest.raises(EOFError, match=r"^it can't grade: The middleware is missing$"):
+    with pytest.raises(EOFError, match=rf"^it can't grade: {re.escape(why)}$"):
         dask_worker.grade_on_worker(ExerciseFiles("", {}), Options(), {}, "", "anna", Submission("", "", "", "", None))
 
 
-def test_a_scheduler_that_does_not_answer_is_reported_in_a_sentence(small_class: SmallClass, cache: Path) -> None:
-    code, printed = small_class.grade("--scheduler", "tcp://127.0.0.1:9")
+FREE = threading.Event()
+
+
+def until_free() -> bool:
+    """Keep a worker busy."""
+    return FREE.wait(60)
+
+
+class Prepared:
+    """A grading as far as a cluster is compared with this machine."""
+
+    def __init__(self) -> None:
+        self.runner = SimpleNamespace(options=Options(), isolation="landlock")
+
+
+def test_a_cluster_that_is_busy_with_another_class_keeps_its_workers(monkeypatch: pytest.MonkeyPatch) -> None:
+    from distributed import Client, LocalCluster
+
+    from grader.classroom import dask
+
+    monkeypatch.setattr(dask, "LOOK_S", 0.1)
+    said: list[str] = []
+    with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as cluster:
+        with Client(cluster, set_as_default=False) as other:
+            busy = other.submit(until_free)
+            wait_until(lambda: any(other.processing().values()))
+            with dask.dask_backend(Prepared(), cluster.scheduler_address, said.append):
+                assert len(other.nthreads()) == 1
+            FREE.set()
+            assert busy.result()
+        assert said == [f"Waiting for {cluster.workers[0].address} to describe itself."] * dask.SILENT_LOOKS
+
+
+def test_a_cluster_without_workers_is_waited_for_and_then_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    from distributed import LocalCluster
+
+    from grader.classroom import dask
+
+    monkeypatch.setattr(dask, "LOOK_S", 0.1)
+    said: list[str] = []
+    with (
+        LocalCluster(n_workers=0, processes=False, dashboard_address=None) as cluster,
+        pytest.raises(NoCluster, match="it has no worker"),
+        dask.dask_backend(Prepared(), cluster.scheduler_address, said.append),
+    ):
+        raise AssertionError
+    start = f"Waiting for a worker to join. To start one: dask worker {cluster.scheduler_address}"
+    assert said == [start] * dask.SILENT_LOOKS
+
+
+@pytest.mark.parametrize(
+    ("option", "text"), [((), "no Dask scheduler answers there"), (("--jobs", "2"), "--nthreads says")]
+)
+def test_a_cluster_that_can_not_be_used_is_reported_in_a_sentence(
+    small_class: SmallClass, option: tuple[str, ...], text: str
+) -> None:
+    code, printed = small_class.grade("--scheduler", "tcp://127.0.0.1:9", *option)
     assert code == 2, printed
-    assert "no Dask scheduler answers there" in printed
+    assert text in printed
     assert "Traceback" not in printed
 
 
