@@ -223,8 +223,9 @@ def _writable(entry: Entry, class_grading: ClassGrading, due: datetime | None) -
 def _signatures(grading: Grading, entries: Sequence[Entry], console: Console) -> tuple[Signature, ...]:
     if all(entry.grade.full_marks or entry.grade.outcome != "graded" for entry in entries):
         return ()
-    with console.status("grading the common mistakes"):
-        return signatures(grading, [entry.grade for entry in entries])
+    with console.status("grading the usual mistakes") as status:
+        announce = status.update if console.is_terminal else partial(say, console)
+        return signatures(grading, [entry.grade for entry in entries], announce)
 
 
 @contextlib.contextmanager

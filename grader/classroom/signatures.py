@@ -8,7 +8,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
-from collections.abc import Sequence, Set
+from collections.abc import Callable, Sequence, Set
 from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
 
@@ -26,15 +26,18 @@ from groundwork.files import keep, read_kept
 AT_ONCE = 2
 
 
-def signatures(grading: Grading, grades: Sequence[Grade]) -> tuple[Signature, ...]:
+def signatures(
+    grading: Grading, grades: Sequence[Grade], announce: Callable[[str], object] = lambda text: None
+) -> tuple[Signature, ...]:
     """Return the signatures of those of the exercise's usual mistakes that may explain one of these grades, by name.
 
-    A mistake is graded again if anything that its grade depends on has changed. Mistakes that fail the same checks
-    with the same findings are one signature. A mistake that fails no check, or does not complete, is left out.
+    A mistake is graded again if anything that its grade depends on has changed, which `announce` is told before.
+    Mistakes that fail the same checks with the same findings are one signature. A mistake that fails no check, or does
+    not complete, is left out.
     """
     students = [(failures_of(grade).keys(), blocked_in(grade)) for grade in grades]
     mistakes = [mistake for mistake in mistakes_of(grading.runner.exercise) if _may_explain(mistake, students)]
-    known = _Mistakes(grading)
+    known = _Mistakes(grading, announce)
     with ThreadPoolExecutor(AT_ONCE) as pool:
         failures = list(pool.map(known.failures, mistakes))
     alike: dict[tuple[tuple[str, Failure], ...], list[Mistake]] = {}
@@ -54,8 +57,8 @@ def _may_explain(mistake: Mistake, students: Sequence[tuple[Set[str], Set[str]]]
 
 
 class _Mistakes:
-    def __init__(self, grading: Grading) -> None:
-        self._grading, self._runner = grading, grading.runner
+    def __init__(self, grading: Grading, announce: Callable[[str], object]) -> None:
+        self._grading, self._runner, self._announce = grading, grading.runner, announce
         self._key = reference_key(grading.runner)
 
     def failures(self, mistake: Mistake) -> dict[str, Failure]:
@@ -68,6 +71,7 @@ class _Mistakes:
         )
         if stored is not None:
             return stored
+        self._announce(f"Grading a usual mistake, once: {mistake.name}.")
         grade = self._grade(mistake)
         failures = failures_of(grade)
         if grade.has_score:

@@ -188,11 +188,9 @@ def until_free() -> bool:
     return FREE.wait(60)
 
 
-class Prepared:
-    """A grading as far as a cluster is compared with this machine."""
-
-    def __init__(self) -> None:
-        self.runner = SimpleNamespace(options=Options(), isolation="landlock")
+def prepared() -> Any:
+    """Return a grading as far as a cluster is compared with it."""
+    return SimpleNamespace(runner=SimpleNamespace(options=Options(), isolation="landlock"))
 
 
 def test_a_cluster_that_is_busy_with_another_class_keeps_its_workers(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -206,7 +204,7 @@ def test_a_cluster_that_is_busy_with_another_class_keeps_its_workers(monkeypatch
         with Client(cluster, set_as_default=False) as other:
             busy = other.submit(until_free)
             wait_until(lambda: any(other.processing().values()))
-            with dask.dask_backend(Prepared(), cluster.scheduler_address, said.append):
+            with dask.dask_backend(prepared(), cluster.scheduler_address, said.append):
                 assert len(other.nthreads()) == 1
             FREE.set()
             assert busy.result()
@@ -223,7 +221,7 @@ def test_a_cluster_without_workers_is_waited_for_and_then_refused(monkeypatch: p
     with (
         LocalCluster(n_workers=0, processes=False, dashboard_address=None) as cluster,
         pytest.raises(NoCluster, match="it has no worker"),
-        dask.dask_backend(Prepared(), cluster.scheduler_address, said.append),
+        dask.dask_backend(prepared(), cluster.scheduler_address, said.append),
     ):
         raise AssertionError
     start = f"Waiting for a worker to join. To start one: dask worker {cluster.scheduler_address}"
