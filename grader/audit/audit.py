@@ -80,7 +80,7 @@ class AuditPlan:
     sampled: bool
 
 
-def planned(trials: Trials, quick: bool, most: int | None, seeds: int = SEEDS) -> AuditPlan:
+def planned(trials: Trials, quick: bool, most: int | None, seeds: int) -> AuditPlan:
     """Choose what to try.
 
     A quick audit leaves out the other right solutions, the seeds and the baselines. Baselines need a task that marks

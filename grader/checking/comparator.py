@@ -89,7 +89,7 @@ def _is_number(value: Any) -> bool:
 MOST_ELEMENTS, MOST_CHARACTERS = 8, 200
 
 
-def shown_apart(expected: Any, got: Any, unit: str = "") -> tuple[str, str]:
+def shown_apart(expected: Any, got: Any, unit: str) -> tuple[str, str]:
     """Return two values for people, with more digits if these are needed to tell them apart."""
     texts = shown(expected, unit), shown(got, unit)
     if texts[0] == texts[1] and isinstance(expected, float) and isinstance(got, float):

@@ -44,7 +44,7 @@ def runs_of(
 
 
 def judge_when_collected(
-    exercise: Exercise, scenarios: Iterable[str], given: Callable[[], Mapping[str, Run]], partly: bool = False
+    exercise: Exercise, scenarios: Iterable[str], given: Callable[[], Mapping[str, Run]], partly: bool
 ) -> tuple[Verdict, ...]:
     """Judge as `judge` does, on what `given` returns for these scenarios.
 

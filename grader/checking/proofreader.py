@@ -132,7 +132,7 @@ def same_name_twice(file: Path) -> Iterator[ExerciseError]:
             first.setdefault(node.name, node.lineno)
 
 
-def undefined_names(files: Iterable[Path], scenarios: Collection[str] = ()) -> Iterator[ExerciseError]:
+def undefined_names(files: Iterable[Path], scenarios: Collection[str]) -> Iterator[ExerciseError]:
     """Yield names that a file uses and nothing in it defines. Python notices it only when it comes to such a line.
 
     A check has the `scenarios` that are among its arguments.

@@ -48,7 +48,7 @@ def _list(console: Console, skipped: Iterable[SkippedFile]) -> None:
         say(console, f"skipped, {why}: {', '.join(files[:MOST_NAMED])}{more}", "yellow")
 
 
-def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[Entry], kind: str = "") -> None:
+def show_result(console: Console, entries: Sequence[Entry], unscored: Sequence[Entry], kind: str) -> None:
     """Print the class's result, and what is left for the instructor to do; `kind` says how the class was read."""
     finals = [entry.final for entry in entries if entry.final is not None]
     if finals:

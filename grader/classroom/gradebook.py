@@ -93,7 +93,7 @@ def _xml_text(text: str) -> str:
 
 
 def write_gradebook(
-    results: Path, exercise: Exercise, entries: Sequence[Entry], due: datetime | None = None
+    results: Path, exercise: Exercise, entries: Sequence[Entry], due: datetime | None
 ) -> tuple[Path, ...]:
     """Write a class's grades into the folder `results`, and return the files, sorted by student id.
 

@@ -25,7 +25,7 @@ FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "＝", "＋", "－", "＠")
 LONGEST_CELL = 20_000
 
 
-def table_rows(table: Path, needed: Sequence[str], more: Sequence[str] = ()) -> list[tuple[int, dict[str, str]]]:
+def table_rows(table: Path, needed: Sequence[str], more: Sequence[str]) -> list[tuple[int, dict[str, str]]]:
     """Return the rows with their line numbers. Spaces around values are removed, and empty rows are left out.
 
     Commas, semicolons or tabs separate columns; the columns in `needed` and `more` may be in any case. Raises

@@ -34,7 +34,7 @@ def bundle(exercise: Exercise, isolation: Isolation | None = None) -> bytes:
     return zipped(autograder_files(exercise, isolation), modes=dict.fromkeys(SCRIPTS, 0o755))
 
 
-def autograder_files(exercise: Exercise, isolation: Isolation | None = None) -> dict[str, bytes]:
+def autograder_files(exercise: Exercise, isolation: Isolation | None) -> dict[str, bytes]:
     """Return the content of each file of an autograder, by name. Raises as `bundle` does."""
     name, wheel = as_wheel(wheel_contents())
     course = {name: wheel, **{file: text.encode() for file, text in _pins().items()}}

@@ -78,7 +78,7 @@ class WithFields(OnTopic):
         return field_called(self.__dict__["fields"], name, (self.__dict__["type"],))
 
 
-def field_called(fields: Mapping[str, Any], name: str, kind: tuple[str, ...] = ()) -> Any:
+def field_called(fields: Mapping[str, Any], name: str, kind: tuple[str, ...]) -> Any:
     """Return a field by its name; nested messages, in lists as well, as `NestedMessage`.
 
     What a message that was sent does not give has its type's default. Raises AttributeError for a field that the type

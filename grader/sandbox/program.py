@@ -139,7 +139,7 @@ class Limits:
             raise ValueError(f"processes is {self.processes}: rclpy's own threads need at least 20")
 
 
-def apply_limits(limits: Limits, *, other_processes: int = 0) -> None:
+def apply_limits(limits: Limits, *, other_processes: int) -> None:
     """Set the kernel's limits for this process and its children: setrlimit(2).
 
     `limits` is what is allowed. `other_processes` is how many processes and threads of the same user the kernel counts,

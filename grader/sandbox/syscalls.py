@@ -109,7 +109,7 @@ def pivot_root(new: str, old: str) -> None:
     system_call(number, os.fsencode(new), os.fsencode(old), what="pivot_root")
 
 
-def prctl(option: int, argument: int | bytes = 0, pointer: object = None) -> None:
+def prctl(option: int, argument: int | bytes, pointer: object = None) -> None:
     """Change an attribute of this process: prctl(2)."""
     first = argument if isinstance(argument, bytes) else ctypes.c_ulong(argument)
     nothing = ctypes.c_ulong(0)

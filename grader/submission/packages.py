@@ -46,7 +46,7 @@ class Layout:
     module: str
 
 
-def layout_of(file: str, files: Mapping[str, bytes], called: str = "") -> Layout:
+def layout_of(file: str, files: Mapping[str, bytes], called: str) -> Layout:
     """Return what belongs to a program: its package, and the packages that it imports.
 
     `called` is the name of the folder that was handed in, if known.

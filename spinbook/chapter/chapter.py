@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from spinbook.chapter.block import BlockKind, SourceLine
@@ -126,7 +125,7 @@ _LONGEST_ID = 64
 def make_cells(
     pieces: Iterable[Piece],
     classified: Mapping[int, ClassifiedFence],
-    borrowed: Mapping[int, Sequence[ChapterCell]] = MappingProxyType({}),
+    borrowed: Mapping[int, Sequence[ChapterCell]],
 ) -> tuple[ChapterCell, ...]:
     """Return the cells of a chapter. `classified` are its fences by their line, `borrowed` the programs of earlier
     chapters that the fence on a line runs."""

@@ -141,7 +141,7 @@ def static(
     return ClassifiedFence(fence, CellKind.STATIC, why, sign, code=code, problems=problems)
 
 
-def first_look(fence: Fence, file: Path, interface_package: str = "") -> ClassifiedFence:
+def first_look(fence: Fence, file: Path, interface_package: str) -> ClassifiedFence:
     """Classify a fence by itself. Python that can run is a snippet here, or a node if it is a program.
 
     `interface_package` is the package of an interface whose title does not name one.

@@ -49,7 +49,7 @@ _DECIDES = re.compile(
 _HARMLESS = frozenset({"LaunchDescription", "DeclareLaunchArgument", "LaunchConfiguration", "add_action", "LogInfo"})
 
 
-def launched_nodes(code: str, arguments: Mapping[str, str] | None = None) -> list[LaunchedNode]:
+def launched_nodes(code: str, arguments: Mapping[str, str] | None) -> list[LaunchedNode]:
     """Return the nodes that a Python launch file starts, in order. `arguments` are those of the command line.
 
     Raises NotSupportedError if the file does anything but start nodes whose arguments are texts and numbers.

@@ -19,7 +19,7 @@ _INDENTED = re.compile(_LAUNCHED + r"\s")
 _LOG_LINE = re.compile(_LAUNCHED + r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] ")
 
 
-def magic_comment(name: str, line: int = 0) -> str:
+def magic_comment(name: str, line: int) -> str:
     """Return the line of a node's file that stands for its cell's magic, which is in this line of the cell."""
     return f"# %%node {name} (line {line})" if line else f"# %%node {name}"
 

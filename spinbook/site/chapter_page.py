@@ -59,7 +59,7 @@ def chapter_notebook(
     exercises: Mapping[str, Exercise],
     repository: Repository,
     downloads: Mapping[str, str],
-    graph: str = "",
+    graph: str,
 ) -> dict[str, Any]:
     """Return the page's notebook. `prose` is the text of each prose cell by id, as returned by `rich`.
 

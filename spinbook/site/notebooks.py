@@ -22,7 +22,7 @@ from spinbook.problem import SpinbookError
 from spinbook.site.page import Repository
 
 
-def bring_up_to_date(course: Course, console: Console, *, is_strict: bool, run: bool = True) -> bool:
+def bring_up_to_date(course: Course, console: Console, *, is_strict: bool, run: bool) -> bool:
     """Compile the course's interfaces, build each chapter's notebook, and `run` those whose code has changed.
 
     Return False if something has to be fixed first. If `is_strict`, that includes cells that fail, errors of nodes, and

@@ -122,7 +122,7 @@ def package_xml(
     )
 
 
-def _setup_py(manifest: Manifest, executables: Sequence[tuple[str, str]], folders: Sequence[str] = ()) -> str:
+def _setup_py(manifest: Manifest, executables: Sequence[tuple[str, str]], folders: Sequence[str]) -> str:
     scripts = "".join(f"            '{name} = {manifest.name}.{module}:main',\n" for name, module in executables)
     data = "".join(f"        ('share/' + package_name + '/{name}', glob('{name}/*')),\n" for name in folders)
     settings: Mapping[str, str] = {
