@@ -8,13 +8,12 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from interface_compiler import toolchain
 from ros_in_python.ros2 import create
 from spinbook.chapter.own_packages import new_package
 from spinbook.kernel.cell_output import DisplayLimit
 from spinbook.kernel.session import NodeStart, Session
 from spinbook.package.cell_line import CellFailed
-from spinbook.package.workspace import write_package, written_definitions
+from spinbook.package.workspace import without_interfaces, write_package
 
 #: How long a build may take (s).
 COLCON_SECONDS = 120.0
@@ -35,17 +34,9 @@ def run_colcon(session: Session, words: list[str], bound: DisplayLimit) -> None:
         "COLCON_LOG_LEVEL": os.environ.get("COLCON_LOG_LEVEL", "error"),
     }
     if words[:1] == ["build"]:
-        words = [*words, *_without_interfaces(session)]
+        words = [*words, *without_interfaces(workspace)]
     argv = [sys.executable, "-m", "colcon", "--log-base", os.fspath(workspace / "log"), *words]
     session.run_command(argv, settings, workspace, bound, "colcon")
-
-
-def _without_interfaces(session: Session) -> list[str]:
-    """Return options that leave out interface packages if there is no ament_cmake: Spinbook compiles them itself."""
-    if toolchain.sourced_ros() is not None:
-        return []
-    packages = sorted({item.package for item in written_definitions(session.workspace)})
-    return ["--packages-ignore", *packages] if packages else []
 
 
 def run_ros2(session: Session, words: list[str], bound: DisplayLimit) -> None:

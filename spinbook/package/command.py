@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import os
+import shlex
 from argparse import Namespace
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -23,7 +25,7 @@ from spinbook.course.course import Course, Package, course_folder, find_course
 from spinbook.interfaces.definitions import checked
 from spinbook.package.cell_line import CellFailed, chapter_reader, node_reader, split
 from spinbook.package.files import Module
-from spinbook.package.workspace import write_interface_packages, write_package
+from spinbook.package.workspace import without_interfaces, write_interface_packages, write_package
 from spinbook.problem import SpinbookError, refuse_errors
 
 
@@ -102,13 +104,7 @@ def _module(name: str, node: Namespace, code: str, read: Notebooks) -> Module:
 @click.option("--course", "start", type=click.Path(path_type=Path), default=".", help="The course's folder.")
 @click.option("--workspace", type=click.Path(path_type=Path), help="Where to write. [default: as in course.toml]")
 def package(start: Path, workspace: Path | None) -> None:
-    """Write the chapters' nodes as a ROS 2 package, ready for colcon.
-
-    \b
-    Then:
-      cd humanoid_ws
-      colcon build --symlink-install
-      ros2 run humanoid_control joint_publisher
+    """Write the chapters' nodes as a ROS 2 package, and say how colcon builds it.
 
     In a handout, where there are no chapters, the nodes are those of the notebooks, as you saved them.
     """
@@ -127,6 +123,8 @@ def package(start: Path, workspace: Path | None) -> None:
         click.echo(f"{package_folder}: {len(members)} interfaces")
         for item in sorted(members, key=lambda item: item.path):
             click.echo(f"  {item.path}".ljust(28) + f"ros2 interface show {item.full_name}")
+    build = shlex.join(["colcon", "build", "--symlink-install", *without_interfaces(target)])
+    click.echo(f"Build:\n  cd {shlex.quote(os.fspath(target))}\n  {build}\n  source install/setup.bash")
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from groundwork.files import write_if_changed
+from interface_compiler import toolchain
 from interface_compiler.definition import KINDS, Definition, by_package, read_folder
 from spinbook.course.course import Package
 from spinbook.package.files import Module, interface_package_files, package_files
@@ -111,3 +112,9 @@ def _write(workspace: Path, course: Package, members: Sequence[Definition]) -> P
 def written_definitions(workspace: Path) -> list[Definition]:
     """Return the definitions in a workspace's packages."""
     return read_folder(workspace / "src")[0]
+
+
+def without_interfaces(workspace: Path) -> list[str]:
+    """Return options of `colcon build` that leave out packages of interfaces, unless a sourced ROS can build them."""
+    packages = sorted({item.package for item in written_definitions(workspace)})
+    return ["--packages-ignore", *packages] if packages and toolchain.sourced_ros() is None else []
