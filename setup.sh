@@ -316,6 +316,8 @@ else
     install_pins
     try_ros
     "$VENV/bin/python" -m ros_in_python.path_file >>"$LOG" 2>&1 || give_up "tf2 and its kin could not be installed."
+    # Where the file system has no hard links, all works too.
+    "$VENV/bin/python" -m spinbook doctor --save-space >>"$LOG" 2>&1 || true
 fi
 install_wheels
 compile_middleware anew

@@ -32,7 +32,7 @@ from spinbook.doctor.diagnosis import (
 @click.command()
 @click.argument("checks", nargs=-1, type=click.Choice([check.word for check in CHECKS]), metavar="[CHECK]...")
 @click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON, for programs and bug reports.")
-@click.option("--save-space", is_flag=True, help="Make identical copies of libraries in the environment one file each.")
+@click.option("--save-space", is_flag=True, help="Make identical copies of files in the environment one file each.")
 def doctor(checks: tuple[str, ...], as_json: bool, save_space: bool) -> None:
     """Say what works on this machine, and how to fix what does not.
 
@@ -74,8 +74,8 @@ def _save_space() -> None:
     try:
         saved = link_copies(Path(sys.prefix))
     except OSError as error:
-        raise click.ClickException(f"{error.filename}: {error.strerror}. Every library is there, as before.") from None
-    click.echo(f"{saved / 1e6:.0f} MB saved in {sys.prefix}: identical copies of a library are one file now.")
+        raise click.ClickException(f"{error.filename}: {error.strerror}. Every file is there, as before.") from None
+    click.echo(f"{saved / 1e6:.0f} MB saved in {sys.prefix}: identical copies of a file are one file now.")
 
 
 def _with_progress(chosen: list[MachineCheck]) -> list[MachineFinding]:

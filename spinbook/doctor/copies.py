@@ -1,4 +1,4 @@
-"""Identical copies of shared libraries in an environment, as hard links: wheels have no links, so pip writes copies."""
+"""Identical files in an environment, as hard links: wheels have no links, so pip writes copies."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from itertools import groupby
 from pathlib import Path
 
 #: A smaller file (bytes) is not worth its while.
-_SMALLEST = 100_000
+_SMALLEST = 20_000
 
 
 def link_copies(environment: Path) -> int:
-    """Make copies of the same library one file with several names. Return how many bytes that has saved.
+    """Make copies of the same file one file with several names. Return how many bytes that has saved.
 
     pip replaces and removes names, so it can go on updating the environment. Raises OSError if the folder can't be
     written, or if its file system has no hard links.
     """
-    libraries = [(_content(file), file) for file in sorted(environment.rglob("*.so*")) if _counts(file)]
+    files = [(_content(file), file) for file in sorted(environment.rglob("*")) if _counts(file)]
     saved = 0
-    for _, copies in groupby(sorted(libraries), key=lambda library: library[0]):
+    for _, copies in groupby(sorted(files), key=lambda file: file[0]):
         first, *others = (file for _, file in copies)
         saved += sum(_replaced(copy, first) for copy in others if not copy.samefile(first))
     return saved
