@@ -154,7 +154,10 @@ def _entries(archive: Path) -> Iterator[_Entry]:
     try:
         with archive.open("rb") as file:
             start = file.read(262)
-        yield from _limited(archive, _of_tar(archive, start) if is_tar(start) else _of_zip(archive))
+        for count, entry in enumerate(_of_tar(archive, start) if is_tar(start) else _of_zip(archive)):
+            if count == MOST_FILES:
+                raise SubmissionsError(f"{archive}: it holds more than {MOST_FILES:,} files.")
+            yield entry
     except BROKEN as error:
         advice = "Was the download cut off?"
         if start.startswith(OTHER_ARCHIVES):
@@ -163,13 +166,6 @@ def _entries(archive: Path) -> Iterator[_Entry]:
         raise SubmissionsError(
             f"{archive}: it is not a valid {kind} file: {error}. {advice} A class may also be a folder or a .csv file."
         ) from None
-
-
-def _limited(archive: Path, entries: Iterator[_Entry]) -> Iterator[_Entry]:
-    for count, entry in enumerate(entries):
-        if count == MOST_FILES:
-            raise SubmissionsError(f"{archive}: it holds more than {MOST_FILES:,} files.")
-        yield entry
 
 
 def _of_zip(archive: Path) -> Iterator[_Entry]:

@@ -33,7 +33,7 @@ from grader.classroom.signatures import signatures
 from grader.classroom.student_zips import publish
 from grader.classroom.submissions import StudentSubmission, Submissions, SubmissionsError
 from grader.exercise.exercise import Exercise
-from grader.grading.grade import Entry
+from grader.grading.grade import Entry, Outcome
 from grader.grading.grading import Grading, grading_of
 from grader.submission.reader import read
 from grader.workers.pool import WorkerPool
@@ -145,7 +145,9 @@ def _kept(class_grading: ClassGrading, collected: Submissions) -> str:
 def _record_others(class_grading: ClassGrading, grading: Grading, collected: Submissions) -> None:
     """Record an entry for each student without a submission to grade."""
     for student in collected.missing:
-        class_grading.record(student, no_grade(grading.runner, "missing", "Nothing was handed in."))
+        asked = collected.mismatches.get(student.id, "")
+        outcome: Outcome = "undecided" if asked else "missing"
+        class_grading.record(student, no_grade(grading.runner, outcome, asked or "Nothing was handed in."))
     for question in collected.questions:
         class_grading.record(question.student, no_grade(grading.runner, "undecided", str(question)))
 

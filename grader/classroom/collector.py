@@ -165,7 +165,7 @@ class Collector:
             tuple(replace(student, id=ids[normal(student.id)]) for student in missing),
             (*_notes(handed_in), *_not_gradable(handed_in), *unlisted, *self._ungrouped(units), *self._alike(ids)),
             found.dates,
-            tuple(_mismatches(strangers, missing, bool(rows))),
+            {ids[normal(who)]: text for who, text in _mismatches(strangers, missing, bool(rows))},
         )
 
     def _chosen(self, unit: Unit, number: int, extras: list[SkippedFile]) -> list[StudentSubmission | Question]:
@@ -238,16 +238,23 @@ class Collector:
             yield f"counted as {len(same)} students: {', '.join(same)}. Rename the files if they are one student's"
 
 
-def _mismatches(strangers: Sequence[Student], missing: Sequence[Student], some_match: bool) -> Iterator[str]:
-    """Yield what suggests that the roster names those who handed in otherwise than the files do."""
+def _mismatches(
+    strangers: Sequence[Student], missing: Sequence[Student], some_match: bool
+) -> Iterator[tuple[str, str]]:
+    """Yield the id of each student whom the roster may name otherwise than the files do, and what suggests it."""
     if strangers and missing and not some_match:
-        yield f"nobody is in both: {missing[0].id} is on the roster, {strangers[0].id} handed in"
+        text = f"nobody is in both: {missing[0].id} is on the roster, {strangers[0].id} handed in"
+        yield from ((listed.id, text) for listed in missing)
         return
-    for one in strangers:
-        for listed in missing:
-            if any(may_be_one(name, other) for name in (one.id, one.name) for other in (listed.id, listed.name)):
-                known = f"{listed.id} ({listed.name})" if listed.name else listed.id
-                yield f"{known} is on the roster, {one.id} handed in"
+    for listed in missing:
+        alike = [one.id for one in strangers if _may_be(one, listed)]
+        known = f"{listed.id} ({listed.name})" if listed.name else listed.id
+        if alike:
+            yield listed.id, f"{known} is on the roster, {', '.join(alike)} handed in"
+
+
+def _may_be(one: Student, listed: Student) -> bool:
+    return any(may_be_one(name, other) for name in (one.id, one.name) for other in (listed.id, listed.name))
 
 
 def _units(uploads: Sequence[tuple[File, UploadedFile]]) -> list[Unit]:

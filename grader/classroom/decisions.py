@@ -75,7 +75,7 @@ def decisions(
         ),
         Decision(
             "the roster seems to name students otherwise than the files do",
-            collected.mismatches,
+            tuple(dict.fromkeys(collected.mismatches.values())),
             "Write the names of the files into the roster's column student, or rename the files. If a pair is two "
             "people, add the one who handed in to the roster.",
         ),

@@ -71,15 +71,11 @@ def may_be_one(name: str, other: str) -> bool:
         return False
     if mine <= theirs or theirs <= mine:
         return True
-    if _numbers(mine) != _numbers(theirs):
+    joined, others = "".join(sorted(mine)), "".join(sorted(theirs))
+    if sorted(re.findall(r"\d+", joined)) != sorted(re.findall(r"\d+", others)):
         return False
-    joined = "".join(sorted(mine))
     is_login = len(mine) == 1 and any(len(word) > 4 and word in joined for word in theirs)
-    return is_login or difflib.SequenceMatcher(None, joined, "".join(sorted(theirs))).ratio() > 0.85
-
-
-def _numbers(of: frozenset[str]) -> set[str]:
-    return {number for word in of for number in re.findall(r"\d+", word)}
+    return is_login or difflib.SequenceMatcher(None, joined, others).ratio() > 0.85
 
 
 def without_numbers(name: str) -> frozenset[str]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 from typing import Literal
@@ -82,7 +83,7 @@ class Submissions:
 
     `kind` says in words how it was read, such as "a download from Moodle". `missing` are students of the roster who
     submitted nothing. `notes` say how something ambiguous was read, `dates` where the platform keeps dates, and
-    `mismatches` whom the roster seems to name otherwise than the files do.
+    `mismatches` which of the missing the roster may name otherwise than the files do, by id, and what suggests it.
     """
 
     kind: str
@@ -92,7 +93,7 @@ class Submissions:
     missing: tuple[Student, ...] = ()
     notes: tuple[str, ...] = ()
     dates: str = ""
-    mismatches: tuple[str, ...] = ()
+    mismatches: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def students(self) -> tuple[Student, ...]:

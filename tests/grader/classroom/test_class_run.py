@@ -222,6 +222,15 @@ def test_a_mistake_in_the_overrides_is_reported_with_its_line(done: SmallClass) 
     assert "ana has another due date, but exercise.toml has no [deadline]." in done.grade("--overrides", str(wishes))[1]
 
 
+def test_whom_the_roster_may_name_otherwise_waits_and_gets_no_zero(done: SmallClass) -> None:
+    roster = done.folder / "roster.csv"
+    roster.write_text("student\nana\nbert\ncarl\ndora\nemil\nfay_lee\ngus\n")
+    code, printed = done.grade("--roster", str(roster), "--skip")
+    assert code == 1
+    assert "needs your decision: fay_lee: fay_lee is on the roster, fay handed in" in printed
+    assert done.finals() == {**POINTS, "fay_lee": None, "gus": 0}
+
+
 def test_two_gradings_never_write_into_one_folder(done: SmallClass) -> None:
     with (done.folder / "results" / ".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)

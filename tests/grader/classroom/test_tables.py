@@ -143,7 +143,7 @@ def test_moodles_worksheet_has_no_names_in_blind_marking(language: str, tmp_path
     names = [f"{label.replace('/', '')}_{number}_assignsubmission_file/node.py" for number in (7, 8)]
     roster = read_roster(tmp_path / "roster.csv", timezone.utc)
     found = collected(folder(tmp_path / "class", names), roster=roster)
-    assert ([one.file.name for one in found.handed_in], found.missing, found.mismatches) == (names, (), ())
+    assert ([one.file.name for one in found.handed_in], found.missing, found.mismatches) == (names, (), {})
     assert found.handed_in[0].file.submitted == datetime(2026, 11, 22, 23, 59, tzinfo=timezone.utc)
 
 
