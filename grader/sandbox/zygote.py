@@ -22,7 +22,7 @@ import types
 from pathlib import Path
 
 from grader import preloaded
-from grader.sandbox import filesystem, heap, seccomp, shortcuts, syscalls, uncaught
+from grader.sandbox import callers, filesystem, heap, seccomp, syscalls, uncaught
 from grader.sandbox.confine import PassedDescriptors
 from grader.sandbox.environment import for_program
 from grader.sandbox.fork_server import ForkServer
@@ -190,7 +190,7 @@ def _prepare_for_forks() -> None:
     filesystem.interpreter()
     if seccomp.supported():
         seccomp.program()
-    shortcuts.take()
+    callers.remember_files()
     preloaded.choose()
     preloaded.hide()
     sys.path_importer_cache.clear()  # otherwise each fork would copy it to clear it

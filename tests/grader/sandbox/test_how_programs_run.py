@@ -20,48 +20,6 @@ def show():
         print(name, sorted(key for key, value in vars(sys.modules[name]).items() if type(value) is type(sys)))
 """
 
-#: Prints what the executor does with entities of which some raise or suppress exceptions.
-WAIT = """
-import rclpy
-from rclpy.callback_groups import ReentrantCallbackGroup
-from rclpy.waitable import NumberOfEntities, Waitable
-
-class Odd(Waitable):
-    def __init__(self, name):
-        super().__init__(ReentrantCallbackGroup())
-        self.name = name
-    def act(self, step, fault=None):
-        print(self.name, step, repr(fault), fault and repr(fault.__context__))
-        if f'{self.name} {step}' in raising:
-            raise ValueError(self.name)
-        return f'{self.name} {step}' in suppressing
-    def __enter__(self):
-        self.act('enters')
-    def __exit__(self, kind, fault, trace):
-        return self.act('leaves', fault)
-    def get_num_entities(self):
-        return NumberOfEntities(num_events=1) + NumberOfEntities()
-    def add_to_wait_set(self, wait_set):
-        self.act('is added')
-    def is_ready(self, wait_set):
-        return self.act('is asked')
-
-rclpy.init()
-node = rclpy.create_node('n')
-for name in 'abc':
-    node.add_waitable(Odd(name))
-print(NumberOfEntities(1, 2, 3, 4, 5, 6) + NumberOfEntities(10, 20, 30, 40, 50, 60))
-for raising, suppressing in [
-    ({}, {}), ({'b enters'}, {}), ({'b is added'}, {}), ({'c leaves'}, {}), ({'b leaves', 'c leaves'}, {}),
-    ({'c leaves'}, {'a leaves'}), ({'b is asked', 'c leaves'}, {}), ({'b is asked', 'c leaves'}, {'a leaves'}),
-]:
-    print(sorted(raising), sorted(suppressing))
-    try:
-        rclpy.spin_once(node, timeout_sec=0)
-    except Exception as fault:
-        print(repr(fault), repr(fault.__context__))
-"""
-
 PROGRAMS = {
     "says who it is": "import sys\nprint(__name__, __file__, sys.argv, sys.path[0], __spec__, __builtins__)",
     "prints to both": "import sys\nprint('out')\nprint('err', file=sys.stderr)\nprint('out again')",
@@ -95,7 +53,6 @@ PROGRAMS = {
     + "print(srv.Trigger.Request(), rclpy.action.ActionClient, executors, qos.QoSProfile(depth=3))\n"
     + "print(rclpy.__spec__.name, rclpy.action.__spec__.loader.path, sensor_msgs.msg.__spec__.origin)",
     "starts a node": SHOW + "import rclpy\nrclpy.init()\nnode = rclpy.create_node('n')\nshow()\nprint(node.get_name())",
-    "waits for what raises": WAIT,
     "logs from several lines": (
         "import os\n"
         "os.environ['RCUTILS_CONSOLE_OUTPUT_FORMAT'] = '{file_name}:{line_number} {function_name} {message}'\n"
