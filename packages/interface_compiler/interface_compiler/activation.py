@@ -20,7 +20,7 @@ def active() -> list[Path]:
     return [Path(entry) for entry in named if entry and Path(entry).is_dir()]
 
 
-def activate(prefix: Path, instead_of: Iterable[Path]) -> None:
+def activate(prefix: Path, instead_of: Iterable[Path] = ()) -> None:
     """Use the packages in `prefix` from now on, also in child processes, and stop using those in `instead_of`.
 
     A package that this process has already imported stays as it is: see `imported`.
