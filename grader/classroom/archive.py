@@ -18,7 +18,7 @@ from typing import IO, NoReturn, cast
 from grader.classroom.submissions import File, SubmissionsError
 from grader.classroom.times import UNKNOWN, Time
 from grader.grading.grade import SkippedFile
-from grader.submission.archive import BROKEN, decompressed, is_tar
+from grader.submission.archive import BROKEN, decompressed, is_tar, of_member, path_inside
 from grader.submission.file_kinds import OTHER_ARCHIVES
 from grader.submission.reader import MOST_BYTES
 
@@ -95,11 +95,11 @@ def _time(seconds: float, source: str) -> Time:
 class _Entry:
     """One entry of an archive.
 
-    `load` returns its content, at most as many bytes as its argument says. `is_link` is whether it is a symbolic link.
+    `load` returns its content, of a long one about as many bytes as its argument says. `is_link` is whether it is a symbolic link.
     """
 
     name: str
-    load: Callable[[int], bytes]
+    load: Callable[[int], bytes | None]
     time: Time = UNKNOWN
     is_link: bool = False
     fault: str = ""
@@ -139,7 +139,7 @@ def _loaded(entry: _Entry, left: int) -> tuple[bytes, str]:
     if entry.fault:
         return b"", entry.fault
     try:
-        return entry.load(min(MOST_BYTES_OF_ONE, left + 1)), ""
+        return entry.load(min(MOST_BYTES_OF_ONE, left + 1)) or b"", ""
     except BROKEN as error:
         return b"", f"it can't be read: {error}. Was the download cut off?"
 
@@ -193,12 +193,9 @@ def _of_tar(archive: Path, start: bytes) -> Iterator[_Entry]:
                 is_file = entry.isfile()
                 fault = "" if is_file or entry.issym() else "it is a hard link or a device in the archive, not a file"
                 time = _time(entry.mtime, OF_FILES[2]) if is_file else UNKNOWN
-                yield _Entry(_path(entry.name), partial(_of_tar_entry, tar, entry), time, entry.issym(), fault)
-
-
-def _of_tar_entry(archive: tarfile.TarFile, entry: tarfile.TarInfo, most: int) -> bytes:
-    file = archive.extractfile(entry)
-    return file.read(most) if file else b""
+                yield _Entry(
+                    path_inside(entry.name) or "nameless", partial(of_member, tar, entry), time, entry.issym(), fault
+                )
 
 
 def _whole(tar: tarfile.TarFile, stream: _BoundedStream) -> Iterator[tarfile.TarInfo]:
@@ -225,12 +222,7 @@ class _BoundedStream:
 
 
 def _name(entry: zipfile.ZipInfo) -> str:
-    return _path(_decoded(entry))
-
-
-def _path(name: str) -> str:
-    parts = PurePosixPath(name.replace("\\", "/")).parts
-    return "/".join(part for part in parts if part not in ("/", "..")) or "nameless"
+    return path_inside(_decoded(entry)) or "nameless"
 
 
 def _decoded(entry: zipfile.ZipInfo) -> str:

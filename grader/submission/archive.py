@@ -245,9 +245,9 @@ def _of_zip(archive: zipfile.ZipFile, contents: Contents) -> Iterator[_Entry]:
         raise Unreadable(f"It holds {len(entries)} files. {ADVICE}")
     for entry in entries:
         if stat.S_ISLNK(entry.external_attr >> 16):
-            contents.links.append(_path(entry.filename))
+            contents.links.append(path_inside(entry.filename))
         elif not entry.is_dir():
-            yield _path(entry.filename), partial(_of_entry, archive, entry)
+            yield path_inside(entry.filename), partial(_of_entry, archive, entry)
 
 
 def _of_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most: int) -> bytes | None:
@@ -263,12 +263,13 @@ def _of_tar(archive: tarfile.TarFile, contents: Contents) -> Iterator[_Entry]:
         if number >= MOST_ENTRIES:
             raise Unreadable(f"It holds more than {MOST_ENTRIES:,} files. {ADVICE}")
         if entry.issym() or entry.islnk():
-            contents.links.append(_path(entry.name))
+            contents.links.append(path_inside(entry.name))
         elif entry.isfile():
-            yield _path(entry.name), partial(_of_member, archive, entry)
+            yield path_inside(entry.name), partial(of_member, archive, entry)
 
 
-def _of_member(archive: tarfile.TarFile, entry: tarfile.TarInfo, most: int) -> bytes | None:
+def of_member(archive: tarfile.TarFile, entry: tarfile.TarInfo, most: int) -> bytes | None:
+    """Return slightly more than `most` bytes of a file in a tar; None for anything else."""
     file = archive.extractfile(entry)
     return file.read(most + 1) if file else None
 
@@ -306,7 +307,7 @@ def _decompressed(content: bytes) -> bytes:
     return data
 
 
-def _path(name: str) -> str:
+def path_inside(name: str) -> str:
     """Return a name as a path that can't lead outside the archive."""
     parts = PurePosixPath(name.replace("\\", "/").replace("\0", "")).parts
     return "/".join(part for part in parts if part not in ("/", "..") and not part.endswith(":"))
