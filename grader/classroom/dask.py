@@ -19,6 +19,7 @@ from grader.classroom.request import ClusterLost, GradedSubmission, NoCluster, h
 from grader.classroom.results import grade_key
 from grader.grading.grading import Grading
 from grader.grading.reference import versions
+from grader.sandbox.program import SandboxUnavailable
 from grader.submission.submission import Submission
 from groundwork.words import counted
 
@@ -179,7 +180,7 @@ def dask_backend(grading: Grading, address: str, say: Callable[[str], None]) -> 
     try:
         with warnings.catch_warnings(record=True) as caught:
             client = Client(address, timeout=SCHEDULER_S, set_as_default=False)
-    except (OSError, ValueError, TimeoutError) as error:
+    except (OSError, ValueError, TypeError, RuntimeError, TimeoutError) as error:
         text = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise NoCluster(f"--scheduler {address}: no Dask scheduler answers there: {text}") from None
     if any(issubclass(warning.category, VersionMismatchWarning) for warning in caught):
@@ -225,7 +226,14 @@ def _check_workers(client: Client, grading: Grading, say: Callable[[str], None])
 
 def _refuse_other(worker: str, future: Future[Any], ours: Mapping[str, str]) -> None:
     if error := future.exception():
-        raise NoCluster(f"The worker {worker} can't grade: {type(error).__name__}: {error}")
+        text = f"The worker {worker} can't grade: "
+        if isinstance(error, SandboxUnavailable):
+            raise NoCluster(f"{text}{error}")
+        text += f"{type(error).__name__}: {str(error).partition(chr(10))[0]}"
+        raise NoCluster(
+            f"{text} Start the scheduler and each worker in an environment with the same Spinbook: "
+            "pip install 'spinbook[cluster]'"
+        )
     if differs := differences(ours, future.result()):
         raise NoCluster(
             f"The worker {worker} differs: {differs}. Install the same versions there; if only the sandbox differs, "

@@ -229,12 +229,17 @@ def test_a_cluster_without_workers_is_waited_for_and_then_refused(monkeypatch: p
 
 
 @pytest.mark.parametrize(
-    ("option", "text"), [((), "no Dask scheduler answers there"), (("--jobs", "2"), "--nthreads says")]
+    ("arguments", "text"),
+    [
+        (("tcp://127.0.0.1:9",), "no Dask scheduler answers there"),
+        (("tls://127.0.0.1:9",), "perhaps check your TLS configuration"),
+        (("tcp://127.0.0.1:9", "--jobs", "2"), "--nthreads says"),
+    ],
 )
 def test_a_cluster_that_can_not_be_used_is_reported_in_a_sentence(
-    small_class: SmallClass, option: tuple[str, ...], text: str
+    small_class: SmallClass, arguments: tuple[str, ...], text: str
 ) -> None:
-    code, printed = small_class.grade("--scheduler", "tcp://127.0.0.1:9", *option)
+    code, printed = small_class.grade("--scheduler", *arguments)
     assert code == 2, printed
     assert text in printed
     assert "Traceback" not in printed
