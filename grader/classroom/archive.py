@@ -95,7 +95,8 @@ def _time(seconds: float, source: str) -> Time:
 class _Entry:
     """One entry of an archive.
 
-    `load` returns its content, of a long one about as many bytes as its argument says. `is_link` is whether it is a symbolic link.
+    `load` returns its content, of a long one about as many bytes as its argument says. `is_link` is whether it is a
+    symbolic link.
     """
 
     name: str
