@@ -20,6 +20,8 @@ def main() -> None:
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, io.TextIOWrapper):
                 stream.reconfigure(errors="replace")  # a message may have what the terminal's encoding lacks
+        # Message classes need a single function of that package; its generator and parser take a sixth of the start.
+        sys.modules["rosidl_generator_py.generate_py_impl"] = None  # type: ignore[assignment]
         from ros_in_python.ros2.command import ros2
 
         ros2(prog_name="ros2")
