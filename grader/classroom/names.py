@@ -57,6 +57,7 @@ def comparable(name: str) -> str:
     return "".join(char for char in normal(name).casefold() if _is_kept(char) and char not in ".@+-_")
 
 
+@cache
 def words(name: str) -> frozenset[str]:
     """Return the words and numbers of a name without what people vary: Müller is Mueller and Muller, 0042 is 42."""
     letters = unicodedata.normalize("NFKD", name.casefold())
@@ -75,7 +76,8 @@ def may_be_one(name: str, other: str) -> bool:
     if sorted(re.findall(r"\d+", joined)) != sorted(re.findall(r"\d+", others)):
         return False
     is_login = len(mine) == 1 and any(len(word) > 4 and word in joined for word in theirs)
-    return is_login or difflib.SequenceMatcher(None, joined, others).ratio() > 0.85
+    slips = difflib.SequenceMatcher(None, joined, others)
+    return is_login or (slips.quick_ratio() > 0.85 and slips.ratio() > 0.85)
 
 
 def without_numbers(name: str) -> frozenset[str]:
