@@ -5,7 +5,7 @@ import { createEditor } from "./editor.js";
 import { after, announce, button, element, failure, hindrance, save, style } from "./elements.js";
 import { fill } from "./picture.js";
 import { take } from "./processes.js";
-import { tryOut } from "./trial.js";
+import { stopTrial, tryOut } from "./trial.js";
 import { tellUpdate } from "./update.js";
 
 const LIMIT_S = 120;
@@ -133,6 +133,7 @@ function opening(section) {
   const clear = () => {
     judged = null;
     result.replaceChildren();
+    stopTrial();
   };
   edits.onchange = () => judged !== null && say(editor.text === judged ? "" : OLDER);
   // On a phone, the results are below the visible part of the page.

@@ -9,9 +9,12 @@ const LINES = 500;
 
 let playing = [];
 
+// End what plays.
+export const stopTrial = () => Promise.all(playing.map((process) => process.stop()));
+
 // Play `scenario` of an exercise ("" for the first) around a program; `say` gets the state. Resolves when it is over.
 export async function tryOut({ exercise, file, source, scenario, place, say }) {
-  await Promise.all(playing.map((process) => process.stop()));
+  await stopTrial();
   bar();
   const figure = element("figure");
   globalThis.sideways.observe(figure);
@@ -20,8 +23,10 @@ export async function tryOut({ exercise, file, source, scenario, place, say }) {
   const own = log(`What ${file} prints`);
   const heads = [around, own].map((pre) => element("p", { className: "try-head", textContent: pre.ariaLabel }));
   place.replaceChildren(figure, heads[0], around, heads[1], own);
+  // Once something else is shown, this one has nothing to say any more.
+  const tell = (text) => figure.isConnected && say(text);
   const surroundings = take("surroundings", {
-    progress: (part) => say(`Loading ${part} …`),
+    progress: (part) => tell(`Loading ${part} …`),
     output: (text) => print(around, text),
     picture: (text) => draw(figure, JSON.parse(text)),
   });
@@ -29,18 +34,20 @@ export async function tryOut({ exercise, file, source, scenario, place, say }) {
   try {
     await surroundings.ready;
     const plan = await surroundings.call("trial.plan", { name: exercise, chosen: scenario });
-    if (!plan) return say("Stopped.");
-    if (plan.problem) return say(plan.problem);
+    if (!plan) return tell("Stopped.");
+    if (plan.problem) return tell(plan.problem);
     const node = take(file.replace(/\.py$/, ""), { output: (text) => print(own, text) });
     playing.push(node);
     const ended = node.program(source, file, plan.args.slice(1));
     surroundings.work("surroundings");
-    say(`Scenario ${plan.scenario} runs in real time …`);
+    tell(`Scenario ${plan.scenario} runs in real time …`);
     place.append(element("p", { className: "try-scenarios" }, "Play ", ...plan.scenarios.flatMap((name) => choice(name, place))));
     ended.then((status) => status && print(own, `— ended with ${status} —`));
     await surroundings.call("trial.play_around", { name: exercise, chosen: plan.scenario }).finally(() => surroundings.work(""));
     await node.stop();
-    say(`Scenario ${plan.scenario} is over. Nothing was judged: Check does that.`);
+    tell(`Scenario ${plan.scenario} is over. Nothing was judged: Check does that.`);
+  } catch (error) {
+    if (figure.isConnected) throw error;
   } finally {
     surroundings.end();
   }

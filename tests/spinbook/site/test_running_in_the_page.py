@@ -212,7 +212,12 @@ def test_an_exercise_is_checked_in_its_page(reader: BrowserContext, address: str
         expect(page.get_by_text("is over. Nothing was judged")).to_be_visible()
         expect(page.locator(".check-plot svg")).to_contain_text("yours")
         expect(page.locator(".check-plot svg")).not_to_contain_text("first wrong")
-        expect(page.get_by_role("button", name="Play the scenario irregular")).to_be_visible()
+        page.get_by_role("button", name="Play the scenario irregular").click()
+        expect(page.get_by_text("Scenario irregular runs in real time")).to_be_visible()
+        page.get_by_role("button", name="Check joint_velocity.py").click()
+        expect(total).to_have_text("9 of 9 public checks, 37 of 37 points", timeout=DEADLINE_MS)
+        expect(page.get_by_role("region", name="Running nodes")).to_be_hidden()
+        expect(page.get_by_text("is over. Nothing was judged")).to_have_count(0)
 
         with page.expect_download() as download:
             page.get_by_role("button", name="Download your joint_velocity.py").click()
