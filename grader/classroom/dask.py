@@ -14,7 +14,14 @@ from typing import Any
 from distributed import Client, Future, Scheduler, TimeoutError  # before Python 3.11 not the built-in one
 from distributed.versions import VersionMismatchWarning
 
-from grader.classroom.dask_worker import LEFT, describe_worker, differences, grade_on_worker, pack_exercise
+from grader.classroom.dask_worker import (
+    LEFT,
+    ExerciseFiles,
+    describe_worker,
+    differences,
+    grade_on_worker,
+    pack_exercise,
+)
 from grader.classroom.request import ClusterLost, GradedSubmission, NoCluster, host_error
 from grader.classroom.results import grade_key
 from grader.grading.grading import Grading
@@ -123,7 +130,9 @@ class DaskBackend:
         Raises `ClusterLost` when the scheduler is gone.
         """
         runner = self.grading.runner
-        task = (pack_exercise(runner.exercise), runner.options, _of_this_machine(self.grading), self.key)
+        # A task of its own, so that the scheduler holds it once, and a worker can get it after another's death.
+        packed = self.client.submit(ExerciseFiles, **vars(pack_exercise(runner.exercise)), pure=False)
+        task = (packed, runner.options, _of_this_machine(self.grading), self.key)
         asked = {
             self.client.submit(grade_on_worker, *task, who, submission, pure=False): who
             for who, submission in submissions.items()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import pickle
 import re
 import shutil
 import subprocess
@@ -200,7 +201,7 @@ def test_a_cluster_that_is_busy_with_another_class_keeps_its_workers(monkeypatch
 
     monkeypatch.setattr(dask, "LOOK_S", 0.1)
     said: list[str] = []
-    with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as cluster:
+    with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0") as cluster:
         with Client(cluster, set_as_default=False) as other:
             busy = other.submit(until_free)
             wait_until(lambda: any(other.processing().values()))
@@ -211,6 +212,30 @@ def test_a_cluster_that_is_busy_with_another_class_keeps_its_workers(monkeypatch
         assert said == [f"Waiting for {cluster.workers[0].address} to describe itself."] * dask.SILENT_LOOKS
 
 
+def test_the_scheduler_holds_an_exercise_once_for_a_class(monkeypatch: pytest.MonkeyPatch) -> None:
+    from distributed import Client, LocalCluster
+
+    from grader.classroom import dask
+
+    size = 1_000_000
+    sizes: list[int] = []
+    monkeypatch.setattr(dask, "LOOK_S", 0.1)
+    monkeypatch.setattr(dask, "grade_key", lambda _: "")
+    monkeypatch.setattr(dask, "pack_exercise", lambda _: ExerciseFiles("", {"data": bytes(size)}))
+    grading = prepared()
+    grading.runner.exercise = None
+    with LocalCluster(n_workers=0, processes=False, dashboard_address=":0") as cluster:
+
+        def look(text: str) -> None:
+            sizes.extend(len(pickle.dumps(task.run_spec)) for task in cluster.scheduler.tasks.values())
+            raise ClusterLost(text)
+
+        with Client(cluster, set_as_default=False) as client, pytest.raises(ClusterLost):
+            next(dask.DaskBackend(grading, client, look).grade(dict.fromkeys("abcd", Submission("", "", "", "", None))))
+    assert len(sizes) == 5
+    assert size < sum(sizes) < 2 * size
+
+
 def test_a_cluster_without_workers_is_waited_for_and_then_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     from distributed import LocalCluster
 
@@ -219,7 +244,7 @@ def test_a_cluster_without_workers_is_waited_for_and_then_refused(monkeypatch: p
     monkeypatch.setattr(dask, "LOOK_S", 0.1)
     said: list[str] = []
     with (
-        LocalCluster(n_workers=0, processes=False, dashboard_address=None) as cluster,
+        LocalCluster(n_workers=0, processes=False, dashboard_address=":0") as cluster,
         pytest.raises(NoCluster, match="it has no worker"),
         dask.dask_backend(prepared(), cluster.scheduler_address, said.append),
     ):
