@@ -156,8 +156,10 @@ def main() -> None:
 
 def _put_ours_first() -> None:
     """Start again if PyPI's wheels, which start Python again themselves, have put their libraries before ours."""
-    own = str(Path(os.environ.get("LD_PRELOAD", "")).parent)
+    preload = Path(os.environ.get("LD_PRELOAD", ""))
     folders = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
+    found = (folder for folder in folders if Path(folder, preload.name).is_file())
+    own = str(preload.parent) if preload.is_absolute() else next(found, "")
     ordered = sorted(folders, key=lambda folder: not folder.startswith(own))
     if ordered != folders:
         os.environ["LD_LIBRARY_PATH"] = os.pathsep.join(ordered)

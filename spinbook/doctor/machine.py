@@ -47,11 +47,15 @@ def examine_folder() -> MachineFinding:
     """Check the paths for characters that break colcon's shell scripts or the search paths."""
     folders = (Path.cwd(), Path(sys.prefix))
     for folder in folders:
-        if any(character.isspace() or character in ":\"'$\\" for character in str(folder)):
+        odd = {character for character in str(folder) if character.isspace() or character in ":\"'$\\"}
+        if odd == {" "} and in_handout():
+            again = f"Move the folder to a path without one. {set_up_again()}"
+            return warning(f"'{folder}' has a space in it", f"Only colcon's packages do not run there. {again}")
+        if odd:
             return missing(
                 f"'{folder}' has a space, a colon, a quotation mark, a dollar sign or a backslash in it",
                 "colcon's scripts, compilers and ROS's search paths fail there. "
-                "Move it to a path without one, and run make again.",
+                f"Move it to a path without one. {set_up_again()}",
             )
     return ok(f"{folders[0]} (environment: {folders[1]})")
 

@@ -41,7 +41,7 @@ class Library:
 
     @property
     def preload(self) -> Path:
-        """The value of `LD_PRELOAD`: the connection to the hub, simulated time and idle detection."""
+        """What is preloaded: the connection to the hub, simulated time and idle detection."""
         return self.folder / "liblockstep.so"
 
     @property
@@ -59,10 +59,12 @@ class Library:
         With PyPI's wheels `RMW_IMPLEMENTATION` chooses nothing. But rcl compares it with the middleware that was
         loaded, and ends the process with exit code 102 if they differ.
         """
-        searched = filter(None, (str(self.search_folder), of.get("LD_LIBRARY_PATH")))
+        preload, folders = str(self.preload), [str(self.search_folder)]
+        if " " in preload:  # which separates the entries of LD_PRELOAD, and not those of LD_LIBRARY_PATH
+            preload, folders = self.preload.name, [*folders, str(self.folder)]
         return {
-            "LD_PRELOAD": str(self.preload),
-            "LD_LIBRARY_PATH": os.pathsep.join(searched),
+            "LD_PRELOAD": preload,
+            "LD_LIBRARY_PATH": os.pathsep.join(filter(None, (*folders, of.get("LD_LIBRARY_PATH")))),
             "RMW_IMPLEMENTATION": IDENTIFIER,
         }
 

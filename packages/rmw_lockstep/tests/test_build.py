@@ -209,6 +209,7 @@ def test_a_sourced_ros_chooses_by_name_and_the_wheels_by_the_order_of_folders(tm
     assert wheels.environment({"LD_LIBRARY_PATH": "/a"})["LD_LIBRARY_PATH"] == f"{tmp_path}/wheels:/a"
     assert sourced.environment({"LD_LIBRARY_PATH": "/a"})["LD_LIBRARY_PATH"] == f"{tmp_path}:/a"
     assert sourced.environment({})["RMW_IMPLEMENTATION"] == "rmw_lockstep_cpp"
+    assert wheels.environment({})["LD_PRELOAD"] == f"{tmp_path}/liblockstep.so"
 
 
 @needs_compiler

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import socket
 import tempfile
 from pathlib import Path
 from typing import Any
 
 import pytest
-from over_hub import run_over_hub
+from over_hub import HubRun, in_the_runner, run_over_hub
 from sandbox_runner import Runner
 
-from grader.sandbox import ForkServer, Isolation, ProgramSpec, SandboxError, zygote_start
+from grader.sandbox import ForkServer, Isolation, ProgramSpec, SandboxError, middleware, zygote_start
+from rmw_lockstep.library import Library, library
 
 NAME_IT = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
 
@@ -36,6 +38,25 @@ def test_a_node_runs_over_it_at_each_level(any_runner: Runner, preloaded: bool) 
     assert run.text == "rmw_lockstep_cpp\n['here']\n"
     assert run.exit
     assert run.exit.code == 0
+
+
+def middleware_in(fork_server: ForkServer, level: Isolation, program: ProgramSpec, folder: Path) -> HubRun:
+    """Run a program in the runner, with a copy of the middleware that is in this folder."""
+    found = library()
+    assert isinstance(found, Library)
+    shutil.copytree(found.folder, folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(middleware, "library", lambda: Library(folder, found.prefix))
+        with ForkServer() as own:
+            return in_the_runner(own, level, program, None, 60.0)
+
+
+def test_its_folder_may_have_spaces(strongest_runner: Runner, tmp_path: Path) -> None:
+    program = ProgramSpec("student.py", {"student.py": f"{NAME_IT}\nrclpy.init()".encode()}, ("--ros-args",))
+
+    run = strongest_runner.do(middleware_in, program, tmp_path / "Übung 1")
+
+    assert (run.text, run.exit.code) == ("rmw_lockstep_cpp\n", 0)
 
 
 def test_a_sleep_takes_no_time(either_runner: Runner) -> None:

@@ -17,6 +17,7 @@ from ros_in_python.ros2.executables import GUARD
 from spinbook.doctor import machine, middleware, python_build, ros, sandbox
 from spinbook.doctor.diagnosis import State
 from spinbook.doctor.ros import wheels_installed
+from spinbook.update.handout import BASE
 
 with_wheels = pytest.mark.skipif(not wheels_installed(), reason="ROS 2 is a sourced one here")
 
@@ -120,6 +121,11 @@ def test_a_course_in_a_folder_with_a_space_is_a_fault(tmp_path: Path, monkeypatc
     finding = machine.examine_folder()
     assert finding.state is State.MISSING
     assert os.fspath(course) in finding.found
+
+    (course / BASE).mkdir(parents=True)
+    finding = machine.examine_folder()
+    assert finding.state is State.WARNING  # notebooks and checks work
+    assert "make" not in finding.fix
 
 
 def test_a_newer_setuptools_that_copies_in_place_of_linking_is_warned_of(tmp_path: Path) -> None:
