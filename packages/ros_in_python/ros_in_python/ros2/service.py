@@ -130,9 +130,10 @@ def _ask(graph: GraphView, client: Any, request: Any, period: float | None) -> N
 def _wait_until_ready(graph: GraphView, client: Any, name: str, type_name: str) -> None:
     """Wait for the service, without a limit. Raises `CommandError` if it has another type."""
     if not client.service_is_ready():
+        graph.settle(client.service_is_ready)  # one that runs may only not have been discovered yet
+    if not client.service_is_ready():
         print("waiting for service to become available...", flush=True)
-        graph.settle(client.service_is_ready)
-        if not client.service_is_ready() and (alike := _alike(graph, name)):
+        if alike := _alike(graph, name):
             print(f"There is no service '{name}' yet. Did you mean {alike}? Ctrl-C ends the wait.", file=sys.stderr)
 
     def ready_or_never() -> bool:
