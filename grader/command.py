@@ -117,7 +117,7 @@ def grade(
     platform such as Moodle or Canvas, or a CSV file with the columns file and student. If it is not clear whose a file
     is, which one counts or when it was handed in, the command says so and grades nothing. It does not grade unchanged
     submissions again, and continues a run that was stopped. Exit codes for a class: 0 all graded, 1 some need your
-    decision, 2 wrong usage, 3 a fault of Spinbook or the machine.
+    decision, 2 wrong usage, 3 a fault of Spinbook or the machine, 130 stopped with Ctrl-C.
 
     \b
       spinbook grade joint_velocity submissions/ --out results/
@@ -175,7 +175,7 @@ def _class(exercise: Exercise, submissions: Path, out: Path, options: dict[str, 
     """Grade a class. The imports are here so that a single submission is graded sooner."""
     from rich.console import Console
 
-    from grader.classroom.class_run import grade_class
+    from grader.classroom.class_run import STOPPED, grade_class
     from grader.classroom.formats.registry import FORMATS
     from grader.classroom.request import ClassRequest, ClusterLost, NoCluster
     from grader.classroom.results import FolderInUse, NotWritable
@@ -193,6 +193,9 @@ def _class(exercise: Exercise, submissions: Path, out: Path, options: dict[str, 
         _stop(f"{error} Give another folder with --out.")
     except ClusterLost as error:
         _stop(f"{error} Run the same command to continue.")
+    except KeyboardInterrupt:
+        click.echo("Stopped. This run has graded nothing yet.", err=True)
+        return STOPPED
     except (SubmissionsError, FolderInUse, NoCluster) as error:
         raise click.UsageError(str(error)) from None
 

@@ -8,6 +8,7 @@ import os
 import pickle
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -251,6 +252,19 @@ def test_a_cluster_without_workers_is_waited_for_and_then_refused(monkeypatch: p
         raise AssertionError
     start = f"Waiting for a worker to join. To start one: dask worker {cluster.scheduler_address}"
     assert said == [start] * dask.SILENT_LOOKS
+
+
+def test_a_class_that_is_stopped_while_it_waits_for_a_worker_needs_no_decision(small_class: SmallClass) -> None:
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=0, processes=False, protocol="tcp", dashboard_address=":0") as cluster:
+        others = set(cluster.scheduler.clients)
+        process = small_class.start("--scheduler", cluster.scheduler_address)
+        wait_until(lambda: cluster.scheduler.clients.keys() - others or process.poll() is not None)
+        process.send_signal(signal.SIGINT)
+        printed, _ = process.communicate(timeout=60)
+    assert process.returncode == 130, printed
+    assert printed.endswith("Stopped. This run has graded nothing yet.\n")
 
 
 @pytest.mark.parametrize(
