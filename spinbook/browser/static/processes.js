@@ -142,6 +142,8 @@ export class Process {
   // Interrupt it as Ctrl-C does, and kill it if it does not end, or has not begun.
   async stop() {
     if (!this.isReady) return this.end();
+    // A terminal whose launch runs elsewhere does nothing: the signal would end its next command.
+    if (this.calls.size === 0) return;
     this.interrupted = true;
     this.signal("SIGINT");
     const ended = this.ended ?? this.idle;

@@ -144,6 +144,7 @@ def test_output_above_moves_no_head_behind_the_bar_unless_the_reader_scrolls(sho
 
     shown.page.set_viewport_size({"width": 390, "height": 844})
     published = run(shown, 4).locator("span")
+    expect(published.first).to_be_attached(timeout=DEADLINE_MS)  # otherwise, echo can't know the type
     head = at_the_end(shown, 5)
     expect(run(shown, 5)).to_contain_text("data: 5", timeout=DEADLINE_MS)
     waits_for_another_line()
