@@ -50,7 +50,7 @@ def gradebook(results: Path, start: Path) -> None:
         click.echo(f"{unreadable}: this grade can't be read, and counts as not handed in. Grade it again.", err=True)
     for names in may_be_same(rows):
         advice = "If they are one student, grade each exercise with the same --roster."
-        click.echo(f"counted as two students: {', '.join(names)}. {advice}", err=True)
+        click.echo(f"counted as {len(names)} students: {', '.join(names)}. {advice}", err=True)
     write_if_changed(results / "index.html", course_page(course.title, exercises, rows), durable=True)
     write_if_changed(results / "gradebook.csv", BYTE_ORDER_MARK + course_csv(exercises, rows), durable=True)
     click.echo(f"{counted(len(rows), 'student')}, exercises: {', '.join(exercise.name for exercise in exercises)}.")

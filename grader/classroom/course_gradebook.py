@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -92,11 +93,22 @@ def _row(student: Student, exercises: Sequence[GradedExercise]) -> CourseRow:
 
 
 def may_be_same(rows: Sequence[CourseRow]) -> Iterator[list[str]]:
-    """Yield the ids of rows that may be one student's: with similar names, and no exercise in common."""
+    """Yield the ids of rows that may be one student's: with similar names, and no exercise in common.
+
+    Names that differ only in numbers are one group: week1-anna, week2-anna and week3-anna. Of Participant_7 and
+    Participant_8, other students handed in the same exercise, so these names say nothing.
+    """
+    alike: dict[frozenset[str], list[CourseRow]] = defaultdict(list)
+    for row in rows:
+        alike[without_numbers(row.student.id)].append(row)
+    for rest, same in alike.items():
+        columns = zip(*(row.entries for row in same), strict=True)
+        if rest and len(same) > 1 and all(sum(map(bool, column)) < 2 for column in columns):
+            yield [row.student.id for row in same]
     for one, other in combinations(rows, 2):
-        apart = not any(mine and its for mine, its in zip(one.entries, other.entries, strict=True))
         mine, theirs = one.student.id, other.student.id
-        if apart and (may_be_one(mine, theirs) or without_numbers(mine) == without_numbers(theirs) != frozenset()):
+        apart = not any(my and its for my, its in zip(one.entries, other.entries, strict=True))
+        if apart and may_be_one(mine, theirs) and not without_numbers(mine) == without_numbers(theirs) != frozenset():
             yield [mine, theirs]
 
 

@@ -26,12 +26,16 @@ _TAG = re.compile(r"\s*<([A-Z][A-Za-z]+)\b")
 #: `{{ name }}` and `{% tag %}` of Jinja and Liquid, and `@fig-name` of Quarto, but no braces of JSX or of a formula.
 #: Code matches as well, so that it is skipped.
 _MACRO = re.compile(
-    r"`+[^`]*`+|(?<![\w=^$\\{}])(\{\{[^{}]{1,200}\}\}|\{%-?[^{}%]{1,200}%\}|(?<!@)@(?:sec|fig|tbl|eq|lst)-[\w-]+)"
+    r"`+[^`]*`+|(?<![\w=^$\\{}])(\{\{[^{}\\]{1,200}\}\}|\{%-?[^{}%]{1,200}%\}|(?<!@)@(?:sec|fig|tbl|eq|lst)-[\w-]+)"
 )
-#: How authors name a place themselves: in HTML, in an attribute list, as MyST's label, and as a directive's option.
+#: How authors name a place themselves: in HTML, in an attribute list, as a label of MyST's, as a directive's option,
+#: and in a heading within a quotation, a list or HTML.
 _NAMED = re.compile(
     r"""\b(?:id|name)\s*=\s*\{?["']?([^"'\s<>{}]+)|\{[^{}\n]*#([^\s{}]+)|^\s*\(([^()\n]+)\)=|^\s*:(?:name|label):\s*(\S+)"""
+    r"""|\$\$\s*\(([^()\n]+)\)|^\s*(?:[>*+-]\s*)+#{1,6}\s+(.+)|<h[1-6][^<>]*>([^<>]+)"""
 )
+#: What browsers and book tools understand or number themselves: text to look for, footnotes, tabs, `#id1`.
+_GENERATED = re.compile(r":~:|fn(?:ref)?[-:]|_*tabbed_|_*(?:id|section-)?\d+$")
 
 
 def misspelt(blocks: Iterable[Block], file: Path, text: str) -> Iterator[Problem]:
@@ -47,7 +51,7 @@ def misspelt(blocks: Iterable[Block], file: Path, text: str) -> Iterator[Problem
         for line in () if block.fence or (block.children and block.kind is not BlockKind.GROUP) else block.lines[:1]:
             tag = _TAG.match(line.text)
             if tag and tag[1] not in COMPONENTS and (near := similar(tag[1], COMPONENTS, 0.8)):
-                if re.search(rf"\b(?:import|export)\b.*\b{tag[1]}\b", text):
+                if re.search(rf"(?m)^\s*(?:import|export)\b[^'\"]{{0,400}}\b{tag[1]}\b", text):
                     continue  # a component of the book's own
                 problem = f"`<{tag[1]}>` is not a known component, so only what it holds is shown."
                 yield Problem(file, line.number, problem, f"Did you mean `<{near}>`?", Severity.WARNING)
@@ -74,12 +78,14 @@ class Anchors:
         lines = (line.text for top in blocks for block in top.walk() for line in (block.new or block.lines))
         named = (next(filter(None, match.groups())) for line in lines for match in _NAMED.finditer(line))
         known = {_comparable(name) for name in (*self._slugs, *named, "top")}
-        self._known = known | {name.lstrip("0123456789") for name in known}  # Pandoc leaves these out
+        # Pandoc leaves out leading digits, MkDocs and Sphinx letters other than English ones.
+        self._known = known | {name.lstrip("0123456789") for name in known}
+        self._known |= {name.encode("ascii", "ignore").decode() for name in known}
 
     def problem(self, anchor: str, target: str, place: Path, file: Path, line: int) -> Problem | None:
         """Return what is wrong with a link to `anchor` at `place`; None if it is there or can't be known."""
         name = _comparable(anchor)
-        if not name or name.isdecimal() or name in self._known:
+        if not name or name in self._known or _GENERATED.match(anchor):
             return None
         problem = f"a link leads to `{target}`, and {place} has no such heading."
         otherwise = "Write the heading's words in lower case, with hyphens."

@@ -103,13 +103,14 @@ def test_the_command_writes_page_and_table(results: Path) -> None:
 
 def test_the_command_says_who_may_be_one_student_and_whose_grade_can_not_be_read(tmp_path: Path) -> None:
     named = {name: plain.entry(plain.RIGHT, Student(name)) for name in ("w1-ada", "w2-ada", "ada", "w2-ben")}
-    keep(tmp_path, "heartbeat", named["w1-ada"], named["w2-ben"])
-    keep(tmp_path, "joint_velocity", named["w2-ada"], named["w2-ben"])
+    named |= {name: plain.entry(plain.RIGHT, Student(name)) for name in ("Guest_1", "Guest_2", "Guest_3")}
+    keep(tmp_path, "heartbeat", named["w1-ada"], named["w2-ben"], named["Guest_1"], named["Guest_2"])
+    keep(tmp_path, "joint_velocity", named["w2-ada"], named["w2-ben"], named["Guest_3"])
     (folder_of(tmp_path / "heartbeat", "w2-ben") / "grade.json").write_text("{", encoding="utf-8")
     done = CliRunner().invoke(spinbook, ["gradebook", str(tmp_path), "--course", str(ROOT)])
     assert [line.partition(". ")[0] for line in done.stderr.splitlines()] == [
         f"{tmp_path}/heartbeat/students/w2-ben: this grade can't be read, and counts as not handed in",
-        "counted as two students: w1-ada, w2-ada",
+        "counted as 2 students: w1-ada, w2-ada",
     ]
 
 

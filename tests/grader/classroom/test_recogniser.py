@@ -156,6 +156,11 @@ def test_a_students_folder_without_a_file_is_named(tmp_path: Path) -> None:
             ["Jörg Müller is on the roster, Jorg_Muller handed in"],
         ),
         (["jmueller.py", "bert.py"], ["Jörg Müller", "bert"], ["Jörg Müller is on the roster, jmueller handed in"]),
+        (
+            ["Jörg Müller.py", "bert.py"],
+            ["jmueller", "bert"],
+            ["jmueller is on the roster, Jörg Müller handed in"],
+        ),
         (["ana.py", "bert.py"], ["anna", "bert"], ["anna is on the roster, ana handed in"]),
         (["s12345.py", "Anna Lee.py", "bert.py"], ["s12346", "Anna Braun", "bert"], []),
     ],

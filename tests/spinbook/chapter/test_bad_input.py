@@ -208,7 +208,9 @@ def test_what_a_books_tool_understands_is_no_oversight(course: CourseFolder) -> 
     course.write(
         one="""# T
 
-import Asside from '@site/src/Asside';
+import {
+  Asside,
+} from '@site/src/Asside';
 
 ## 1. Ünder & Über {#own}
 
@@ -221,6 +223,17 @@ import Asside from '@site/src/Asside';
 ## Twice
 
 [a](#1-ünder--über) [b](#under-uber) [c](#own) [d](#raw) [e](#mine) [f](#twice-1) [g](#twice_1) [h](#top) [i](#Twice)
+[j](#ros-2) [k](#a-quote) [l](#my-eq) [m](#raw-one) [n](#:~:text=raw) [o](#fn-note) [p](#id1)
+
+## ROS 2 の概要
+
+> ### A quote
+
+<h2>Raw one</h2>
+
+$$
+{{\\bf x}} = 1
+$$ (my-eq)
 
 `{{ code }}`, $x^{{2}}$ and <b style={{color: "red"}}>red</b>.
 
