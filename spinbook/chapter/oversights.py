@@ -24,9 +24,9 @@ _OPENING = re.compile(r"\s*(?::{3,}|`{3,}|~{3,}|!!!|\?\?\?\+?) *\{?([a-z][a-z-]+
 _KNOWN = (*BLOCKS, *PYTHON, *SHELL)
 _TAG = re.compile(r"\s*<([A-Z][A-Za-z]+)\b")
 #: `{{ name }}` and `{% tag %}` of Jinja and Liquid, and `@fig-name` of Quarto, but no braces of JSX or of a formula.
-#: Code matches as well, so that it is skipped.
+#: Code and comments match as well, so that they are skipped.
 _MACRO = re.compile(
-    r"`+[^`]*`+|(?<![\w=^$\\{}])(\{\{[^{}\\]{1,200}\}\}|\{%-?[^{}%]{1,200}%\}|(?<!@)@(?:sec|fig|tbl|eq|lst)-[\w-]+)"
+    r"`+[^`]*`+|<!--[^>]{0,400}|(?<![\w=^$\\{}])(\{\{[^{}\\]{1,200}\}\}|\{%-?[^{}%]{1,200}%\}|(?<!@)@(?:sec|fig|tbl|eq|lst)-[\w-]+)"
 )
 #: How authors name a place themselves: in HTML, in an attribute list, as a label of MyST's, as a directive's option,
 #: and in a heading within a quotation, a list or HTML.

@@ -235,6 +235,8 @@ $$
 {{\\bf x}} = 1
 $$ (my-eq)
 
+<!-- {{ later }} -->
+
 `{{ code }}`, $x^{{2}}$ and <b style={{color: "red"}}>red</b>.
 
 <Asside>
