@@ -71,7 +71,7 @@ def test_an_odd_file_is_graded_or_refused_without_harm(
     monkeypatch.chdir(folder)
     submission = read(str(path), grading.runner.exercise)
     assert "secret" not in submission.source
-    ending = Ending("did-not-start", submission.problem)
+    ending = Ending("did-not-start", submission.problem or submission.question)
     if submission.program:
         ending = grading.runner.only("chapter").run(submission)["chapter"].ending
     assert ("graded" if ending.outcome == "completed" else ending.outcome) in odd.outcome
