@@ -47,13 +47,13 @@ def examine_folder() -> MachineFinding:
     """Check the paths for characters that break colcon's shell scripts or the search paths."""
     folders = (Path.cwd(), Path(sys.prefix))
     for folder in folders:
-        odd = {character for character in str(folder) if character.isspace() or character in ":\"'$\\"}
+        odd = {character for character in str(folder) if character.isspace() or character in ":;\"'$\\"}
         if odd == {" "} and in_handout():
             again = f"Move the folder to a path without one. {set_up_again()}"
             return warning(f"'{folder}' has a space in it", f"Only colcon's packages do not run there. {again}")
         if odd:
             return missing(
-                f"'{folder}' has a space, a colon, a quotation mark, a dollar sign or a backslash in it",
+                f"'{folder}' has a space, a colon, a semicolon, a quotation mark, a dollar sign or a backslash in it",
                 "colcon's scripts, compilers and ROS's search paths fail there. "
                 f"Move it to a path without one. {set_up_again()}",
             )

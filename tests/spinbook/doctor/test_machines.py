@@ -127,6 +127,10 @@ def test_a_course_in_a_folder_with_a_space_is_a_fault(tmp_path: Path, monkeypatc
     assert finding.state is State.WARNING  # notebooks and checks work
     assert "make" not in finding.fix
 
+    (course / "one; two").mkdir()
+    monkeypatch.chdir(course / "one; two")
+    assert machine.examine_folder().state is State.MISSING  # the loader's paths end at a semicolon
+
 
 def test_a_newer_setuptools_that_copies_in_place_of_linking_is_warned_of(tmp_path: Path) -> None:
     (tmp_path / "setuptools-80.9.0.dist-info").mkdir()
