@@ -10,7 +10,6 @@ import click
 
 from grader.exercise.exercise import Exercise, ExerciseError
 from grader.exercise.loading import find, load
-from grader.exercise.mistakes import mistake_of
 from grader.sandbox.program import Isolation, SandboxUnavailable
 from grader.submission.file_kinds import kind_of
 from grader.submission.reader import is_one, of_mistake, read
@@ -142,7 +141,7 @@ def grade(
         is_class = submission.endswith(".csv") or (Path(submission).is_dir() and not is_one(Path(submission), loaded))
         if not mistake and is_class:
             raise click.UsageError(f"{submission}: to grade a class, give a folder for the results with --out.")
-        handed_in = of_mistake(mistake_of(loaded, mistake), loaded) if mistake else read(submission, loaded)
+        handed_in = _mistake(mistake, loaded) if mistake else read(submission, loaded)
         with WorkerPool() as workers:
             result = _graded(loaded, handed_in, options, workers)
             _show(result, loaded, json_, verbose)
@@ -169,6 +168,13 @@ def _refuse_results_among_submissions(submissions: Path, out: Path) -> None:
     """Refuse a folder for results that the next run would read as a student's."""
     if submissions.is_dir() and out.resolve().is_relative_to(submissions.resolve()):
         raise click.UsageError(f"--out {out}: it is inside {submissions}. Give a folder outside of the submissions.")
+
+
+def _mistake(name: str, exercise: Exercise) -> Submission:
+    """Return a usual mistake as a submission. It loads a Markdown parser, which no other needs."""
+    from grader.exercise.mistakes import mistake_of
+
+    return of_mistake(mistake_of(exercise, name), exercise)
 
 
 def _class(exercise: Exercise, submissions: Path, out: Path, options: dict[str, Any], of_class: dict[str, Any]) -> int:

@@ -7,11 +7,11 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from grader.exercise.exercise import Exercise
-from grader.exercise.mistakes import Mistake
 from grader.sandbox.program import ProgramSpec
 from grader.submission.archive import Contents, content_of, folder_contents
 from grader.submission.code import Code, code_of, code_of_files, code_of_python
@@ -20,6 +20,9 @@ from grader.submission.problems import AmbiguousProgram, Unreadable
 from grader.submission.python_version import newer_than_this
 from grader.submission.submission import Submission
 from grader.submission.upload import RECORD, Upload, unpack
+
+if TYPE_CHECKING:
+    from grader.exercise.mistakes import Mistake
 
 
 @dataclass(frozen=True)
