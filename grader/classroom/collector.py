@@ -243,7 +243,7 @@ def _mismatches(
 ) -> Iterator[tuple[str, str]]:
     """Yield the id of each student whom the roster may name otherwise than the files do, and what suggests it."""
     if strangers and missing and not some_match:
-        text = f"nobody is in both: {missing[0].id} is on the roster, {strangers[0].id} handed in"
+        text = f"they have no name in common: {missing[0].id} is on the roster, {strangers[0].id} handed in"
         yield from ((listed.id, text) for listed in missing)
         return
     for listed in missing:

@@ -144,7 +144,7 @@ def test_a_students_folder_without_a_file_is_named(tmp_path: Path) -> None:
         (
             ["week1-anna.py", "week1-bert.py"],
             ["anna", "bert"],
-            ["nobody is in both: anna is on the roster, week1-anna handed in"],
+            ["they have no name in common: anna is on the roster, week1-anna handed in"],
         ),
         (["0042.py", "bert.py"], ["42", "bert"], ["42 is on the roster, 0042 handed in"]),
         (["0042.py", "bert.py"], ["0042", "carl"], []),
